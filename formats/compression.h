@@ -11,14 +11,15 @@
 
 namespace relief {
 
-/// One frame that states its content's size.
+/// Compresses into one frame that stores its content size.
 /// \param level  1…19
-/// Errors: kFailure (zstd's words), kUnsupported (in the browser).
+/// Errors: kFailure (with zstd's message), kUnsupported (in the browser).
 [[nodiscard]] Result<std::vector<std::byte>> compress(std::span<const std::byte> raw, int level);
 
+/// Decompresses one frame.
 /// \param stored    untrusted.
-/// \param raw_size  what it must decompress to, exactly.
-/// Errors: kInvalidInput (no frame, more than one, or one of another content).
+/// \param raw_size  exact decompressed size in bytes.
+/// Errors: kInvalidInput (not exactly one frame, or a different size).
 [[nodiscard]] Result<std::vector<std::byte>> decompress(std::span<const std::byte> stored,
                                                         std::uint64_t raw_size);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Collider as the bytes of a `.relief` file and back. Layout: README.md beside this file, which wins where
-// the two disagree.
+// Converts a Collider to and from the bytes of a `.relief` file. README.md in this folder specifies the layout and is
+// authoritative.
 #pragma once
 
 #include <cstddef>
@@ -16,26 +16,27 @@
 namespace relief {
 
 struct ContainerWriteOptions {
-    /// zstd level of the payloads, 1…19; 0 stores them as they are. A payload that zstd does not shrink is stored as it is, too.
+    /// zstd level of the payloads, 1…19; 0 disables compression. Payloads that zstd does not shrink are stored
+    /// uncompressed.
     int compression_level = 0;
 };
 
-/// The same collider, options and zstd version give the same bytes. Keeps the default ContainerLimits.
-/// Errors: kInvalidInput (an invariant of validate.h is broken), kLimit, kUsage (compression level).
+/// Encodes a collider. The same collider, options and zstd version give the same bytes. Enforces the default
+/// ContainerLimits.
+/// Errors: kInvalidInput (violates an invariant of validate.h), kLimit, kUsage (compression level).
 [[nodiscard]] Result<std::vector<std::byte>> writeContainer(const Collider& collider,
                                                             const ContainerWriteOptions& options = {});
 
-/// Reads untrusted bytes: whatever they are, the answer is a collider that keeps every invariant of
-/// validate.h, or an error that says what is wrong and where. Nothing is allocated before its size has been
-/// checked against `bytes` and `limits`.
+/// Decodes untrusted bytes. Returns a collider that satisfies every invariant of validate.h, or an error that states
+/// what is wrong and where. Sizes are checked against `bytes` and `limits` before any allocation.
 /// Errors: kInvalidInput, kUnsupported (another major version), kLimit.
 [[nodiscard]] Result<Collider> readContainer(std::span<const std::byte> bytes,
                                              const ContainerLimits& limits = {});
 
-/// readFile and readContainer; messages name the file.
+/// Combines readFile and readContainer; messages name the file.
 [[nodiscard]] Result<Collider> loadCollider(const std::filesystem::path& path,
                                             const ContainerLimits& limits = {});
-/// writeContainer and writeFile.
+/// Combines writeContainer and writeFile.
 [[nodiscard]] Result<void> saveCollider(const std::filesystem::path& path, const Collider& collider,
                                         const ContainerWriteOptions& options = {});
 
@@ -43,19 +44,19 @@ struct ContainerInfo {
     std::uint16_t major = 0;
     std::uint16_t minor = 0;
     std::uint64_t file_size = 0;
-    std::vector<PayloadInfo> payloads;  ///< one a map, in the maps' order
+    std::vector<PayloadInfo> payloads;  ///< one for each map, in map order
 };
-/// Header and metadata alone, checked like readContainer's; payloads are neither hashed nor decompressed.
+/// Reads only header and metadata, with the checks of readContainer. Payloads are neither hashed nor decompressed.
 [[nodiscard]] Result<ContainerInfo> readContainerInfo(std::span<const std::byte> bytes,
                                                       const ContainerLimits& limits = {});
 
-// A mesh where a baked collider is needed: the commonest mix-up, and its cure.
+// Detects the most common mistake: a mesh given instead of a baked collider.
 
-/// Fails with kInvalidInput if the name is that of a mesh: "it is a mesh; bake it first: relief bake …", the path in
-/// front.
+/// Fails with kInvalidInput if the file name has a mesh extension. The message starts with the path: "it is a mesh;
+/// bake it first: relief bake …".
 [[nodiscard]] Result<void> refuseMeshName(const std::filesystem::path& path);
 
-/// The same, unless the contents begin as a container does, whatever its name.
+/// Likewise, but accepts any name if the contents start with the container signature.
 [[nodiscard]] Result<void> refuseMesh(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
 }  // namespace relief

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one walk over a container. Each step checks before it believes, and notes what is wrong as an issue. Loading
-// (container.cpp) refuses a file with any error; inspect.cpp reports all of them, and what is left of the file.
+// The only parser of containers. Each step validates before use and records every problem as an issue. Loading
+// (container.cpp) rejects a file with any error; inspect.cpp reports all issues and what is still readable.
 #pragma once
 
 #include <array>
@@ -22,9 +22,9 @@
 
 namespace relief {
 
-/// The first 64 bytes (README.md beside this file, "Bytes"), as they lie in the file.
+/// The first 64 bytes, in file layout (README.md in this folder, "Bytes").
 struct ContainerHeader {
-    /// «RELIEF» in Latin-1, then bytes that a transfer as text would change.
+    /// «RELIEF» in Latin-1, then bytes that a text-mode transfer would change.
     static constexpr std::array<std::uint8_t, 12> kSignature = {0xab, 'R',  'E',  'L',  'I',  'E',
                                                                 'F',  0xbb, 0x0d, 0x0a, 0x1a, 0x0a};
 
@@ -37,9 +37,9 @@ struct ContainerHeader {
     std::uint64_t metadata_offset = 64;
     std::uint64_t metadata_size = 0;
     std::uint64_t metadata_hash = 0;  ///< XXH3-64 of the metadata
-    std::uint64_t header_hash = 0;    ///< XXH3-64 of the 56 bytes before it
+    std::uint64_t header_hash = 0;    ///< XXH3-64 of the preceding 56 bytes
 
-    /// What header_hash has to be.
+    /// Returns the correct value of header_hash.
     [[nodiscard]] std::uint64_t computeHash() const {
         return xxh3_64(std::as_bytes(std::span(this, 1)).first(offsetof(ContainerHeader, header_hash)));
     }
@@ -53,52 +53,52 @@ inline constexpr std::uint64_t kContainerMetadataMax = std::uint64_t{16} << 20; 
 
 inline constexpr std::uint64_t kPayloadAlignment = 64;  ///< bytes
 
-/// The offset of a payload behind something that ends at `end`.
+/// Returns the offset of a payload that follows data ending at `end`.
 [[nodiscard]] constexpr std::uint64_t alignPayload(std::uint64_t end) {
     return (end + kPayloadAlignment - 1) / kPayloadAlignment * kPayloadAlignment;
 }
 
-/// The longest file that readContainer could take: payloads are never longer than their texels.
+/// Returns the longest file that readContainer accepts: payloads are never longer than their texels.
 [[nodiscard]] std::uint64_t containerSizeMax(const ContainerLimits& limits);
 
-/// A map as the metadata has it.
+/// Map metadata.
 struct StoredMap {
-    DepthMap frame;  ///< no texels before readTexels(); any value where `framed` is false
+    DepthMap frame;  ///< no texels before readTexels(); unspecified if `framed` is false
     PayloadInfo payload;
     std::uint64_t hash = 0;
     bool framed = false;  ///< the frame is valid
     bool readable =
-        false;  ///< so are the payload's sizes, it lies within the file, and the texels within the limits
-    bool intact = false;  ///< after readTexels(): the payload's checksum is right
+        false;  ///< `framed`, the payload's sizes and place are valid, and the texels are within the limits
+    bool intact = false;  ///< set by readTexels(): the payload's checksum matches
 };
 
-/// Holds on to `bytes`. Throws std::bad_alloc and std::length_error (withinMemory).
+/// Borrows `bytes`. Throws std::bad_alloc and std::length_error; see withinMemory().
 class ContainerReader {
   public:
     ContainerReader(std::span<const std::byte> bytes, const ContainerLimits& limits)
         : bytes_(bytes), limits_(limits) {}
 
-    /// Header, metadata, frames, and the sizes and places of payloads, none of which is looked at.
+    /// Reads header, metadata and frames, and checks the sizes and offsets of payloads without reading them.
     void readDescription();
 
-    /// \param index  of a map that is `readable`. \return whether its texels are valid.
+    /// Reads the texels of a map. \param index  of a `readable` map. \return whether the texels are valid.
     bool readTexels(std::size_t index);
 
-    /// The error of loading, by the issues found so far; nothing where they are warnings at most.
+    /// Returns the load error for the issues found so far; nullopt if there are only warnings.
     [[nodiscard]] std::optional<Error> refusal() const;
 
     void add(IssueCode code, std::string message, std::optional<std::uint64_t> offset = {}, int map = -1);
 
-    ContainerHeader header{.major = 0,
-                           .minor = 0};  ///< as it lies in the file; of version 0.0 where it was not read
+    ContainerHeader header{.major = 0, .minor = 0};  ///< as in the file; version 0.0 if it was not read
     PartState header_state = PartState::kUnreadable;
     PartState metadata_state = PartState::kUnreadable;
-    bool metadata_intact = false;  ///< its checksum is right
+    bool metadata_intact = false;  ///< its checksum matches
     bool bounds_valid = false;
     Collider collider;  ///< without maps
     std::vector<StoredMap> maps;
-    std::vector<Issue> issues;        ///< in the order of the file, but that those of payloads come last
-    std::size_t first_map_issue = 0;  ///< those before it are of header and metadata
+    std::vector<Issue> issues;  ///< in file order, except that payload issues come last
+    std::size_t first_map_issue =
+        0;  ///< index of the first issue of a map; earlier ones concern header and metadata
 
   private:
     [[nodiscard]] bool readHeader();
@@ -109,7 +109,7 @@ class ContainerReader {
     [[nodiscard]] bool checkFrame(StoredMap& map, int index);
     [[nodiscard]] bool checkPlace(const PayloadInfo& payload, int index, std::uint64_t end);
 
-    /// Bytes that were found to lie within the file.
+    /// Returns a range that was already checked against the file size.
     [[nodiscard]] std::span<const std::byte> part(std::uint64_t offset, std::uint64_t size) const {
         return bytes_.subspan(static_cast<std::size_t>(offset), static_cast<std::size_t>(size));
     }
@@ -119,14 +119,14 @@ class ContainerReader {
     bool header_intact_ = false;
 };
 
-/// How to get a file that loads, to append to the issue's message; "" if that names it.
-/// \param major  of the file.
+/// Returns the fix to append to an issue's message; "" if the message already includes it.
+/// \param major  format version of the file.
 [[nodiscard]] std::string cureOf(IssueCode code, std::uint16_t major);
 
-/// kUnsupported for another major version, kLimit if limits are all that is wrong, else kInvalidInput.
+/// Returns kUnsupported for another major version, kLimit if the only errors are limits, else kInvalidInput.
 [[nodiscard]] ErrorCode errorCodeOf(std::span<const Issue> issues);
 
-/// Runs f; an allocation that fails, or is too large to be tried, becomes an Error.
+/// Runs f and converts an allocation failure into an Error.
 template <class F>
 auto withinMemory(F f) -> decltype(f()) {
     const auto error = [] {

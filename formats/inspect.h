@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// All that is wrong with a container, as numbered issues. readContainer refuses a file with any error; this goes on
-// with whatever can still be read, adds suspicions, and names the parts of the file that may be trusted. README.md
-// beside this file, "Issues", lists the codes; they keep their meaning from version to version.
+// Reports all problems of a container as numbered issues. readContainer rejects a file at any error; inspection
+// continues with everything that is still readable, adds warnings, and reports which parts of the file can be trusted.
+// README.md in this folder, "Issues", lists the codes; their meaning never changes.
 #pragma once
 
 #include <cstddef>
@@ -19,31 +19,30 @@ namespace relief {
 
 struct MapInspection {
     PartState state = PartState::kUnreadable;
-    std::optional<DepthMap> frame;  ///< without texels; set where it is valid
+    std::optional<DepthMap> frame;  ///< without texels; set if valid
     std::optional<PayloadInfo> payload;
-    /// The share of texels that hold a surface (a front-back map's: at least one), 0…1. Set where the texels
-    /// were read.
+    /// Fraction of texels with a surface (at least one in front-back maps), 0…1. Set if the texels were read.
     std::optional<double> coverage;
 };
 
 struct Inspection {
-    std::vector<Issue> issues;  ///< in the order of the file
+    std::vector<Issue> issues;  ///< in file order
     PartState header = PartState::kUnreadable;
     PartState metadata = PartState::kUnreadable;
-    std::vector<MapInspection> maps;  ///< as many as the metadata has, believed or not
-    std::uint64_t file_size = 0;      ///< bytes that there are
-    std::uint16_t major = 0;          ///< 0 where the header is unreadable, as is `minor`
+    std::vector<MapInspection> maps;  ///< as many as the metadata lists, valid or not
+    std::uint64_t file_size = 0;      ///< actual size in bytes
+    std::uint16_t major = 0;          ///< 0 if the header is unreadable; likewise `minor`
     std::uint16_t minor = 0;
 
     [[nodiscard]] std::size_t count(Severity severity) const;
-    /// Whether readContainer refuses the file.
+    /// Returns whether readContainer rejects the file.
     [[nodiscard]] bool damaged() const;
-    /// kInvalidInput; kUnsupported for another major version, kLimit if limits are all that is wrong.
+    /// Returns kUnsupported for another major version, kLimit if the only errors are limits, else kInvalidInput.
     [[nodiscard]] ErrorCode errorCode() const;
 };
 
-/// Looks at every byte. Takes about as much memory as readContainer does.
-/// Errors: kLimit, where even that does not fit into memory.
+/// Checks every byte. Uses about as much memory as readContainer.
+/// Errors: kLimit if the collider does not fit into memory.
 [[nodiscard]] Result<Inspection> inspectContainer(std::span<const std::byte> bytes,
                                                   const ContainerLimits& limits = {});
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The numbered issues of a container. README.md beside this file, "Validation", lists the codes; they keep their
-// meaning from version to version.
+// The numbered issues of a container. README.md in this folder, "Validation", lists the codes; their meaning never
+// changes.
 #pragma once
 
 #include <algorithm>
@@ -15,15 +15,15 @@
 namespace relief {
 
 enum class Severity : std::uint8_t {
-    kFatal,    ///< nothing behind it can be read
-    kError,    ///< readers refuse the file
-    kWarning,  ///< readers take the file; it is hardly what was meant
+    kFatal,    ///< nothing after it can be read
+    kError,    ///< readers reject the file
+    kWarning,  ///< readers accept the file, but its contents are suspicious
 };
 
 template <>
 inline constexpr std::array<std::string_view, 3> kWordsOf<Severity>{"fatal", "error", "warning"};
 
-/// 1xxx: damage, 2xxx: suspicions, which are warnings.
+/// 1xxx: errors; 2xxx: warnings.
 enum class IssueCode : std::uint16_t {
     kTooShort = 1001,
     kSignature = 1002,
@@ -62,9 +62,9 @@ enum class IssueCode : std::uint16_t {
 
 struct Issue {
     IssueCode code = IssueCode::kTooShort;
-    int map = -1;                         ///< −1: of the whole file
-    std::optional<std::uint64_t> offset;  ///< byte of the file, where one can be named
-    std::string message;                  ///< one line for a person, the map not named
+    int map = -1;                         ///< −1: the whole file
+    std::optional<std::uint64_t> offset;  ///< byte offset in the file, if known
+    std::string message;                  ///< one line; does not name the map
 
     [[nodiscard]] Severity severity() const {
         using enum IssueCode;
@@ -80,13 +80,13 @@ struct Issue {
     }
 };
 
-/// What may be believed of a map or of another part of the file.
+/// How far a map or another part of the file can be trusted.
 enum class PartState : std::uint8_t {
     kSound,       ///< every check passed
     kSuspicious,  ///< every check passed, but there is a warning
-    kUnverified,  ///< its own checks passed, but what describes it is damaged
-    kDamaged,     ///< read, and wrong
-    kUnreadable,  ///< could not be looked at
+    kUnverified,  ///< its own checks passed, but the data that describe it are damaged
+    kDamaged,     ///< was read; a check failed
+    kUnreadable,  ///< could not be read
 };
 template <>
 inline constexpr std::array<std::string_view, 5> kWordsOf<PartState>{"sound", "suspicious", "unverified",

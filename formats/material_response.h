@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Responses of materials by name, as scenes and worlds give them in place of the containers' own.
+// Overrides of material responses by name, given by scenes and worlds in place of the containers' values.
 #pragma once
 
 #include <optional>
@@ -15,37 +15,38 @@
 
 namespace relief {
 
-/// A [[material]] of a scene, an element of a world's "materials".
+/// A [[material]] of a scene, or an element of a world's "materials".
 struct MaterialResponse {
     std::string name;
-    std::optional<float> restitution;  ///< nullopt: as it was, as of the next two
+    std::optional<float> restitution;  ///< nullopt: unchanged; likewise the next two
     std::optional<float> friction;
     std::optional<float> lifetime_loss;
-    SourcePlace place{};  ///< of a scene's
+    SourcePlace place{};  ///< set for scenes
 
     friend bool operator==(const MaterialResponse&, const MaterialResponse&) = default;
 };
 
 void fields(FieldVisitor& visit, MaterialResponse& response);
 
-/// Two of a name, by the index of the second; nullopt: there are none.
+/// Returns the index of the second response with a repeated name, or nullopt.
 [[nodiscard]] std::optional<std::size_t> repeatedName(std::span<const MaterialResponse> responses);
 
-/// Gives materials of several colliders their responses, and knows in the end which of these are of none.
+/// Applies responses to the materials of several colliders, and records which names occurred.
 class MaterialResponses {
   public:
-    /// \param responses  no two of one name; borrowed.
+    /// \param responses  borrowed; names are unique.
     explicit MaterialResponses(std::span<const MaterialResponse> responses) : responses_(responses) {}
 
     void apply(Materials& materials);
-    /// Their names alone.
+    /// Records names without applying responses.
     void see(const Materials& materials);
-    /// "is the name of no material; there are 'oak' and 'stone'", if any collider that was seen has some. nullopt: one has it.
+    /// Returns nullopt if a recorded material has this name. Otherwise returns "is the name of no material; there are
+    /// 'oak' and 'stone'", with the names recorded so far.
     [[nodiscard]] std::optional<std::string> faultOf(const std::string& name) const;
 
   private:
     std::span<const MaterialResponse> responses_;
-    std::set<std::string> names_;  // of all materials
+    std::set<std::string> names_;  // all recorded materials
 };
 
 }  // namespace relief

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The materials of a collider: names, responses, and an octree of which surface is of which. README.md beside this file,
-// "Materials", in words; shaders/bodies/materials.glsl is materialAt() on the GPU.
+// The materials of a collider: names, responses, and an octree that assigns a material to each point. Described in
+// README.md in this folder, "Materials"; shaders/bodies/materials.glsl implements materialAt() on the GPU.
 //
-// The tree is over a cube that holds the collider, not over texels, so that maps of every format share it. A cell is split
-// only where surfaces of different materials are near, and a cell without surface has the material of the nearest:
-// contacts lie a little off the surface.
+//
+// The tree covers a cube around the collider, independent of texels, so that maps of every format share it. A cell is
+// split only if surfaces of different materials are near it. A cell without a surface gets the nearest surface's
+// material because contacts lie slightly off the surface.
 #pragma once
 
 #include <array>
@@ -16,40 +17,42 @@
 
 namespace relief {
 
-inline constexpr std::size_t kMaterialsMax = 255;      ///< of a collider
+inline constexpr std::size_t kMaterialsMax = 255;      ///< per collider
 inline constexpr std::size_t kMaterialNameMax = 256;   ///< bytes
-inline constexpr std::size_t kMaterialSidesMax = 255;  ///< with the materials at most 256
+inline constexpr std::size_t kMaterialSidesMax = 255;  ///< at most 256 together with the materials
 inline constexpr std::size_t kMaterialNodesMax = std::size_t{1} << 20;
-inline constexpr int kMaterialLevelsMax = 20;  ///< nodes from the root to a leaf at most
-/// Seconds of life that a step in contact may cost.
+inline constexpr int kMaterialLevelsMax = 20;  ///< maximum nodes on a path from root to leaf
+/// Maximum lifetime loss of a step in contact, in seconds.
 inline constexpr float kMaterialLossMax = 1e6F;
 
 struct Material {
-    std::string name;            ///< "" of surfaces without one; no two materials of a collider share it
-    float restitution = 1.0F;    ///< factor of the particle's and the body's, 0…1
-    float friction = 0.0F;       ///< 0…1: 1 − friction is a factor of the particle's 1 − friction
-    float lifetime_loss = 0.0F;  ///< seconds of life that each step in contact costs, 0…kMaterialLossMax
-    float area_share = 0.0F;     ///< of the mesh's surface, 0…1
+    std::string name;            ///< unique in a collider; "" for surfaces without a material
+    float restitution = 1.0F;    ///< 0…1, multiplies the particle's and the body's restitution
+    float friction = 0.0F;       ///< 0…1; (1 − friction) multiplies the particle's 1 − friction
+    float lifetime_loss = 0.0F;  ///< seconds of life lost in each step in contact, 0…kMaterialLossMax
+    float area_share = 0.0F;     ///< fraction of the mesh's surface area, 0…1
 
     friend bool operator==(const Material&, const Material&) = default;
 };
 
 inline constexpr int kMaterialAxes = 9;
 
-/// Two materials in one cell, which the normals of their surfaces tell apart: both sides of a board, or of an edge.
+/// Two materials in one cell, distinguished by the surface normal: the two sides of a board, or of an edge.
 struct MaterialSides {
     std::uint8_t axis = 0;     ///< 0…8: x, y, z, x + y, x − y, x + z, x − z, y + z, y − z
-    std::uint8_t towards = 0;  ///< material where the normal's component along the axis is ≥ 0
-    std::uint8_t against = 0;  ///< where it is below 0
+    std::uint8_t towards = 0;  ///< material if the normal's component along the axis is ≥ 0
+    std::uint8_t against = 0;  ///< material if it is below 0
 
     friend bool operator==(const MaterialSides&, const MaterialSides&) = default;
 };
 
-/// A cell of eight octants, x lowest: octant = x + 2y + 4z.
+/// A cell with eight octants: octant = x + 2y + 4z.
 struct MaterialNode {
-    /// Bits 0–7: octants that are nodes. Bits 8–31: the node of the first of them; the others follow in order.
+    /// Bits 0–7: mask of octants that are nodes. Bits 8–31: index of the first of these nodes; the others follow in
+    /// order.
     std::uint32_t head = 0;
-    /// Of an octant that is no node: a material, or from the number of materials on one of the sides. 0 of a node.
+    /// For octants that are leaves: a material index, or the number of materials plus an index into `sides`. 0 for
+    /// nodes.
     std::array<std::uint8_t, 8> leaves{};
 
     friend bool operator==(const MaterialNode&, const MaterialNode&) = default;
@@ -57,19 +60,19 @@ struct MaterialNode {
 static_assert(sizeof(MaterialNode) == 12);
 
 struct Materials {
-    std::vector<Material> list;  ///< empty: the collider has none, and all below is empty
+    std::vector<Material> list;  ///< empty: the collider has no materials, and the members below are empty
     std::vector<MaterialSides> sides;
-    glm::vec3 origin{0.0F};           ///< the lowest corner of the cube, object space
-    float size = 0.0F;                ///< its side, object units
-    std::vector<MaterialNode> nodes;  ///< level by level, the root first; empty: all is of material 0
+    glm::vec3 origin{0.0F};           ///< lowest corner of the cube, object space
+    float size = 0.0F;                ///< side of the cube, object units
+    std::vector<MaterialNode> nodes;  ///< level by level, root first; empty: material 0 everywhere
 
     [[nodiscard]] bool empty() const { return list.empty(); }
-    /// Of nodes, sides and names.
+    /// Returns the bytes of nodes, sides and names.
     [[nodiscard]] std::size_t bytes() const;
     friend bool operator==(const Materials&, const Materials&) = default;
 };
 
-/// The component of a vector along the axis of two sides; along those of two coordinates √2 times that.
+/// Returns the component of a vector along a MaterialSides axis; for the diagonal axes, √2 times the component.
 template <class Vector>
 [[nodiscard]] auto alongMaterialAxis(const Vector& v, int axis) {
     const int first = axis < 3 ? axis : axis < 7 ? 0 : 1;
@@ -78,12 +81,12 @@ template <class Vector>
     return axis < 3 ? v[first] : v[first] + other;
 }
 
-/// The first invariant above that does not hold, in one line; "": all do.
+/// Returns the first violated invariant in one line, or "".
 [[nodiscard]] std::string faultOfMaterials(const Materials& materials);
 
-/// The material of a contact: an index into `list`, 0 without any.
-/// \param p       object space; beyond the cube the nearest of its cells counts.
-/// \param normal  of the surface, object space, of any length.
+/// Returns the material of a contact: an index into `list`, or 0 without materials.
+/// \param p       object space; points outside the cube use its nearest cell.
+/// \param normal  surface normal, object space, any length.
 [[nodiscard]] std::size_t materialAt(const Materials& materials, const glm::vec3& p, const glm::vec3& normal);
 
 }  // namespace relief

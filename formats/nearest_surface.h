@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// The nearest surface of a collider, found by evaluating its maps repeatedly.
+// Finds the nearest surface of a collider by repeated evaluation of its maps.
 //
-// A vote knows one plane: that of the texel that P falls on. Its distance is the surface's where the surface is that
-// plane, and wrong beside a silhouette, off an edge, or in a pocket, where another part is nearer. So the search
-// looks whether the maps change sign where the plane says so, takes the plane that it finds there, and looks around
-// P for whatever is nearer still:
+// A vote only uses one plane: that of the texel that P projects to. Its distance is correct if the surface coincides
+// with that plane. It is wrong beside a silhouette, past an edge, or in a pocket, where another part is nearer. The
+// search therefore tests whether the maps change sign at the plane, adopts the plane found there, and probes around P
+// for nearer surfaces:
 //
-//            ·  P  ·          1. the foot of P on the plane of the vote (1), and a little beyond
-//         ·    /|\    ·       2. still P's side: the plane met there (2) counts too; on to the nearest
-//        ·    / | \    ·         point of both. The other side: a surface lies between
-//        ·   2  1  ·   ·      3. eight points on spheres about P, inside the distance found: where one is
-//     ____\ /______ ·         on the other side, a nearer surface is there
+//            ·  P  ·          1. Project P onto the plane of the vote (1), and step slightly beyond.
+//         ·    /|\    ·       2. Still on P's side: the plane there (2) also counts; continue to the nearest
+//        ·    / | \    ·         point of both planes. On the other side: a surface lies between.
+//        ·   2  1  ·   ·      3. Probe eight points on spheres around P, inside the distance found. If one
+//     ____\ /______ ·            is on the other side, a nearer surface exists there.
 //          X
-// Another implementation may evaluate other points. It must keep the sign, and offer only points of the other side, or feet
-// whose plane was met just behind them.
+// Other implementations may evaluate other points. They must keep the sign, and return only points on the other side,
+// or projections onto a plane that was found just behind them.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -24,55 +24,54 @@ namespace relief {
 
 /// A surface near a point.
 struct SurfaceSample {
-    /// Object units, with the sign of evaluate(), negative inside. kFarOutside where P is known to be outside and no
-    /// surface was found; meaningless where map is −1.
+    /// Object units, with the sign of evaluate(): negative inside. kFarOutside if P is outside and no surface was
+    /// found; undefined if map is −1.
     float distance = 0.0F;
-    glm::vec3 point{0.0F};  ///< the nearest point found, object space; P where distance is kFarOutside
-    glm::vec3 normal{
-        0.0F};     ///< of the surface there, unit length, outwards; zero where distance is kFarOutside
-    int map = -1;  ///< whose surface that is; −1 where every map abstains at P
+    glm::vec3 point{0.0F};   ///< nearest point found, object space; P if distance is kFarOutside
+    glm::vec3 normal{0.0F};  ///< of the surface there, unit length, outwards; zero if distance is kFarOutside
+    int map = -1;            ///< the map of that surface; −1 if all maps abstain at P
 
     [[nodiscard]] bool inside() const { return map >= 0 && distance < 0.0F; }
 };
 
-/// The numbers of the search, of which nearest_surface.cpp uses each.
+/// Search parameters; nearest_surface.cpp documents their use.
 struct NearestSearch {
-    /// No search evaluates more points. Near the surface it evaluates about 20 on average; outside, most of them
+    /// Limit of evaluations per search. Near the surface, a search needs about 20 on average. Most evaluations outside
     /// cost one vote.
     static constexpr int kEvaluationsMax = 192;
     static constexpr int kSteps = 8;           // from the plane of the vote at P
-    static constexpr int kStepsFromProbe = 4;  // from a plane met beside it
+    static constexpr int kStepsFromProbe = 4;  // from a plane found by a probe
     static constexpr float kBeyond =
-        0.015625F;  // of the way to a plane: how far behind it the maps are evaluated
-    static constexpr float kBeyondMin = 1.52587890625e-5F;  // 2⁻¹⁶ of the longest side
+        0.015625F;  // fraction of the way to a plane: how far behind it the maps are evaluated
+    static constexpr float kBeyondMin = 1.52587890625e-5F;  // 2⁻¹⁶, as a fraction of the longest side
     static constexpr float kBeyondMax =
-        0.00390625F;                              // of the longest side, so that no thin part is stepped over
-    static constexpr float kNearer = 0.9921875F;  // a plane must be nearer by that to be worth another step
-    static constexpr int kFinestRing = 5;         // of radius 2⁻⁵ of the longest side
+        0.00390625F;  // fraction of the longest side; small enough not to step over thin parts
+    static constexpr float kNearer =
+        0.9921875F;  // a new plane must be nearer by this factor to justify another step
+    static constexpr int kFinestRing = 5;  // radius 2⁻⁵ of the longest side
     static constexpr int kFinestWholeRing = 3;
     static constexpr int kHalvings = 4;
     static constexpr int kRounds = 2;
-    static constexpr float kShareNear = 0.5F;  // of the distance found
+    static constexpr float kShareNear = 0.5F;  // fraction of the distance found
     static constexpr float kShareFar = 0.9F;
     static constexpr int kTurns = 12;
     static constexpr float kTilt = 0.5F;
     static constexpr float kTiltMin = 0.0625F;
-    static constexpr float kReachMax = 1e15F;  // so that squares do not overflow
+    static constexpr float kReachMax = 1e15F;  // keeps squares from overflowing
     static constexpr float kReachMin = 1e-12F;
     static constexpr float kDistanceMin =
-        1.17549435e-38F;  // the least normal float: a distance of 0 would be neither side
+        1.17549435e-38F;  // the least normal float: a distance of 0 would have no sign
 };
 
-/// The distance from P to the nearest surface that the maps know of.
+/// Computes the distance from P to the nearest surface that the maps represent.
 ///
-/// The sign is that of evaluate(). The distance is that to `point`, a point of a plane that the maps vote by, between P
-/// and a point that they call the other side. So no surface is made up, but a nearer one may be missed: a part that is
-/// thin against its distance from P. Where nothing of the other side is found at all, the answer is evaluate()'s, whose
-/// plane then is all that is known.
+/// The sign is that of evaluate(). The distance is that to `point`, which lies on a plane that the maps vote by,
+/// between P and a point on the other side. The search never invents a surface, but may miss a nearer one: a part that
+/// is thin relative to its distance from P. If no point on the other side is found, the result is that of evaluate().
 ///
-/// \param p  object space; any finite point. The search leaves out points and colliders beyond 10¹⁵, or flatter than
-///           10⁻¹²; the answer then is evaluate()'s.
-/// \return finite, whatever the maps hold.
+/// \param p  object space; any finite point. For points or colliders beyond 10¹⁵, or flatter than 10⁻¹², the search is
+/// skipped and the result is that of evaluate().
+/// \return finite for all map contents.
 [[nodiscard]] SurfaceSample nearestSurface(const Collider& collider, const glm::vec3& p);
 
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Unit vectors as two bytes: the L1 (octahedral) parametrisation of the paper, section 4.2, equation 3.
+// Encodes unit vectors in two bytes: the L1 (octahedral) parametrisation of the paper, section 4.2, equation 3.
 #pragma once
 
 #include <array>
@@ -11,10 +11,11 @@ namespace relief {
 /// Steps of an index from 0 to 1.
 inline constexpr int kNormalHalfRange = 127;
 
-/// A normal as the pair of 8-bit indices (s, t) into the 256×256 table of normals.
+/// A normal as a pair of 8-bit indices (s, t) into the 256×256 table of normals.
 ///
-/// Index i stands for the coordinate (i − 127)/127 in [−1, 1], so that 0 is a value and the six axis
-/// directions are exact; 255 is never written and is read as 254.
+///
+/// Index i encodes the coordinate (i − 127)/127 in [−1, 1], so that 0 and the six axis directions are exact. 255 is
+/// never written and decodes like 254.
 ///
 ///     (s, t) = (127, 127) -> (0, 0, 1)      (254, 127) -> (1, 0, 0)      (127, 0) -> (0, −1, 0)
 ///     (s, t) = (0, 0)     -> (0, 0, −1), as are the three other corners of the square
@@ -25,23 +26,23 @@ struct NormalIndex {
     friend bool operator==(const NormalIndex&, const NormalIndex&) = default;
 };
 
-/// The unit vector of an index. Every pair of bytes has one; never NaN.
+/// Returns the unit vector of an index. Defined for every pair of bytes; never NaN.
 [[nodiscard]] glm::vec3 decodeNormal(NormalIndex index);
 
-/// decodeNormal() of all packed indices, kept from the first call on: a bake looks millions up.
+/// Returns decodeNormal() of all packed indices; computed on the first call because a bake decodes millions.
 [[nodiscard]] const std::array<glm::vec3, 65536>& decodedNormals();
 
-/// Of the four indices that surround a vector in the square, the one of the lowest s and t; the others are one further
-/// along s, t or both.
-/// \param normal  any finite vector but zero; need not be of length 1.
+/// Returns the index with the lowest s and t of the four that surround a vector in the square. The other three are one
+/// step further along s, t or both.
+/// \param normal  any finite nonzero vector.
 [[nodiscard]] NormalIndex lowestAround(const glm::vec3& normal);
 
-/// The index whose vector is nearest to `normal` by angle among the four that surround it in the square
-/// (Cigolle et al., JCGT 2014, "oct16 precise"): at most 0.64° off, against 0.94° by rounding.
-/// \param normal  any finite vector but zero; need not be of length 1.
+/// Returns the index whose vector is nearest to `normal` by angle among the four that surround it in the square
+/// (Cigolle et al., JCGT 2014, "oct16 precise"). The error is at most 0.64°, against 0.94° for rounding.
+/// \param normal  any finite nonzero vector.
 [[nodiscard]] NormalIndex encodeNormal(const glm::vec3& normal);
 
-/// Both indices in 16 bits, s in the high byte: the red and green channels of a front-back texel.
+/// Packs both indices into 16 bits, s in the high byte: the red and green channels of a front-back texel.
 [[nodiscard]] constexpr std::uint16_t packNormal(NormalIndex index) {
     return static_cast<std::uint16_t>(index.s << 8 | index.t);
 }

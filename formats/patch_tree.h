@@ -1,28 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
-// A map of patches: the surface in small depth maps of its own, in the leaves of an octree. Each patch looks along whichever
-// of 13 axes sees its piece of the surface best, so that no part of a mesh is out of sight. formats/README.md has it in words,
-// shaders/collider/patches.glsl is the same in GLSL; all three change together.
+// A map of patches: an octree whose leaves contain small depth maps of the surface. Each patch looks along the one of
+// 13 axes that sees its piece of surface best, so that no part of a mesh is hidden. formats/README.md specifies the
+// format and shaders/collider/patches.glsl implements it in GLSL; change all three together.
 //
-// Map space counts root cells: the volume is [0, n.x] × [0, n.y] × [0, n.z], and cells are cubes in object space too. A texel
-// has 8 bytes, four little-endian words of 16 bits; below, `low` has the first two and `high` the others, the first lowest.
+//
+// Map space is measured in root cells: the volume is [0, n.x] × [0, n.y] × [0, n.z], and cells are cubes in object
+// space. A texel has 8 bytes, four little-endian words of 16 bits. Below, `low` is the first two words and `high` the
+// last two, lowest word first.
 //
 //     texel 0           n.x, n.y, n.z, and the number of levels below the roots
-//     the next ones     the records of the roots, x fastest; then those of split cells' children, level by level
-//     the others        heights, and the records of pairs
+//     then              the records of the roots, x fastest; then those of split cells' children, level by level
+//     then              heights, and the records of pairs
 //
 //     record    low                                                        high
-//     outside   0 in bits 0-1; 16-31: packed normal of the nearest plane   that plane's distance from the cell's middle, in
-//     inside    1 in bits 0-1, else as outside                             root cells, positive outside: a float
-//     split     2 in bits 0-1; 2-9: the children with a record (x          0-23: texel of the first child with a record, the
-//               fastest); 10-17: of the others, those inside; 18-31: s     others follow; 24-31: the middle's distance from that
-//               and t of a coarse plane's normal, of 7 bits each           plane, in 128ths of the cell, + 128
-//     patch     3 in bits 0-1; 2-3: 0, 1 or 2 for 2², 3² or 5² heights;    0-23: texel of the heights but the last, a byte
-//               4: outside is below; 5-6: 0 an axis, 1 a diagonal of a     each, x fastest; of 2² heights these themselves;
-//               face, 2 of the cube; 7-8: the first axis; 9-10: first and  24-31: scale
+//     outside   0 in bits 0-1; 16-31: packed normal of the nearest       distance of the cell's centre from that plane,
+//               plane                                                    in root cells, positive outside: a float
+//     inside    1 in bits 0-1, else as outside
+//     split     2 in bits 0-1; 2-9: mask of children with a record (x    0-23: texel of the first child's record, the
+//               fastest); 10-17: mask of inside children among the       others follow; 24-31: distance of the cell's
+//               rest; 18-31: s and t of a coarse plane's normal, 7       centre from the coarse plane, in 128ths of the
+//               bits each                                                cell, + 128
+//     patch     3 in bits 0-1; 2-3: 0, 1 or 2 for 2², 3² or 5² heights;  0-23: texel of all heights but the last, a byte
+//               4: outside is below; 5-6: 0 axis, 1 face diagonal,       each, x fastest; for 2², these heights
+//               2 cube diagonal; 7-8: the first axis; 9-10: first and    themselves; 24-31: scale
 //               second axis mirrored; 11-22: base + 2048; 23-30: last
 //               height
-//     pair      3 in bits 0-1, 3 in 2-3; 4: inside is what is in   0-23: texel of the record of a patch, which that of the
-//               both of two patches, else what is in either        other one follows
+//     pair      3 in bits 0-1, 3 in 2-3; 4: inside is the                0-23: texel of the first patch's record; the
+//               intersection of two patches, else their union            second patch's record follows it
 #pragma once
 
 #include <array>
@@ -40,49 +44,49 @@ namespace relief {
 
 inline constexpr std::uint32_t kPatchLevelsMax = 15;  ///< splits below a root
 inline constexpr std::uint32_t kPatchTexelsMax = std::uint32_t{1} << 24;
-inline constexpr std::uint64_t kPatchBytesMin = 1024;  ///< that a baker takes
+inline constexpr std::uint64_t kPatchBytesMin = 1024;  ///< minimum budget of a baker
 inline constexpr std::uint64_t kPatchBytesMax = 8 * std::uint64_t{kPatchTexelsMax};
-inline constexpr std::uint32_t kPatchSideMax = 5;  ///< heights along a side
+inline constexpr std::uint32_t kPatchSideMax = 5;  ///< heights per side
 
-/// The axes of a patch: depth w, across u and v. Of a point of the cell's unit cube, u and v are in 0…1, and w in 0…1 along an
-/// axis, 0…2 along the diagonal of a face and 0…3 along that of the cube.
+/// The axes of a patch: depth w, and u and v across. For points in the cell's unit cube, u and v are in 0…1; w is in
+/// 0…1 along an axis, 0…2 along a face diagonal, and 0…3 along the cube diagonal.
 struct PatchFrame {
-    std::uint8_t diagonal = 0;  ///< 0: an axis, 1: of a face, 2: of the cube
-    std::uint8_t first = 0;     ///< the axis that comes first, then those after it in the order x y z
+    std::uint8_t diagonal = 0;  ///< 0: axis, 1: face diagonal, 2: cube diagonal
+    std::uint8_t first = 0;     ///< first axis; the others follow in the order x y z
     std::uint8_t mirrored = 0;  ///< bit 0: the first axis, bit 1: the second
 
-    /// A point of the unit cube as (u, v, w).
+    /// Transforms a point of the unit cube to (u, v, w).
     [[nodiscard]] glm::vec3 across(const glm::vec3& in_cell) const;
     [[nodiscard]] glm::dvec3 across(const glm::dvec3& in_cell) const;
-    /// The gradient, in the unit cube, of w − H(u, v), with H's derivatives.
+    /// Returns the gradient of w − H(u, v) in the unit cube. \param by_u, by_v  derivatives of H
     [[nodiscard]] glm::vec3 gradient(float by_u, float by_v) const;
     friend bool operator==(const PatchFrame&, const PatchFrame&) = default;
 };
 
-/// All 13, an axis first.
+/// Returns all 13 frames, an axis first.
 [[nodiscard]] const std::array<PatchFrame, 13>& patchFrames();
 
 struct PatchRecord;
 
-/// Texels of a patch of side² heights beside its record.
+/// Returns the number of texels that the heights of a patch need in addition to its record.
 [[nodiscard]] constexpr std::uint32_t heightTexels(std::uint32_t side) {
     return side == 2 ? 0 : (side * side - 1) / 8;
 }
 
-/// Heights of a patch as its record and texels hold them: code c stands for base/512 + c/255 · range.
+/// Encoded heights of a patch: code c is the height base/512 + c/255 · range.
 struct PatchHeights {
     std::uint32_t side = 2;  ///< 2, 3 or 5
     int base = 0;            ///< −2048…2047
     std::uint8_t scale = 0;  ///< of the range: (1 + (scale & 15)/16) · 2^((scale >> 4) − 12)
     std::array<std::uint8_t, kPatchSideMax * kPatchSideMax> codes{};
 
-    /// The nearest codes to some heights, which are held in −4…4.
+    /// Encodes heights as the nearest codes; clamps them to −4…4.
     [[nodiscard]] static PatchHeights of(std::span<const double> heights, std::uint32_t side);
     [[nodiscard]] float low() const { return static_cast<float>(base) * (1.0F / 512.0F); }
-    [[nodiscard]] float step() const;  ///< of a code
+    [[nodiscard]] float step() const;  ///< height of one code step
     /// \param out  side² heights.
     void decode(std::span<double> out) const;
-    /// The index-th of the heightTexels(side).
+    /// Returns one of the heightTexels(side) texels.
     [[nodiscard]] PatchRecord texel(std::uint32_t index) const;
 };
 
@@ -93,73 +97,75 @@ struct PatchRecord {
 
     enum class Kind : std::uint8_t { kOutside = 0, kInside = 1, kSplit = 2, kPatch = 3 };
     [[nodiscard]] Kind kind() const { return static_cast<Kind>(low & 3U); }
-    [[nodiscard]] std::uint32_t children() const { return low >> 2U & 0xffU; }  ///< of a split cell: a mask
-    /// Heights along each side of a patch; 0 of a pair.
+    /// Split cells: mask of children with a record.
+    [[nodiscard]] std::uint32_t children() const { return low >> 2U & 0xffU; }
+    /// Heights along each side of a patch; 0 for a pair.
     [[nodiscard]] std::uint32_t side() const { return std::array{2U, 3U, 5U, 0U}[low >> 2U & 3U]; }
-    [[nodiscard]] PatchFrame frame() const;                                 ///< of a patch
-    [[nodiscard]] std::uint32_t first() const { return high & 0xffffffU; }  ///< of a split cell or a patch
+    [[nodiscard]] PatchFrame frame() const;  ///< patches only
+    /// Split cells, pairs and patches: index of the first texel.
+    [[nodiscard]] std::uint32_t first() const { return high & 0xffffffU; }
 
-    /// \param distance  of the nearest plane from the cell's middle, root cells.
+    /// \param distance  of the cell's centre from the nearest plane, in root cells, positive outside.
     [[nodiscard]] static PatchRecord flat(bool inside, const glm::vec3& normal, float distance);
-    /// \param offset  the distance of the cell's middle from the coarse plane, cells, positive outside.
+    /// \param offset  distance of the cell's centre from the coarse plane, in cells, positive outside.
     [[nodiscard]] static PatchRecord split(std::uint32_t children, std::uint32_t inside, std::uint32_t first,
                                            const glm::vec3& normal, float offset);
-    /// \param both  inside is what is in both of two patches, else what is in either.
-    /// \param first  texel of the first one's record, which the second one's follows.
+    /// \param both  true: inside is the intersection of the two patches; false: their union.
+    /// \param first  texel of the first patch's record; the second follows it.
     [[nodiscard]] static PatchRecord pair(bool both, std::uint32_t first);
     [[nodiscard]] bool isPair() const { return (low & 15U) == 15U; }
-    /// \param first  texel of the heights; of no use for 2².
+    /// \param first  texel of the heights; unused for 2².
     [[nodiscard]] static PatchRecord patch(const PatchFrame& frame, bool outside_below,
                                            const PatchHeights& heights, std::uint32_t first);
 };
 
-// A tree as the texels of a map: any number of them that is valid, unless said otherwise.
+// The texels of a tree. They must be valid unless a function states otherwise.
 using PatchTexels = std::span<const std::byte>;
 
-/// \param index  below the number of texels.
+/// \param index  less than the number of texels.
 [[nodiscard]] PatchRecord patchTexel(PatchTexels texels, std::uint32_t index);
 /// Appends a texel.
 void appendPatchTexel(std::vector<std::byte>& texels, const PatchRecord& record);
 
-/// Texel 0.
+/// The contents of texel 0.
 struct PatchTreeSize {
     glm::uvec3 roots{1};
     std::uint32_t levels = 0;
 };
 [[nodiscard]] PatchTreeSize patchTreeSize(PatchTexels texels);
 
-/// Between heights of the finest patches that the tree may have, in root cells.
+/// Returns the spacing of heights in the finest possible patch, in root cells.
 [[nodiscard]] double patchSpacing(PatchTexels texels);
 
-/// Width and height of a map of so many texels; the last row may have some to spare, which are zero.
+/// Width and height of a map with this many texels. Unused texels of the last row are zero.
 struct PatchMapSize {
     std::uint32_t width;
     std::uint32_t height;
 };
 [[nodiscard]] PatchMapSize patchMapSize(std::size_t texels);
 
-/// The cell that a point ends up in.
+/// The leaf at a point.
 struct PatchLeaf {
-    PatchRecord record;       ///< its own, or without one that of the split cell above it
+    PatchRecord record;       ///< the leaf's own record, or that of its split parent if it has none
     glm::vec3 in_cell{0.0F};  ///< the point in the unit cube of the record's cell
-    float cell = 1.0F;        ///< the size of that, in root cells
-    bool beside = false;      ///< it has no record
-    bool inside = false;      ///< of one without a patch
+    float cell = 1.0F;        ///< the size of that cell, in root cells
+    bool beside = false;      ///< the leaf has no record
+    bool inside = false;      ///< valid if `beside`: the leaf is inside
 };
 /// \param p  map space, within the roots.
 [[nodiscard]] PatchLeaf patchLeafAt(PatchTexels texels, const glm::vec3& p);
 
-/// The vote on a point, in map space: its distance in root cells.
+/// The vote at a point in map space; the distance is in root cells.
 struct PatchVote {
     float distance = 0.0F;
     glm::vec3 normal{0.0F};
 };
 /// \param p  map space.
-/// \return nullopt beyond the roots.
+/// \return nullopt outside the roots.
 [[nodiscard]] std::optional<PatchVote> votePatches(PatchTexels texels, const glm::vec3& p);
 
-/// That every record leads to texels of the map: children to the next free ones, level by level, and patches and pairs to
-/// those behind the records. Fails with kInvalidInput.
+/// Checks that every record refers to texels of the map: children to the next free texels, level by level; patches and
+/// pairs to texels after the records. Errors: kInvalidInput.
 /// \param texels  any bytes.
 [[nodiscard]] Result<void> validatePatches(PatchTexels texels);
 

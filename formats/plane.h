@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ray of a texel in object space, in double precision.
+// Computes the ray of a texel in object space, in double precision.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,11 @@
 
 namespace relief {
 
-/// The ray through the centre of a texel, in object space: the surface point of a depth, of any compare and
-/// of either end, is origin + depth · direction. direction is not of unit length.
+/// The ray through the centre of a texel, in object space. A surface point is origin + depth · direction, for every
+/// compare and both surfaces. The direction is not normalized.
 struct TexelRay {
-    glm::dvec3 origin;     ///< at depth 0: on the near plane; of a cube its centre
-    glm::dvec3 direction;  ///< object units for one unit of depth
+    glm::dvec3 origin;     ///< point at depth 0: on the near plane; for a cube, its centre
+    glm::dvec3 direction;  ///< object units per unit of depth
 
     [[nodiscard]] glm::dvec3 at(double depth) const { return origin + depth * direction; }
 };
@@ -22,7 +22,8 @@ struct TexelRay {
 /// \param face  0 for an orthographic map.
 [[nodiscard]] TexelRay texelRay(const DepthMap& map, std::uint32_t face, std::uint32_t x, std::uint32_t y);
 
-/// The same through any place of a face. \param x, y  in texels: the centre of texel (i, j) is (i + ½, j + ½).
+/// Returns the ray through any position on a face. \param x, y  in texels: the centre of texel (i, j) is (i + ½, j +
+/// ½).
 [[nodiscard]] TexelRay rayThrough(const DepthMap& map, std::uint32_t face, double x, double y);
 
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One texel of a depth map in each of the formats: what it holds and how its bytes are laid out.
+// One texel of a depth map in each format: its contents and byte layout.
 //
 //     format            bytes  channels
 //     float32            16    R,G,B = normal x,y,z   A = depth            four little-endian floats
@@ -10,12 +10,12 @@
 //     cube8               4    as fixed8, in six faces
 //     patches             8    a record of a tree, or heights: patch_tree.h; the functions below are for the others
 //
-// Over a box of length 2 a half's 11 significant bits alone move a surface by 2·10^-4 on average; fixed point
-// is 32 times finer in the far half of the volume. Half floats are the paper's choice.
+// With the 11 significant bits of a half, depths over a box of length 2 are off by 2·10^-4 on average. Fixed point is
+// 32 times finer in the far half of the volume. Half floats are the paper's choice.
 //
-// Depth is in map coordinates: 0 at the near plane and 1 at the far plane of an orthographic map, distance
-// from the centre in units of the normalised volume, in (0, √3], for a cube.
-// An empty texel (no surface on its ray) is all zero bits but in float32, where its depth is −1.
+// Depth is in map coordinates. Orthographic: 0 at the near plane, 1 at the far plane. Cube: distance from the centre in
+// units of the normalised volume, in (0, √3]. An empty texel (no surface on its ray) is all zero bits, except in
+// float32, where its depth is −1.
 #pragma once
 
 #include <cstddef>
@@ -38,14 +38,14 @@ enum class MapFormat : std::uint8_t {
 };
 inline constexpr int kMapFormatCount = 6;
 
-/// Whether a texel holds two surfaces, the nearest and the farthest.
+/// Returns whether a texel stores two surfaces, the nearest and the farthest.
 [[nodiscard]] constexpr bool isFrontBack(MapFormat format) {
     return format == MapFormat::kFrontBackHalf || format == MapFormat::kFrontBackFixed;
 }
 
 inline constexpr std::uint32_t kMapSizeMax = 16384;  ///< texels along one side of a map
 
-/// Bytes of one texel, see the table above.
+/// Returns the bytes of one texel, see the table above.
 [[nodiscard]] constexpr std::size_t texelSize(MapFormat format) {
     switch (format) {
         case MapFormat::kFloat32:
@@ -61,20 +61,20 @@ inline constexpr std::uint32_t kMapSizeMax = 16384;  ///< texels along one side 
     return 0;
 }
 
-/// "float", "fixed8", "front-back" (of either depth), "cube" or "patches": the words of `relief bake --map` and of the
-/// reports.
+/// Returns "float", "fixed8", "front-back" (for either depth encoding), "cube" or "patches": the names in `relief bake
+/// --map` and in reports.
 [[nodiscard]] const char* mapFormatName(MapFormat format);
 
-/// How depths are stored: "float32", "unorm16", "half", or "unorm8" of a range of its own for each patch.
+/// Returns the encoding of depths: "float32", "unorm16", "half", or "unorm8" (patches, each with its own range).
 [[nodiscard]] const char* depthEncodingName(MapFormat format);
 
-/// One surface as a texel holds it.
+/// One surface in a texel.
 struct Surface {
     float depth = 0.0F;      ///< in map coordinates
     glm::vec3 normal{0.0F};  ///< unit length, object space, outwards
 };
 
-/// A texel's surface or surfaces; nullopt where it is empty. `back` is used by front-back maps alone.
+/// The surfaces of a texel; nullopt if empty. Only front-back maps use `back`.
 struct Texel {
     std::optional<Surface> front;
     std::optional<Surface> back;
@@ -83,17 +83,17 @@ struct Texel {
 /// The largest depth of a cube texel, √3 rounded up to a float: a corner of the normalised volume.
 inline constexpr float kCubeDepthMax = 1.7320509F;
 
-/// Steps of a 16-bit fixed-point depth: 0 is kept for "empty".
+/// Steps of a 16-bit fixed-point depth; code 0 means "empty".
 inline constexpr int kDepthSteps = 65534;
 
-/// 16-bit fixed point: code c in 1…65535 is the depth (c − 1)/kDepthSteps · depth_max.
+/// Encodes a depth in 16-bit fixed point: code c in 1…65535 is the depth (c − 1)/kDepthSteps · depth_max.
 /// \param depth  clamped to [0, depth_max].
 [[nodiscard]] std::uint16_t encodeFixedDepth(float depth, float depth_max);
 /// \param code  not 0.
 [[nodiscard]] float decodeFixedDepth(std::uint16_t code, float depth_max);
 
-/// IEEE half with the bits 0 kept for "empty". Written values lie in [2^-14, 1], the normal halves, because
-/// a GL may flush subnormal halves to zero.
+/// Encodes a depth as an IEEE half; bits 0 mean "empty". Written values lie in [2^-14, 1], the normal halves, because a
+/// GL may flush subnormal halves to zero.
 /// \param depth  clamped to that range.
 [[nodiscard]] std::uint16_t encodeHalfDepth(float depth);
 [[nodiscard]] float decodeHalfDepth(std::uint16_t bits);
@@ -102,17 +102,17 @@ inline constexpr int kDepthSteps = 65534;
 /// \param bytes  exactly texelSize(format) bytes.
 void encodeTexel(MapFormat format, const Texel& texel, std::span<std::byte> bytes);
 
-/// A surface with encodeNormal(normal) at hand. kFloat32 ignores the index, the other formats the normal.
+/// A surface with its encodeNormal(normal). kFloat32 ignores the index; other formats ignore the normal.
 struct IndexedSurface {
     Surface surface;
     NormalIndex index;
 };
-/// The same from surfaces whose normals are encoded already.
+/// Writes one texel from surfaces with encoded normals.
 void encodeTexel(MapFormat format, const std::optional<IndexedSurface>& front,
                  const std::optional<IndexedSurface>& back, std::span<std::byte> bytes);
 
-/// Reads one texel; any bytes have a meaning for the integer formats. Float texels are read as they are:
-/// the container's reader has refused those that are not finite.
+/// Reads one texel. All bytes are valid for the integer formats. Float texels are read unchecked: the container reader
+/// has rejected values that are not finite.
 [[nodiscard]] Texel decodeTexel(MapFormat format, std::span<const std::byte> bytes);
 
 }  // namespace relief

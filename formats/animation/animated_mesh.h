@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh that moves as glTF has it: nodes in trees, vertices that joints and morph targets move, and clips of keys. Data
-// alone; mesh_pose.h poses it.
+// An animated mesh in glTF's terms: a node hierarchy, joints and morph targets that move vertices, and keyframe clips.
+// This header only declares the data; mesh_pose.h evaluates poses.
 //
 //     clip ── keys ──▶ nodes' transforms, weights of targets          (MeshPose)
 //                          │                   │
 //     position + Σ weight · delta  ──▶  Σ weight · joint · that        glTF 2.0, 3.7.2.2 and 3.7.3.1
 //
-// Nodes that place a mesh without a skin are joints as well, of weight 1, so that machines move as characters do.
+// Nodes that place a mesh without a skin also count as joints, of weight 1. Machines and characters share one path.
 #pragma once
 
 #include <cstddef>
@@ -28,49 +28,49 @@ inline constexpr std::size_t kMeshJointsMax = 4096;
 inline constexpr std::size_t kMorphTargetsMax = 1024;
 inline constexpr std::size_t kMeshClipsMax = 1024;
 inline constexpr std::size_t kMeshMaterialsMax = 4096;
-inline constexpr std::size_t kAnimatedNameMax = 255;  ///< bytes, of nodes, clips and materials
+inline constexpr std::size_t kAnimatedNameMax = 255;  ///< bytes, for names of nodes, clips and materials
 inline constexpr std::size_t kAnimatedVerticesMax = 1'000'000;
 inline constexpr std::size_t kVertexInfluencesMax = 16;
 inline constexpr float kClipSecondsMax = 86'400.0F;
 
-/// How a value goes from key to key (glTF 2.0, appendix C).
+/// Interpolation between keys (glTF 2.0, appendix C).
 enum class KeyCurve : std::uint8_t {
     kStep = 0,
-    kLinear = 1,  ///< of rotations the shorter way on the sphere
-    kCubic = 2    ///< Hermite; each key has the tangent that arrives, the value, and the tangent that leaves
+    kLinear = 1,  ///< rotations take the shorter arc
+    kCubic = 2    ///< Hermite; each key stores in-tangent, value, out-tangent
 };
 
-/// The member of a node that a channel moves.
+/// The node property that a channel animates.
 enum class NodeMember : std::uint8_t { kTranslation = 0, kRotation = 1, kScale = 2, kWeights = 3 };
 
 struct MeshNode {
-    std::string name;                            ///< clean UTF-8; may be empty, and that of other nodes too
-    std::int32_t parent = -1;                    ///< below the node's own index; -1: none
+    std::string name;                            ///< clean UTF-8; may be empty, need not be unique
+    std::int32_t parent = -1;                    ///< less than the node's own index; -1: none
     glm::vec3 translation{0.0F};                 ///< object units
     glm::vec4 rotation{0.0F, 0.0F, 0.0F, 1.0F};  ///< unit quaternion x, y, z, w
     glm::vec3 scale{1.0F};
-    std::optional<Affine> matrix{};  ///< in place of these three; no channel moves such a node
-    std::uint32_t first_weight = 0;  ///< of AnimatedMesh::weights: those of the node's mesh
+    std::optional<Affine> matrix{};  ///< replaces the three members above; no channel may animate such a node
+    std::uint32_t first_weight = 0;  ///< index into AnimatedMesh::weights of the node's first morph weight
     std::uint32_t weights = 0;
     friend bool operator==(const MeshNode&, const MeshNode&) = default;
 };
 
 struct MeshJoint {
     std::uint32_t node = 0;
-    Affine bind;  ///< from the space of the positions to the node's (inverseBindMatrices)
+    Affine bind;  ///< from the space of the positions to the node's space (glTF's inverseBindMatrices)
     friend bool operator==(const MeshJoint&, const MeshJoint&) = default;
 };
 
-/// A joint that moves a vertex.
+/// The influence of one joint on a vertex.
 struct VertexInfluence {
     std::uint32_t joint = 0;
-    float weight = 1.0F;  ///< above 0; those of a vertex have the sum 1
+    float weight = 1.0F;  ///< above 0; the weights of a vertex sum to 1
     friend bool operator==(const VertexInfluence&, const VertexInfluence&) = default;
 };
 
-/// How far a target of weight 1 moves a vertex.
+/// The displacement of a vertex by a morph target at weight 1.
 struct MorphDelta {
-    std::uint32_t target = 0;  ///< of AnimatedMesh::weights
+    std::uint32_t target = 0;  ///< index into AnimatedMesh::weights
     glm::vec3 delta{0.0F};     ///< in the space of the positions
     friend bool operator==(const MorphDelta&, const MorphDelta&) = default;
 };
@@ -79,52 +79,55 @@ struct ClipChannel {
     std::uint32_t node = 0;
     NodeMember member = NodeMember::kTranslation;
     KeyCurve curve = KeyCurve::kLinear;
-    std::vector<float> times;  ///< seconds, 0 or more, rising; at least one
+    std::vector<float> times;  ///< seconds, 0 or more, ascending; at least one
     std::vector<float>
-        values;  ///< 3 or 4 a key, or as many as the node has weights; thrice as many where cubic
+        values;  ///< per key: 3 or 4, or the node's weight count; three times as many for kCubic
     friend bool operator==(const ClipChannel&, const ClipChannel&) = default;
 };
 
 struct MeshClip {
-    std::string name;                   ///< clean UTF-8, not that of another clip, not empty
-    float seconds = 0.0F;               ///< no key is later; above 0
-    std::vector<ClipChannel> channels;  ///< no two of the same member of a node
+    std::string name;                   ///< clean UTF-8, unique, not empty
+    float seconds = 0.0F;               ///< duration, above 0; no key is later
+    std::vector<ClipChannel> channels;  ///< at most one for each member of a node
     friend bool operator==(const MeshClip&, const MeshClip&) = default;
 };
 
 struct AnimatedMesh {
-    std::vector<glm::vec3> positions;   ///< before any joint moves them
-    std::vector<glm::uvec3> triangles;  ///< anticlockwise seen from outside
-    /// Those of vertex i: influence_begin[i] up to influence_begin[i + 1]; 1 to kVertexInfluencesMax of them.
+    std::vector<glm::vec3> positions;   ///< before deformation
+    std::vector<glm::uvec3> triangles;  ///< counter-clockwise seen from outside
+    /// Vertex i has the influences [influence_begin[i], influence_begin[i + 1]): 1 to kVertexInfluencesMax.
     std::vector<std::uint32_t> influence_begin;
     std::vector<VertexInfluence> influences;
-    /// The same of targets; a vertex that none moves has none. No target twice.
+    /// Likewise for deltas; a vertex may have none, and at most one for each target.
     std::vector<std::uint32_t> delta_begin;
     std::vector<MorphDelta> deltas;
-    std::vector<MeshNode> nodes;  ///< parents before their children; roots are in object space
+    std::vector<MeshNode> nodes;  ///< parents before children; roots are in object space
     std::vector<MeshJoint> joints;
-    std::vector<float> weights;  ///< of the morph targets, where no channel says otherwise
+    std::vector<float> weights;  ///< default weights of the morph targets, used if no channel animates them
     std::vector<MeshClip> clips;
-    /// Names: clean UTF-8, no two alike; "" is that of all that have no name. Empty: the file names none.
+    /// Names: clean UTF-8, unique; "" stands for all unnamed materials. Empty if the file has no materials.
     std::vector<std::string> materials;
-    std::vector<std::uint16_t> triangle_materials;  ///< of each triangle, of `materials`; empty without these
+    std::vector<std::uint16_t>
+        triangle_materials;  ///< index into `materials` for each triangle; empty if `materials`
+                             ///< is
     friend bool operator==(const AnimatedMesh&, const AnimatedMesh&) = default;
 };
 
-/// How many numbers a key of the channel has, tangents not counted.
+/// Returns the number of values in one key of the channel, excluding tangents.
 [[nodiscard]] std::size_t keyNumbers(const AnimatedMesh& mesh, const ClipChannel& channel);
 
-/// All that is said above, and that every number is finite. Errors: kInvalidInput, kLimit; a message names the member.
+/// Checks the invariants above and that every number is finite. Errors: kInvalidInput, kLimit; messages name the
+/// member.
 [[nodiscard]] Result<void> validate(const AnimatedMesh& mesh);
-/// The same of nodes, weights and clips alone: a mesh for others to take its clips from has no vertices.
+/// Checks only nodes, weights and clips. A mesh that only supplies clips to other meshes has no vertices.
 [[nodiscard]] Result<void> validateClips(const AnimatedMesh& mesh);
 
-/// The bytes of Collider::animation, by animated_mesh.fbs. \param mesh  valid.
+/// Encodes the mesh as animated_mesh.fbs, for Collider::animation. \param mesh  valid.
 [[nodiscard]] std::vector<std::byte> writeAnimatedMesh(const AnimatedMesh& mesh);
 
-/// Reads untrusted bytes. Errors: kInvalidInput, kLimit.
+/// Decodes untrusted bytes. Errors: kInvalidInput, kLimit.
 [[nodiscard]] Result<AnimatedMesh> readAnimatedMesh(std::span<const std::byte> bytes);
-/// Reads nodes, weights and clips, as validateClips() wants them, and leaves all else empty.
+/// Decodes and checks (validateClips()) only nodes, weights and clips; the other members stay empty.
 [[nodiscard]] Result<AnimatedMesh> readAnimatedClips(std::span<const std::byte> bytes);
 
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parts of an animated mesh by name: vertex groups, which are what a joint carries, and materials.
+// Selects parts of an animated mesh by name: vertex groups (the vertices that a joint moves) and materials.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -12,21 +12,22 @@
 
 namespace relief {
 
-/// Of nodes whose joints move vertices, in the order of the joints, each once; those without a name are left out.
+/// Returns the names of nodes whose joints move vertices, in joint order, without duplicates and empty names.
 [[nodiscard]] std::vector<std::string> groupNames(const AnimatedMesh& mesh);
 
-/// For each vertex the weight, 0 … 1, of all joints whose node has that name; of those below it only where they have it, too.
-/// Errors: kInvalidInput (no such joint moves a vertex; the message lists those that do, or 20 of them).
+/// Returns for each vertex the sum of its weights, 0 … 1, for all joints whose node has this name. Child nodes are
+/// included only if they have the same name. Errors: kInvalidInput if no such joint moves a vertex; the message lists
+/// up to 20 that do.
 [[nodiscard]] Result<std::vector<float>> groupWeights(const AnimatedMesh& mesh, std::string_view name);
 
-/// The triangles of a material. Errors: kInvalidInput (there is none; the message lists those there are, or 20 of them).
+/// Returns the triangles of a material. Errors: kInvalidInput if it does not exist; the message lists up to 20 that do.
 [[nodiscard]] Result<std::vector<glm::uvec3>> materialTriangles(const AnimatedMesh& mesh,
                                                                 std::string_view name);
 
-/// "'A', 'B', …", the first 20; "" if there is none. \param names  empty ones, and those that come again, are left out.
+/// Returns "'A', 'B', …" for the first 20 distinct, non-empty names; "" if there are none.
 [[nodiscard]] std::string listedNames(const std::vector<std::string>& names);
 
-/// "there is no KIND 'NAME'; it has 'A', 'B', …".
+/// Returns "there is no KIND 'NAME'; it has 'A', 'B', …".
 [[nodiscard]] std::string noSuchPart(const char* kind, std::string_view name,
                                      const std::vector<std::string>& names);
 

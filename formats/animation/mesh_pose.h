@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses of an animated mesh: by a clip at a time, or by a program. CPU truth of shaders/live/skin.vert.
+// Poses of an animated mesh, from a clip at a time or set by the caller. CPU reference of shaders/live/skin.vert.
 #pragma once
 
 #include <cstddef>
@@ -14,55 +14,56 @@
 namespace relief {
 
 struct MeshPose {
-    /// One a joint of the mesh: from the space of the positions to object space (glTF's joint matrices).
+    /// One for each joint: from the space of the positions to object space (glTF's joint matrices).
     std::vector<Affine> joints;
-    std::vector<float> weights;  ///< one a morph target
+    std::vector<float> weights;  ///< one for each morph target
     friend bool operator==(const MeshPose&, const MeshPose&) = default;
 };
 
-/// The pose that the nodes have by themselves. \param mesh  valid, as that of every function here.
+/// Returns the pose of the nodes' own transforms. All functions here require a valid mesh.
 [[nodiscard]] MeshPose restPose(const AnimatedMesh& mesh);
 
-/// The pose that its first clip begins with; at rest where it has none.
+/// Returns the start pose of the first clip; the rest pose if there are no clips.
 [[nodiscard]] MeshPose firstPose(const AnimatedMesh& mesh);
 
-/// The pose of a clip. Before the first key of a channel its value holds, and after the last one that.
-/// \param clip  of mesh.clips. \param seconds  finite
+/// Evaluates a clip. A channel holds its first value before its first key and its last value after its last key.
+/// \param clip  one of mesh.clips. \param seconds  finite
 [[nodiscard]] MeshPose poseAt(const AnimatedMesh& mesh, const MeshClip& clip, double seconds);
 
-/// The index of the clip of that name. \param name  "": the first. \return nullopt: there is none.
+/// Returns the index of the clip with this name, or nullopt. \param name  "" selects the first clip.
 [[nodiscard]] std::optional<std::size_t> findClip(const AnimatedMesh& mesh, std::string_view name);
 
-/// The time of a clip that runs round and round: in [0, clip.seconds). \param seconds  finite
+/// Wraps a time into [0, clip.seconds) for looping. \param seconds  finite
 [[nodiscard]] double repeated(const MeshClip& clip, double seconds);
 
-/// Every vertex, object space.
-/// \param pose  of as many joints and weights as the mesh has.
+/// Returns every vertex in object space.
+/// \param pose  has as many joints and weights as the mesh.
 [[nodiscard]] std::vector<glm::vec3> posed(const AnimatedMesh& mesh, const MeshPose& pose);
 
-/// Boxes of poses at the cost of their joints: each vertex lies between where its joints would put it, so in the box of its
-/// joints' boxes.
+/// Bounds poses at a cost per joint, not per vertex: a skinned vertex is a convex combination of its joints' positions
+/// for it, so it lies in the bounds of the transformed boxes of these joints.
 class PoseBounds {
   public:
     explicit PoseBounds(const AnimatedMesh& mesh);
 
-    /// A box, object space, that holds every vertex in that pose.
+    /// Returns a box in object space that contains every vertex of the pose.
     [[nodiscard]] Bounds of(const MeshPose& pose) const;
 
   private:
-    std::vector<Bounds> boxes_;     // of the vertices of each joint, in the space of the positions
-    std::vector<glm::vec3> reach_;  // of each morph target: the most that it moves a vertex, along each axis
+    std::vector<Bounds> boxes_;     // each joint's vertices, in the space of the positions
+    std::vector<glm::vec3> reach_;  // each morph target's largest displacement along each axis
 };
 
-/// The space that a mesh takes up, by times of all its clips 1/240 s apart and 2 % more; of clips of hours these are farther apart.
+/// The space that a mesh occupies, from samples of all clips 1/240 s apart plus a margin of 2 %. Clips of hours are
+/// sampled more coarsely.
 struct PoseExtent {
-    Bounds box;            ///< of all poses, object space
-    glm::vec3 room{0.0F};  ///< sides of a box that holds any one of them
+    Bounds box;            ///< size of a box that fits any single pose
+    glm::vec3 room{0.0F};  ///< size of the smallest box that fits any single pose
 };
-/// At rest, where arms are often spread, only if there is no clip.
+/// Uses the rest pose, where arms are often spread, only if there is no clip.
 [[nodiscard]] PoseExtent poseExtent(const AnimatedMesh& mesh);
 
-/// The clip ends about where it began, so that repeating it is no jump.
+/// Returns whether the clip ends near its start pose, so that it loops without a jump.
 [[nodiscard]] bool isCyclic(const AnimatedMesh& mesh, const MeshClip& clip);
 
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// File descriptors that are owned, and calls that go on where a signal interrupted them.
+// Owned file descriptors, and system calls retried after EINTR.
 #pragma once
 
 #include <fcntl.h>
@@ -13,7 +13,6 @@
 
 namespace relief {
 
-/// Owns a file descriptor.
 class Descriptor {
   public:
     explicit Descriptor(int fd = -1) : fd_(fd) {}
@@ -31,20 +30,20 @@ class Descriptor {
     [[nodiscard]] int get() const { return fd_; }
     [[nodiscard]] explicit operator bool() const { return fd_ >= 0; }
 
-    /// Some file systems report a failed write only here.
-    /// \return 0 or an errno. EINTR is no error: Linux has released the descriptor all the same.
+    /// Closes the descriptor. Some file systems report a failed write only here.
+    /// \return 0 or an errno. EINTR counts as success because Linux has released the descriptor.
     [[nodiscard]] int close() {
         const int result = ::close(std::exchange(fd_, -1));
         return result == 0 || errno == EINTR ? 0 : errno;
     }
-    /// The same where nothing has been written that could be lost.
+    /// Closes the descriptor without reporting errors. Use it if nothing was written.
     void reset() { *this = Descriptor(); }
 
   private:
     int fd_;
 };
 
-/// A pipe's two ends. \return 0 or an errno.
+/// Opens a pipe with close-on-exec. \return 0 or an errno.
 [[nodiscard]] inline int makePipe(Descriptor& reading, Descriptor& writing) {
     int ends[2] = {-1, -1};
     if (::pipe2(ends, O_CLOEXEC) != 0) {
@@ -63,7 +62,7 @@ inline int openRetry(const char* path, int flags, mode_t mode = 0) {
     return fd;
 }
 
-/// \return 0 or an errno.
+/// Writes all bytes, with retries after EINTR. \return 0 or an errno.
 inline int writeAll(int fd, std::span<const std::byte> bytes) {
     while (!bytes.empty()) {
         const ssize_t written = ::write(fd, bytes.data(), std::min(bytes.size(), std::size_t{1} << 30));
@@ -78,7 +77,7 @@ inline int writeAll(int fd, std::span<const std::byte> bytes) {
     return 0;
 }
 
-/// \return 0 or an errno. A file system that knows no fsync is no error.
+/// Flushes to disk. \return 0 or an errno; 0 on file systems that do not support fsync.
 inline int syncToDisk(int fd) {
     int result = 0;
     do {

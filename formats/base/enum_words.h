@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The words of enumerations in files, options and reports.
+// Names of enumerators in files, options and reports.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace relief {
 
-/// The words of an enumeration in the order of its values, which count from 0. Specialized beside the enumeration.
+/// Names of the enumerators, in the order of their values, which count from 0. Specialize it beside the enumeration.
 template <class Enum>
 inline constexpr std::array<std::string_view, 0> kWordsOf{};
 

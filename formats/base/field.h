@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A struct, described once: beside it stands one function that visits its fields, and from that are derived the readers,
-// the writers, the schemas and the tables of the documentation.
+// Describes a struct once: a function beside it visits its fields. Readers, writers, schemas and documentation tables
+// are derived from that function.
 //
 //     struct Attractor {
 //         glm::vec3 position{0.0F};
@@ -16,11 +16,11 @@
 //         visit("radius", a.radius, {"Softens the force near the centre", {}, {0.0, kLengthMax, false}});
 //     }
 //
-// A visitor gets each field as a FieldRef, which has its type (formats/base/field_type.h): numbers, bool, text, paths,
-// glm::vec3, enumerations with words, structs with fields() of their own, and optionals, vectors and arrays of these. If the
-// file joins members that the struct keeps apart, fields() visits a FieldSpan, a FieldPair or another of the joints below.
-// Rules between fields that FieldInfo cannot hold are in a second function of the struct, check(). A report is only written:
-// its fields() takes a const reference, and may visit expressions as well as members.
+// A visitor receives each field as a FieldRef, which carries its type (formats/base/field_type.h): numbers, bool, text,
+// paths, glm::vec3, enumerations with words, structs with their own fields(), and optionals, vectors and arrays of
+// these. If the file combines members that the struct separates, fields() visits a FieldSpan, FieldPair or other
+// adapter below. Rules between fields that FieldInfo cannot express belong in the struct's second function, check().
+// Report structs are only written: their fields() takes a const reference and may visit expressions as well as members.
 #pragma once
 
 #include <algorithm>
@@ -45,7 +45,7 @@
 
 namespace relief {
 
-/// Of a number, or of each component of a vector; of a text, its length in bytes is not meant.
+/// Valid range of a number, or of each component of a vector. Not used for the length of text.
 struct FieldRange {
     double low = -std::numeric_limits<double>::infinity();
     double high = std::numeric_limits<double>::infinity();
@@ -65,52 +65,53 @@ inline constexpr FieldRange kFromOne{1.0};
 inline constexpr FieldRange kShareRange{0.0, 1.0};
 inline constexpr FieldRange kPercentRange{0.0, 100.0};
 
-/// A literal as an argument of a template.
+/// A string literal as a template argument.
 template <std::size_t kSize>
 struct FieldWord {
     char text[kSize];
     constexpr FieldWord(const char (&word)[kSize]) { std::copy_n(word, kSize, text); }  // NOLINT: implicit
 };
-/// The only values of a field that is text, or of a number in digits: `.words = kWords<"less", "greater">`.
+/// The valid values of a text field, or of a number spelled in digits: `.words = kWords<"less", "greater">`.
 template <FieldWord... kWord>
 inline constexpr std::array<std::string_view, sizeof...(kWord)> kWords{kWord.text...};
 
-/// Rules of a field that is read from a file. Lists of keys or words have a space between two.
+/// Rules for a field that is read from a file. Lists of keys or words are separated by spaces.
 struct FieldRules {
-    std::string_view needs = {};       ///< keys, without any of which this one has no effect
-    std::string_view instead_of = {};  ///< keys that this one excludes
-    std::string_view only = {};        ///< words of the selecting field that this one is for
-    /// Key of the top level: the value is an index into its tables, or the name of one.
+    std::string_view needs = {};       ///< the field requires at least one of these keys
+    std::string_view instead_of = {};  ///< keys that this field excludes
+    std::string_view only = {};        ///< values of the selecting field for which this field is valid
+    /// A top-level key: the value is an index into its tables, or the name of one of them.
     std::string_view index_of = {};
-    std::size_t most = std::numeric_limits<std::size_t>::max();  ///< elements, of a vector
-    bool required = false;                                       ///< with `only`, for these words alone
-    bool selects = false;   ///< an enumeration, whose value decides which other fields have a meaning
-    bool chooses = false;   ///< given without the selecting field, this one sets that to its word of `only`
-    bool single = false;    ///< a vector of tables that a single one stands for, too: [name] or [[name]]
-    bool not_zero = false;  ///< 0 has no effect; a vector of zeros no direction
-    bool unit_length = false;  ///< of a vector: not zero, and scaled to length 1
+    std::size_t most = std::numeric_limits<std::size_t>::max();  ///< maximum number of elements of a vector
+    bool required = false;  ///< if `only` is set, required only for those values
+    bool selects = false;   ///< an enumeration that decides which other fields are valid
+    bool chooses = false;   ///< if the selecting field is missing, this field sets it to the value in `only`
+    bool single = false;    ///< a vector of tables that also accepts a single table: [name] or [[name]]
+    bool not_zero = false;  ///< 0 (for a vector: the zero vector) is invalid
+    bool unit_length = false;  ///< a nonzero vector, normalized on reading
 };
 
 inline constexpr FieldRules kRequired{.required = true};
 
-/// All that is known of a field beside its name, its type and its default, which is the value in a new struct.
+/// Describes a field except its name, type and default. The default is the value in a newly constructed struct.
 struct FieldInfo {
-    std::string_view help = {};  ///< one sentence, plain text; schemas, tables and --help show it
+    std::string_view help = {};  ///< one sentence of plain text, shown in schemas, tables and --help
     std::string_view unit = {};  ///< "s", "1/s²", "[x, y, z]", "bytes"; empty: none
     FieldRange range = {};
-    /// The default in words, where it depends on other things: "the size of the mesh".
+    /// Describes a default that depends on other values: "the size of the mesh".
     std::string_view fallback = {};
     FieldRules rules = {};
     std::span<const std::string_view> words = {};  ///< see kWords; empty: any
-    std::string_view pattern = {};                 ///< of a text, as JSON Schema takes it; empty: any
-    FieldRange items = kFromZero;                  ///< how many a vector may have
-    /// In JSON it is left out without a value, empty, out of its range, or without any of the keys that it needs.
+    std::string_view pattern = {};  ///< regular expression for text, in JSON Schema syntax; empty: any
+    FieldRange items = kFromZero;   ///< number of elements that a vector may have
+    /// Omit the field from JSON if it is unset, empty, out of range, or none of the keys in `needs` is present.
     bool left_out = false;
-    std::string_view value = {};  ///< stands for the value in --help: "SECONDS"; empty: as the type has it
-    /// A valid value, for messages: "a length above 0"; empty: as type and range have it.
+    std::string_view value =
+        {};  ///< placeholder of the value in --help: "SECONDS"; empty: derived from the type
+    /// A valid value for messages: "a length above 0"; empty: derived from type and range.
     std::string_view must = {};
-    char letter = '\0';     ///< of the short option: 'j'
-    bool recorded = false;  ///< of a bake: decides the bytes of the collider, and is part of its provenance
+    char letter = '\0';     ///< short option: 'j'
+    bool recorded = false;  ///< bake options: affects the collider's bytes and is recorded in its provenance
 };
 
 [[nodiscard]] constexpr FieldInfo leftOut(FieldInfo info) {
@@ -118,36 +119,36 @@ struct FieldInfo {
     return info;
 }
 
-/// Two members for one value of the file: a number, or [least, most]. Optionals of numbers too.
+/// Two members, possibly optional, that share one value in the file: a number, or [least, most].
 struct FieldSpan {
     FieldRef least;
     FieldRef most;
 };
 
-/// Two members for one value: always a pair, whose parts the unit names: "[width, height]".
+/// Two members that are always a pair in the file; the unit names its parts: "[width, height]".
 struct FieldPair {
     FieldRef first;
     FieldRef second;
 };
 
-/// A member whose default depends on other things, and whether the file contains it.
+/// A member whose default depends on other values, and a flag that is set if the file contains it.
 struct FieldMaybe {
     FieldRef value;
     bool& given;
 };
 
-/// A file that a file names, and the place of its name: "scene.toml:3:8", for messages.
+/// A path in a file, and the source position of that path for messages: "scene.toml:3:8".
 struct FieldFile {
     std::filesystem::path& path;
     std::string& place;
 };
 
-/// An object of a report that has no struct of its own (formats/fields/field.h).
+/// An object in a report without a struct of its own (formats/fields/field.h).
 struct FieldGroup {
     const void* of;
     void (*visit)(const void* of, FieldVisitor& visit);
     bool nullable = false;
-    bool present = true;  ///< else it is null
+    bool present = true;  ///< false: written as null
 };
 
 /// Whether T is an instance of the template Form.
@@ -156,20 +157,21 @@ inline constexpr bool kIsForm = false;
 template <template <class...> class Form, class... Parts>
 inline constexpr bool kIsForm<Form, Form<Parts...>> = true;
 
-/// A type with a form of its own has readForm(word, value), false for another form, and formText(value) beside it.
+/// A type with its own text form provides readForm(word, value), which returns false if the word is not valid, and
+/// formText(value).
 template <class T>
 concept WithForm = requires(std::string_view word, T& value) {
     { readForm(word, value) } -> std::same_as<bool>;
     { formText(value) } -> std::same_as<std::string>;
 };
 
-/// Functions of a type with a format of its own. Specialized beside the type.
+/// Functions of a type with its own file format. Specialize it beside the type.
 template <class T>
 inline constexpr const FieldCustom* kFieldCustom = nullptr;
 
 namespace fields_detail {
 
-/// Converts to T& only, and to no base of it.
+/// Converts only to T&, not to a base of T.
 template <class T>
 struct Exactly {
     template <class U>
@@ -188,7 +190,7 @@ template <class T>
 inline constexpr bool kIsArray = false;
 template <class T, std::size_t kSize>
 inline constexpr bool kIsArray<std::array<T, kSize>> = true;
-/// A struct that comes in kinds of different fields: `static std::vector<T> kinds()` returns one of each.
+/// A struct with kinds that have different fields: `static std::vector<T> kinds()` returns one value of each kind.
 template <class T>
 concept WithKinds = requires {
     T::kinds();
@@ -242,7 +244,7 @@ constexpr void describeVariant(FieldType& type, const std::variant<Types...>* /*
     };
 }
 
-/// \tparam Given  T, or const T of a value that is only written
+/// \tparam Given  T, or const T for a value that is only written
 template <class Given>
 constexpr FieldType describe() {
     using T = std::remove_const_t<Given>;

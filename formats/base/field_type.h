@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The types of fields without templates: a visitor of fields (formats/base/field.h) gets each value as a FieldRef, a pointer
-// and a description of its type. The description is static data and a few function pointers, which formats/base/field.h makes.
+// Field types without templates. A field visitor (formats/base/field.h) receives each value as a FieldRef: a pointer
+// and a type description. The description is static data with function pointers, built by formats/base/field.h.
 #pragma once
 
 #include <cstddef>
@@ -20,13 +20,13 @@ struct FieldType;
 class FieldRef;
 class FieldVisitor;
 
-/// Paths of the fields that a file contains, from the struct on: "key[1].time".
+/// Tests whether the file contains the field at a path, relative to the struct: "key[1].time".
 using GivenFields = std::function<bool(const std::string& path)>;
 
-/// An error found by a struct's check().
+/// An error reported by a struct's check().
 struct FieldFault {
-    std::string path;  ///< of the field, as in GivenFields; empty: the struct itself
-    std::string text;  ///< continues the field's name: "does nothing without a name; give one"
+    std::string path;  ///< path of the field, as in GivenFields; empty: the struct itself
+    std::string text;  ///< appended to the field's name: "does nothing without a name; give one"
 };
 
 enum class FieldForm : std::uint8_t {
@@ -43,26 +43,26 @@ enum class FieldForm : std::uint8_t {
     kList,    ///< std::vector; write-only: any contiguous range
     kOptional,
     kVariant,  ///< write-only
-    kSpan,     ///< FieldSpan, and so on
+    kSpan,     ///< FieldSpan; likewise below
     kPair,
     kMaybe,
     kFile,
     kGroup,
     kStruct,
-    kCustom,  ///< nothing but FieldType::custom, or read_form and form_text
+    kCustom,  ///< FieldType::custom, or read_form and form_text
 };
 
 class TomlValue;   // formats/config/toml_reader.h
 struct FieldJson;  // formats/fields/json_value.h
 
-/// Functions of a type with a format of its own; each may be null, and FieldForm then decides.
+/// Functions of a type with its own file format. If one is null, FieldForm decides.
 struct FieldCustom {
     void (*read)(const TomlValue& from, void* value, const FieldInfo& info) = nullptr;
     void (*json)(const void* value, FieldJson& json) = nullptr;
-    void (*schema)(FieldJson& schema) = nullptr;  ///< of what `json` writes
+    void (*schema)(FieldJson& schema) = nullptr;  ///< describes the output of `json`
 };
 
-/// Elements, one behind the other.
+/// Contiguous elements.
 struct FieldItems {
     void* first = nullptr;
     std::size_t count = 0;
@@ -73,33 +73,33 @@ struct FieldType {
     std::uint32_t size = 0;                        ///< bytes of a value
     std::size_t count = 0;                         ///< elements of an array
     std::span<const std::string_view> words = {};  ///< of an enumeration
-    const FieldType* held = nullptr;               ///< of elements, or the value of an optional
+    const FieldType* held = nullptr;               ///< type of the elements, or of an optional's value
     std::span<const FieldType* const> alternatives = {};
     const FieldCustom* custom = nullptr;
 
-    void* (*blank)() = nullptr;                  ///< a default value, never to be changed
+    void* (*blank)() = nullptr;                  ///< a default value; read-only
     FieldItems (*items)(void* value) = nullptr;  ///< of a list or an optional
-    void* (*add)(void* value) = nullptr;         ///< makes an element of a list or the value of an optional
-    void (*clear)(void* value) = nullptr;        ///< of a list
-    FieldRef (*chosen)(void* value) = nullptr;   ///< of a variant
+    void* (*add)(void* value) = nullptr;   ///< appends an element to a list, or emplaces an optional's value
+    void (*clear)(void* value) = nullptr;  ///< of a list
+    FieldRef (*chosen)(void* value) = nullptr;  ///< of a variant
     std::string_view (*text)(const void* value) = nullptr;
 
-    // Of a struct:
+    // Structs:
     void (*fields)(FieldVisitor& visit, void* value) = nullptr;
     std::optional<FieldFault> (*check)(void* value, const GivenFields& given) = nullptr;
     void (*set_place)(void* value, std::string place) = nullptr;
     void (*kinds)(const std::function<void(FieldRef)>& each) = nullptr;
 
-    // Of a type whose values are words of a form of its own:
+    // Types with their own text form:
     bool (*read_form)(std::string_view word, void* value) = nullptr;
     std::string (*form_text)(const void* value) = nullptr;
 };
 
-/// The description of T; const T: of one that is only written.
+/// Returns the description of T. Use const T for values that are only written.
 template <class T>
 [[nodiscard]] const FieldType& fieldType();
 
-/// A value of any type that has a FieldType. Borrows it, temporaries until the end of the full expression.
+/// A reference to a value of any type that has a FieldType. Temporaries are valid until the end of the full expression.
 class FieldRef {
   public:
     template <class T>
@@ -117,43 +117,43 @@ class FieldRef {
         return *static_cast<T*>(value_);
     }
 
-    /// The value of an optional or a blank one, or the value itself.
+    /// Returns the value of an optional, or a blank one if empty; for other types, the value itself.
     [[nodiscard]] FieldRef heldOrBlank() const;
-    /// A default value of the type. The type has one.
+    /// Returns a default value of the type, which must have one.
     [[nodiscard]] FieldRef blank() const { return {type_->blank(), *type_}; }
-    /// An element of a vector, an array, a list or an optional.
+    /// Access elements of a vector, array, list or optional.
     [[nodiscard]] std::size_t count() const;
     [[nodiscard]] FieldRef operator[](std::size_t i) const;
-    /// Makes a list one longer, or gives an optional a value.
+    /// Appends an element to a list, or emplaces an optional's value.
     [[nodiscard]] FieldRef add() const { return {type_->add(value_), *type_->held}; }
     /// Visits the fields of a struct or a group.
     void visit(FieldVisitor& visitor) const;
 
-    // Numbers, and an enumeration as the index of its word.
-    [[nodiscard]] bool isNumber() const;  ///< bool is none
+    // Numbers; enumerations count as the index of their word.
+    [[nodiscard]] bool isNumber() const;  ///< false for bool
     [[nodiscard]] std::uint64_t whole() const;
     [[nodiscard]] std::int64_t integer() const;
     [[nodiscard]] double number() const;       ///< of any number
-    void setWhole(std::uint64_t value) const;  ///< cut to the size of the type
-    void setReal(double value) const;          ///< rounded to it
+    void setWhole(std::uint64_t value) const;  ///< truncated to the size of the type
+    void setReal(double value) const;          ///< rounded to the type
 
-    /// Of a string, a text or a path.
+    /// Strings, text and paths.
     [[nodiscard]] bool isText() const;
     [[nodiscard]] std::string_view text() const;
     [[nodiscard]] std::string_view word() const { return type_->words[static_cast<std::size_t>(whole())]; }
-    [[nodiscard]] bool setWord(std::string_view word) const;  ///< false: there is no such word
+    [[nodiscard]] bool setWord(std::string_view word) const;  ///< false: no such word
 
   private:
     void* value_;
     const FieldType* type_;
 };
 
-/// What fields() calls for each field.
+/// Interface that fields() calls for each field.
 class FieldVisitor {
   public:
     virtual ~FieldVisitor();
     virtual void operator()(std::string_view name, FieldRef value, const FieldInfo& info) = 0;
-    /// Whether it changes values: fields() may then make room for them.
+    /// Returns whether the visitor changes values; fields() may then allocate elements.
     [[nodiscard]] virtual bool fills() const { return false; }
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps the files of a run apart: no output replaces a file that the run reads or owns, or another output.
+// Prevents a run's output from replacing a file that the run reads or owns, or another output.
 #pragma once
 
 #include <cstddef>
@@ -18,73 +18,73 @@
 
 namespace relief {
 
-/// The names of files that are written one after the other: frames/frame_0000.png and so on.
+/// Names of a numbered series of files, such as frames/frame_0000.png.
 struct NumberedFiles {
     std::filesystem::path folder;
     std::string head;         ///< "frame_"
-    std::string ending;       ///< ".png"
+    std::string ending;       ///< numbers start at 0
     std::uint32_t count = 0;  ///< they are numbered from 0
 
-    /// The folder's file of this number, which has four digits or more.
+    /// Returns the path of a file; its number is padded to four digits.
     [[nodiscard]] std::filesystem::path path(std::uint32_t number) const;
-    /// Whether a file of the folder is one of them.
+    /// Returns whether a file name belongs to the series.
     [[nodiscard]] bool hold(const std::string& name) const;
 };
 
-/// Every file of a folder whose name ends so, there or not yet: the containers of a world.
+/// All present and future files in a folder with this ending, such as the containers of a world.
 struct FilesByEnding {
     std::filesystem::path folder;
     std::string ending;  ///< ".relief"
 };
 
-/// Knows files by what they are and not by how they are named: through symbolic links, dangling ones included, through
-/// hard links, and behind standard input and output. Name every file before the first one is written. Devices may be
-/// named as often as one likes.
+/// Identifies files by identity, not by name: it resolves symbolic links (including dangling ones), hard links, and the
+/// files behind standard input and output. Register every file before writing the first one. Devices may be registered
+/// any number of times.
 class FileGuard {
   public:
     enum class Use : std::uint8_t {
         kRead,
         kWritten,
-        kOneOfMany,  ///< written, of NumberedFiles or FilesByEnding
-        kKept,       ///< by keeps()
+        kOneOfMany,  ///< an output in NumberedFiles or FilesByEnding
+        kKept,       ///< registered by keeps()
     };
     /// A file that the run reads or writes.
     struct File {
-        std::filesystem::path path;  ///< as it was named
-        std::string option;          ///< that names an output; empty for an input
+        std::filesystem::path path;  ///< as the user gave it
+        std::string option;          ///< option of an output; empty for inputs
         Use use = Use::kWritten;
     };
 
-    /// A file that the run reads; "-" is standard input, an empty path none.
-    /// Errors: kUsage: it is an output.
+    /// Registers an input. "-" is standard input; an empty path is ignored.
+    /// Errors: kUsage if it is an output.
     [[nodiscard]] Result<void> reads(const std::filesystem::path& path);
-    /// A file that the run writes; "-" is standard output, an empty path none.
-    /// \param option  that names it, for messages: "--dump".
-    /// \param made    a folder that the run fills, and makes later with its parents, which may hold the file.
-    /// Errors: those of preflightFile; kUsage: it is an input, or another output, or a link out of `made`.
+    /// Registers an output. "-" is standard output; an empty path is ignored.
+    /// \param option  the option that names the file, for messages: "--dump".
+    /// \param made    a folder that the run will create with its parents and fill; the file may be in it.
+    /// Errors: those of preflightFile; kUsage if it is an input, another output, or a link out of `made`.
     [[nodiscard]] Result<void> writes(const std::filesystem::path& path, std::string_view option,
                                       const std::filesystem::path& made = {});
-    /// Files that the run writes into a folder, which may be missing. Errors: kUsage, as the last one; a link out of the folder
-    /// that one of them would be written through.
+    /// Registers files in a folder, which need not exist. Errors: kUsage, as above, or if one of the files is a link
+    /// that leaves the folder.
     [[nodiscard]] Result<void> writes(const NumberedFiles& files, std::string_view option);
     [[nodiscard]] Result<void> writes(const FilesByEnding& files, std::string_view option);
-    /// A folder that the run fills: MadeFolders::make(). Without keepFolders(), and if nothing is in it then, the last copy of
-    /// this guard removes it.
+    /// Creates a folder that the run fills, as MadeFolders::make(). The last copy of this guard removes the folder if
+    /// it is empty, unless keepFolders() was called.
     [[nodiscard]] Result<void> makes(const std::filesystem::path& folder, std::string_view option) {
         return folders_->make(folder, option);
     }
     void keepFolders() { folders_->keep(); }
-    /// A cache. A link of that name is replaced, not followed; several caches may be one file. The folder may be missing.
-    /// \param option  that names its folder. Errors: kUsage, as writes().
+    /// Registers a cache file. A link at that path is replaced, not followed. Several caches may share one file, and
+    /// the folder need not exist. \param option  the option that names the folder. Errors: kUsage, as writes().
     [[nodiscard]] Result<void> keeps(const std::filesystem::path& path, std::string_view option);
 
-    /// As the first writes(), for a file whose folder may still be missing: whether it can be written is not checked.
-    /// \return the file that it would replace; nullopt: none, and the guard knows it now.
+    /// Registers an output whose folder may not exist yet; does not check that it is writable.
+    /// \return the registered file that it would replace, or nullopt if there is none.
     [[nodiscard]] std::optional<File> claim(const std::filesystem::path& path, std::string_view option);
 
   private:
-    /// Identities of a path: a symbolic link's own place, the number of a regular file, and last its destination, "-" for
-    /// standard output. None of devices.
+    /// Identities of a path: the location of a symbolic link itself, the inode of a regular file, and last its
+    /// destination ("-" for standard output). Devices have none.
     using Keys = std::vector<std::string>;
     using HoldsName = std::function<bool(const std::string& name)>;
     struct Series {
@@ -101,8 +101,8 @@ class FileGuard {
 
     std::shared_ptr<MadeFolders> folders_ = std::make_shared<MadeFolders>();
     std::vector<File> files_;
-    std::map<std::string, std::size_t> by_key_;  // in files_
-    std::multimap<std::string, Series> series_;  // by the folder's destination
+    std::map<std::string, std::size_t> by_key_;  // index into files_
+    std::multimap<std::string, Series> series_;  // key: destination of the folder
 };
 
 }  // namespace relief

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors that hold a number in every component.
 #pragma once
 
 #include <cmath>
@@ -7,7 +6,7 @@
 
 namespace relief {
 
-/// Neither infinite nor NaN in any component.
+/// Returns whether no component is infinite or NaN.
 [[nodiscard]] inline bool isFinite(const glm::vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// std::from_chars and std::to_chars of floating-point numbers, also where the standard library has only those of
-// integers (LLVM's up to version 16, which Debian's emscripten has).
+// std::from_chars and std::to_chars for floating-point numbers, with a fallback for standard libraries that only
+// support integers (LLVM up to 16, as in Debian's emscripten).
 #pragma once
 
 #include <charconv>
@@ -20,7 +20,7 @@ namespace relief {
 
 #if defined(__cpp_lib_to_chars)
 
-/// std::from_chars. \param fixed  no exponent is part of it.
+/// Wraps std::from_chars. \param fixed  do not accept an exponent.
 template <class Number>
 std::from_chars_result fromChars(const char* first, const char* last, Number& value, bool fixed = false) {
     if constexpr (std::is_floating_point_v<Number>) {
@@ -31,7 +31,7 @@ std::from_chars_result fromChars(const char* first, const char* last, Number& va
     }
 }
 
-/// std::to_chars: as short as reads back as the same number.
+/// Wraps std::to_chars: the shortest text that reads back as the same number.
 inline std::to_chars_result toChars(char* first, char* last, float value) {
     return std::to_chars(first, last, value);
 }
@@ -41,7 +41,8 @@ inline std::to_chars_result toChars(char* first, char* last, float value) {
 template <class Number>
 std::from_chars_result fromChars(const char* first, const char* last, Number& value, bool fixed = false) {
     if constexpr (std::is_floating_point_v<Number>) {
-        // Of the characters that std::from_chars takes: strtod would also take blanks, a plus sign and hexadecimals.
+        // Keep only characters that std::from_chars accepts: strtod would also accept spaces, a plus sign and
+        // hexadecimals.
         const std::string_view text(first, static_cast<std::size_t>(last - first));
         const std::string number(text.substr(
             0, std::min(text.find_first_not_of(fixed ? "+-.0123456789infaty" : "+-.0123456789infatyeE"),

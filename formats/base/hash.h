@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// XXH3 of bytes: the checksums of the container, and the content hash that names a mesh.
+// XXH3 hashes: container checksums, and the content hash of a mesh.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@ namespace relief {
 
 [[nodiscard]] std::uint64_t xxh3_64(std::span<const std::byte> bytes);
 
-/// XXH3-128 as 32 lower-case hexadecimal digits, high half first, as `xxhsum -H2` prints it.
+/// Returns XXH3-128 as 32 lower-case hexadecimal digits, high half first, as `xxhsum -H2` prints it.
 [[nodiscard]] std::string xxh3_128Hex(std::span<const std::byte> bytes);
 
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Folders that a run makes for its outputs.
+// Output folders that a run creates.
 #pragma once
 
 #include <filesystem>
@@ -10,8 +10,8 @@
 
 namespace relief {
 
-/// Removes in the end what it has made and what holds nothing then, as after a run that failed. For folders that no other run
-/// is about to fill.
+/// Removes on destruction the folders that it created and that are empty, as after a failed run. Not for folders that
+/// another run is about to fill.
 class MadeFolders {
   public:
     MadeFolders() = default;
@@ -19,13 +19,13 @@ class MadeFolders {
     MadeFolders& operator=(const MadeFolders&) = delete;
     ~MadeFolders();
 
-    /// As preflightFolder().
+    /// Creates a folder as preflightFolder().
     [[nodiscard]] Result<void> make(const std::filesystem::path& path, std::string_view option);
-    /// Those made so far stay.
+    /// Keeps the folders created so far.
     void keep() { made_.clear(); }
 
   private:
-    std::vector<std::filesystem::path> made_;  // each behind those that it lies in
+    std::vector<std::filesystem::path> made_;  // parents before children
 };
 
 }  // namespace relief

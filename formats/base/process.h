@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Other programs, started and waited for.
+// Starts other programs and waits for them.
 #pragma once
 
 #include <sys/types.h>
@@ -13,26 +13,25 @@
 
 namespace relief {
 
-/// What a program is started with. It has this process's environment and working folder, and handles no signal.
+/// Start parameters. The program inherits the environment and working folder, but no signal handlers.
 struct ProcessStart {
-    std::string program;                 ///< a path; a name without '/' is looked for on PATH
-    std::vector<std::string> arguments;  ///< its own name first
-    /// files[n], borrowed, becomes its descriptor n; -1 stands for /dev/null. It gets no other descriptor.
+    std::string program;                 ///< a path; names without '/' are searched on PATH
+    std::vector<std::string> arguments;  ///< argv, starting with the program's name
+    /// files[n], borrowed, becomes descriptor n; -1 means /dev/null. No other descriptors are inherited.
     std::vector<int> files;
-    /// Signals that this process ignores: false: SIGPIPE has its default action, the others stay ignored (as by
-    /// nohup); true: all have their default actions.
+    /// Disposition of signals that this process ignores. False resets only SIGPIPE; the others stay ignored, as under
+    /// nohup. True resets all of them.
     bool reset_ignored_signals = false;
-    sigset_t blocked_signals{};  ///< none, unless set
-    bool own_group = false;      ///< it leads a process group of its own
+    sigset_t blocked_signals{};  ///< empty by default
+    bool own_group = false;      ///< makes the program the leader of a new process group
 };
 
-/// How a program ended.
 struct ProcessEnd {
     int exit_code = 0;  ///< valid if signal is 0
-    int signal = 0;     ///< that ended it
+    int signal = 0;     ///< terminating signal, or 0
 };
 
-/// A running program, which is killed and waited for by the destructor. Movable.
+/// A running program. The destructor kills it and waits for its end. Movable.
 class Process {
   public:
     Process() = default;
@@ -43,13 +42,13 @@ class Process {
     }
     ~Process();
 
-    /// Returns when the program has begun to run. \return 0 or an errno: no process, no such program, …
+    /// Starts the program and returns once exec has succeeded. \return 0, or the errno of fork or exec.
     [[nodiscard]] int start(const ProcessStart& start);
 
-    [[nodiscard]] bool running() const { return pid_ > 0; }  ///< started and not waited for
+    [[nodiscard]] bool running() const { return pid_ > 0; }  ///< started but not yet waited for
     [[nodiscard]] pid_t pid() const { return pid_; }
     void kill(int signal) const { ::kill(pid_, signal); }
-    /// Waits for its end; call once.
+    /// Waits for the program's end. Call it once.
     ProcessEnd wait();
 
   private:

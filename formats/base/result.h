@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How every library function of Relief reports failure: a Result, never an exception, exit or message.
+// Error handling of Relief's libraries: functions return a Result; they never throw, exit or print.
 #pragma once
 
 #include <string>
@@ -8,19 +8,19 @@
 
 namespace relief {
 
-/// What went wrong, by who can cure it. The value is the exit code of both executables (bake/cli/README.md,
-/// "Exit codes").
+/// Error category, which determines who can fix the error. The value is the exit code of both executables
+/// (bake/cli/README.md, "Exit codes").
 enum class ErrorCode : int {
-    kUsage = 1,         ///< the call itself: option, key or value
+    kUsage = 1,         ///< invalid option, key or value in the call
     kIo = 2,            ///< a file could not be opened, read or written
-    kInvalidInput = 3,  ///< a file was read and its contents are wrong
-    kFailure = 4,       ///< baking or running failed although the input is right
-    kUnsupported = 5,   ///< right, but not something this build or this machine can do
-    kLimit = 6,         ///< larger than a limit of Relief, of the format or of the GL
+    kInvalidInput = 3,  ///< a file was read but its contents are invalid
+    kFailure = 4,       ///< valid input, but baking or running failed
+    kUnsupported = 5,   ///< valid input that this build or machine does not support
+    kLimit = 6,         ///< exceeds a limit of Relief, the format or the GL
     kDifference = 7,    ///< a comparison found a difference
 };
 
-/// One line for a person: names the file or option and the cure. No trailing newline, no leading "error:".
+/// A one-line message that names the file or option and the fix. No trailing newline, no leading "error:".
 struct Error {
     ErrorCode code = ErrorCode::kFailure;
     std::string message;
@@ -29,33 +29,32 @@ struct Error {
 template <class T>
 using Result = tl::expected<T, Error>;
 
-/// For `return fail(ErrorCode::kIo, "...")` out of any function that returns a Result.
+/// Creates an error to return from any function that returns a Result: `return fail(ErrorCode::kIo, "...")`.
 [[nodiscard]] inline tl::unexpected<Error> fail(ErrorCode code, std::string message) {
     return tl::unexpected<Error>(Error{code, std::move(message)});
 }
 
-/// The most frequent of them.
+/// Shorthand for fail(ErrorCode::kInvalidInput, …).
 [[nodiscard]] inline tl::unexpected<Error> invalidInput(std::string message) {
     return fail(ErrorCode::kInvalidInput, std::move(message));
 }
 
-/// Hands the error of one Result on as the error of another.
+/// Forwards the error of one Result type to another.
 template <class T>
 [[nodiscard]] tl::unexpected<Error> forward(const Result<T>& result) {
     return tl::unexpected<Error>(result.error());
 }
 
-/// What a successful Result holds: RELIEF_TRY's last step.
+/// Unwraps a successful Result for RELIEF_TRY.
 template <class T>
 [[nodiscard]] T&& valueOf(Result<T>&& result) {
     return *std::move(result);
 }
 inline void valueOf(Result<void>&& /*result*/) {}
 
-/// The value of a Result, or out of the calling function with its error: `const View view =
-/// RELIEF_TRY(makeView(spec));`. Use it as a statement of its own, or as the whole right side of a
-/// declaration or an assignment. A statement expression of GCC and Clang, as no function can return for its
-/// caller.
+/// Evaluates to the value of a Result, or returns its error from the calling function:
+/// `const View view = RELIEF_TRY(makeView(spec));`. Use it as a statement, or as the whole right side of a declaration
+/// or assignment. It is a statement expression of GCC and Clang because a function cannot return from its caller.
 #define RELIEF_TRY(...)                             \
     __extension__({                                 \
         auto relief_tried = (__VA_ARGS__);          \
@@ -65,10 +64,10 @@ inline void valueOf(Result<void>&& /*result*/) {}
         ::relief::valueOf(std::move(relief_tried)); \
     })
 
-/// "file or I/O", "invalid input", …: the words of the exit code table.
+/// Returns the name used in the exit code table: "file or I/O", "invalid input", …
 [[nodiscard]] const char* errorCodeName(ErrorCode code);
 
-/// The same Result; an error's message with "WORDS: " in front.
+/// Prepends "WORDS: " to the message of a failed Result.
 template <class T>
 [[nodiscard]] Result<T> withPrefix(const std::string& words, Result<T> result) {
     if (!result) {

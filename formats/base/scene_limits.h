@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The limits of the numbers of a scene. Generous, yet small enough that nothing overflows a float within a lifetime.
+// Limits of the numbers in a scene: generous, but small enough that no float overflows within a particle's lifetime.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 namespace relief {
 
 inline constexpr double kLengthMax = 1e9;
-inline constexpr double kRateMax = 1e9;  ///< births a second
+inline constexpr double kRateMax = 1e9;  ///< births per second
 inline constexpr double kSpeedMax = 1e6;
 inline constexpr double kAccelerationMax = 1e6;
 inline constexpr double kSecondsMax = 1e6;
@@ -18,9 +18,9 @@ inline constexpr std::uint32_t kStepsMax = 10'000'000;
 inline constexpr double kDragMax = 1e6;
 inline constexpr double kAngleMax = 1e6;  ///< degrees or radians
 inline constexpr double kFactorMax = 1000.0;
-inline constexpr std::uint64_t kSeedMax = std::uint64_t{1} << 53;  ///< the integers of a double
+inline constexpr std::uint64_t kSeedMax = std::uint64_t{1} << 53;  ///< largest exact integer of a double
 
-inline constexpr FieldRange kPointRange = within(kLengthMax);  ///< of coordinates
+inline constexpr FieldRange kPointRange = within(kLengthMax);  ///< coordinates
 inline constexpr FieldRange kLengthRange{0.0, kLengthMax};
 inline constexpr FieldRange kSizeRange{0.0, kLengthMax, false};
 inline constexpr FieldRange kSpeedRange{0.0, kSpeedMax};

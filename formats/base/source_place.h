@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The place of a value in the file that it was read from.
+// Source position of a value read from a file.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace relief {
 
-/// "scene.toml:3:8", for messages. It is no part of the value: all places are equal.
+/// A position such as "scene.toml:3:8", for messages. All positions compare equal, so that values compare without it.
 struct SourcePlace {
     std::string text;
 

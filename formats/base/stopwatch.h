@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long work took, for reports; no time reaches an output.
+// Measures durations for reports. No output may depend on time.
 #pragma once
 
 #include <chrono>
 
 namespace relief {
 
-/// Runs from the moment it is made.
+/// Starts on construction.
 class Stopwatch {
   public:
     [[nodiscard]] double seconds() const {
@@ -18,10 +18,10 @@ class Stopwatch {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Adds the time for which it lives to a sum.
+/// Adds its own lifetime to a total.
 class TimeAdder {
   public:
-    /// \param total_ms  borrowed; must outlive it.
+    /// \param total_ms  borrowed; must outlive this object.
     explicit TimeAdder(double& total_ms) : total_ms_(total_ms) {}
     TimeAdder(const TimeAdder&) = delete;
     TimeAdder& operator=(const TimeAdder&) = delete;

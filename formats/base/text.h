@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers and words of the command line and of text files: strict, exact, and the same in every locale.
+// Numbers and words of command lines and text files: strict, exact, and independent of the locale.
 #pragma once
 
 #include <cstdint>
@@ -12,61 +12,62 @@
 
 namespace relief {
 
-/// The shortest decimal that reads back as the same float: 0.1F -> "0.1". Infinity is "inf", NaN "nan".
+/// Returns the shortest decimal that reads back as the same float: 0.1F -> "0.1"; "inf" for infinity, "nan" for NaN.
 [[nodiscard]] std::string shortest(float value);
 /// Appends shortest(value) to `out` without a temporary string.
 void appendShortest(std::string& out, float value);
 /// "a/b/c"
 [[nodiscard]] std::string shortest(const glm::vec3& value);
 
-/// The whole of `text` as a finite float; a leading '+' is allowed, and what is too small becomes 0. nullopt otherwise.
+/// Parses the whole text as a finite float, otherwise returns nullopt. Accepts a leading '+'; values that are too small
+/// become 0.
 [[nodiscard]] std::optional<float> parseFloat(std::string_view text);
-/// The same as a double, which may also be infinite or NaN.
+/// Parses a double likewise, which may also be infinite or NaN.
 [[nodiscard]] std::optional<double> parseDouble(std::string_view text);
-/// The whole of `text` as decimal digits. Numbers too large for 64 bits come back as the largest one.
+/// Parses the whole text as decimal digits. Values beyond 64 bits return the maximum.
 [[nodiscard]] std::optional<std::uint64_t> parseUnsigned(std::string_view text);
 
-/// "a,b,,c" by ',' -> a b "" c. An empty text has one empty part.
+/// Splits text: "a,b,,c" by ',' -> a b "" c. Empty text has one empty part.
 [[nodiscard]] std::vector<std::string_view> split(std::string_view text, char separator);
-/// The words of a list with a space between two, as FieldRules has them; an empty list has none.
+/// Splits a space-separated list, as in FieldRules; an empty list has no words.
 [[nodiscard]] std::vector<std::string_view> listWords(std::string_view list);
 [[nodiscard]] bool listHas(std::string_view list, std::string_view word);
-/// Without spaces, tabs and a carriage return at both ends.
+/// Removes spaces, tabs and carriage returns at both ends.
 [[nodiscard]] std::string_view trimmed(std::string_view text);
-/// `bytes` without a byte order mark of UTF-8 in front.
+/// Removes a leading UTF-8 byte order mark.
 [[nodiscard]] std::string_view withoutByteOrderMark(std::string_view bytes);
-/// Cuts the first line off `text`. \return it, without its end: "\n", "\r\n" or "\r".
+/// Removes the first line from `text`. \return the line without its end ("\n", "\r\n" or "\r").
 [[nodiscard]] std::string_view takeLine(std::string_view& text);
-/// Cuts the first word, and the white space before it, off `text`. \return it; empty if there is none.
+/// Removes leading white space and the first word from `text`. \return the word; empty if there is none.
 [[nodiscard]] std::string_view takeWord(std::string_view& text);
 /// "max_error" -> "--max-error"
 [[nodiscard]] std::string optionName(std::string_view field);
-/// A word as a POSIX shell reads it back; control characters are replaced (cleanUtf8).
+/// Quotes a word for a POSIX shell; control characters are replaced (cleanUtf8).
 [[nodiscard]] std::string shellQuoted(const std::string& word);
-/// With a…z for A…Z; all other bytes stay.
+/// Converts A…Z to a…z; other bytes are unchanged.
 [[nodiscard]] std::string lowerCase(std::string_view text);
 
-/// The one of `known` that is nearest to `word`, if at most a third of its letters are changed; else "".
+/// Returns the entry of `known` nearest to `word` if at most a third of its letters differ, otherwise "".
 [[nodiscard]] std::string_view nearest(std::string_view word, std::span<const std::string_view> known);
-/// "; did you mean 'size'?" for the nearest one, or "".
+/// Returns "; did you mean 'size'?" for the nearest entry, or "".
 [[nodiscard]] std::string didYouMean(std::string_view word, std::span<const std::string_view> known);
 /// "less, greater"
 [[nodiscard]] std::string listed(std::span<const std::string_view> words);
 
-/// Characters that change the order of those round them (UAX 9), with which a name can pretend to be another one.
+/// Bidirectional control characters (UAX 9), which can disguise a name as another one.
 enum class Bidi : std::uint8_t { kReplace, kKeep };
-/// Any bytes as valid UTF-8: what is none becomes U+FFFD, control characters included.
-/// \param size_max  bytes: the text ends before the character that would exceed it.
+/// Converts bytes to valid UTF-8: invalid sequences and control characters become U+FFFD.
+/// \param size_max  bytes; truncates before the character that would exceed it.
 [[nodiscard]] std::string cleanUtf8(std::string_view bytes, std::size_t size_max = std::string::npos,
                                     Bidi bidi = Bidi::kReplace);
-/// As cleanUtf8, but with the bytes as hexadecimal escapes, "\x1b", so that different names stay different.
+/// As cleanUtf8, but with hexadecimal escapes ("\x1b"), so that different names stay different.
 [[nodiscard]] std::string escapedUtf8(std::string_view bytes);
-/// Words of another program for a message: cleanUtf8, with spaces for control characters, and none at both ends.
+/// Cleans another program's output for a one-line message: cleanUtf8, control characters as spaces, trimmed.
 [[nodiscard]] std::string oneCleanLine(std::string_view text);
 
-/// "4MB", "0.25 MB", "512kB", "1MiB", "65536", "64B": kB, MB and GB are powers of 1000, KiB, MiB and GiB of
-/// 1024; the case of letters does not matter. Rounded down to whole bytes.
-/// \return nullopt for anything else, for less than one byte, and beyond 2^53.
+/// Parses a size such as "4MB", "0.25 MB", "512kB", "1MiB", "65536" or "64B". kB, MB and GB are powers of 1000; KiB,
+/// MiB and GiB are powers of 1024. Ignores case and rounds down to whole bytes.
+/// \return nullopt for other text, less than one byte, or more than 2^53.
 [[nodiscard]] std::optional<std::uint64_t> parseByteCount(std::string_view text);
 
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines and words of a text file: the one tokenizer of the text formats that Relief reads or checks itself.
+// Lines and words of a text file: the tokenizer for all text formats that Relief parses itself.
 #pragma once
 
 #include <cstddef>
@@ -9,41 +9,39 @@
 
 namespace relief {
 
-/// How a format writes text, beyond what all have in common.
+/// Syntax options of a text format.
 struct TextRules {
-    char comment =
-        '\0';  ///< begins a comment, within a word too, that goes to the end of the line; \0: there are none
-    bool continues = false;  ///< a backslash at the end of a line joins the next one to it
+    char comment = '\0';     ///< starts a comment to the end of the line, also within a word; \0: none
+    bool continues = false;  ///< a backslash at the end of a line joins the next line
 };
 
-/// Walks over a text once. Words stand between blanks (space, tab, vertical tab, form feed); lines end with "\n", "\r\n" or
-/// "\r". A byte order mark of UTF-8 in front is passed over, and so is what some systems fill the end of a file with: zeros
-/// and ^Z.
+/// Scans a text once. Blanks (space, tab, vertical tab, form feed) separate words; "\n", "\r\n" or "\r" end lines.
+/// Skips a leading UTF-8 byte order mark, and the zeros or ^Z that some systems pad files with.
 class TextScanner {
   public:
-    /// \param text  borrowed, as are the words.
+    /// \param text  borrowed; returned words point into it.
     explicit TextScanner(std::string_view text, TextRules rules = {});
 
-    /// The next word of this line. \return empty if there is none.
+    /// Returns the next word of this line; empty if there is none.
     [[nodiscard]] std::string_view word();
-    /// The next word of this line or of those below. \return empty at the end of the text.
+    /// Returns the next word of this or a later line; empty at the end of the text.
     [[nodiscard]] std::string_view anyWord();
-    /// Whether this line holds no more words.
+    /// Returns whether this line has no more words.
     [[nodiscard]] bool atLineEnd();
-    /// The rest of this line, without blanks at both ends: a name, which may hold what begins a comment elsewhere.
+    /// Returns the rest of this line, trimmed: a name, which may contain the comment character.
     [[nodiscard]] std::string_view restOfLine();
-    /// Passes over the rest of this line. \return false if that was the last one.
+    /// Skips the rest of this line. \return false if it was the last one.
     bool nextLine();
 
-    /// Number, from 1, of the line that the last word or rest stands in; before those, of the first.
+    /// Returns the line number, from 1, of the last word or rest returned; 1 before the first.
     [[nodiscard]] std::size_t line() const { return word_line_; }
-    /// The text that is left to read.
+    /// Returns the unread text.
     [[nodiscard]] std::string_view rest() const;
 
   private:
-    /// Length of the end of a line at `at`, 0 if there is none.
+    /// Returns the length of the line ending at `at`, or 0.
     [[nodiscard]] std::size_t lineEnd(const char* at) const;
-    /// Of a backslash that joins two lines, with what stands up to the second.
+    /// Returns the length of a line continuation, from the backslash to the start of the next line, or 0.
     [[nodiscard]] std::size_t joint(const char* at) const;
     void skipBlanks(bool over_lines);
     std::string_view takeWord();
@@ -55,20 +53,21 @@ class TextScanner {
     std::size_t word_line_ = 1;
 };
 
-/// Comma-separated text, line by line. Passes over a byte order mark, empty lines and lines that start with '#'. Nothing is quoted.
+/// Reads comma-separated text line by line. Skips a byte order mark, empty lines and lines that start with '#'. No
+/// quoting.
 class CsvReader {
   public:
-    /// A line of more fields shows this many and one more: a hostile line could have millions.
+    /// fields() returns at most this many plus one: a hostile line could have millions.
     static constexpr std::size_t kFieldsMax = 8;
 
-    /// \param text  borrowed, as are line() and fields().
+    /// \param text  borrowed; line() and fields() point into it.
     explicit CsvReader(std::string_view text);
 
-    /// Goes to the next line. \return false at the end.
+    /// Advances to the next line. \return false at the end.
     [[nodiscard]] bool next();
-    [[nodiscard]] std::size_t number() const { return number_; }      ///< of the line, from 1
-    [[nodiscard]] std::string_view line() const { return line_; }     ///< without white space at both ends
-    [[nodiscard]] std::span<const std::string_view> fields() const {  ///< at least one; trimmed likewise
+    [[nodiscard]] std::size_t number() const { return number_; }      ///< line number, from 1
+    [[nodiscard]] std::string_view line() const { return line_; }     ///< trimmed
+    [[nodiscard]] std::span<const std::string_view> fields() const {  ///< trimmed; at least one
         return fields_;
     }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Distances near a surface as a GPU filters them: what `relief-accuracy --atlas` writes of the rivals that it measures, for
-// `relief-bench step --bricks` to read. A dense volume is one brick.
+// Distances near a surface in GPU-filterable form. `relief-accuracy --atlas` writes the distance volumes that it
+// measures, and `relief-bench step --bricks` reads them. A dense volume is one brick.
 //
-// A file is the bytes of a Header, then those of `index`, then of `codes`; little-endian; another version of the tools may refuse it.
+// File layout: a Header, `index`, `codes`; little-endian. The layout may change with every version of the tools.
 #pragma once
 
 #include <cstddef>
@@ -17,21 +17,21 @@
 namespace relief {
 
 struct BrickAtlas {
-    static constexpr std::uint32_t kOutside = 0;  ///< in `index`: a cube without a brick
+    static constexpr std::uint32_t kOutside = 0;  ///< in `index`: no brick, outside
     static constexpr std::uint32_t kInside = 1;
     static constexpr std::uint32_t kFirstBrick = 2;
 
-    Bounds box;              ///< of the mesh, object space: all beyond is outside
+    Bounds box;              ///< bounds of the mesh, object space; everything beyond is outside
     glm::vec3 origin{0.0F};  ///< the lowest corner of cube (0, 0, 0)
     glm::vec3 cube_size{1.0F};
     glm::uvec3 cubes{1};
-    glm::uvec3 cells{1};      ///< voxels of a brick, which has a node more along each axis
-    float range = 1.0F;       ///< object units: the distance of the largest code
-    std::uint32_t bits = 8;   ///< of a code: 8 or 16
-    std::uint64_t bytes = 0;  ///< those that relief-accuracy counts, with the index that it counts
+    glm::uvec3 cells{1};      ///< voxels per brick; a brick has one more node along each axis
+    float range = 1.0F;       ///< distance of the largest code, in object units
+    std::uint32_t bits = 8;   ///< per code: 8 or 16
+    std::uint64_t bytes = 0;  ///< size counted by relief-accuracy, including the index in its own encoding
     std::vector<std::uint32_t>
-        index;  ///< of each cube, x fastest: kOutside, kInside, or kFirstBrick and its brick
-    std::vector<std::int16_t> codes;  ///< brick after brick, nodes x fastest: ±codeMax() for ±range
+        index;  ///< per cube, x fastest: kOutside, kInside, or kFirstBrick + brick number
+    std::vector<std::int16_t> codes;  ///< brick by brick, nodes x fastest: ±codeMax() encodes ±range
 
     [[nodiscard]] std::size_t nodesOfBrick() const {
         return std::size_t{cells.x + 1} * (cells.y + 1) * (cells.z + 1);
@@ -40,9 +40,9 @@ struct BrickAtlas {
     [[nodiscard]] float codeMax() const { return bits == 8 ? 127.0F : 32767.0F; }
 };
 
-/// Errors: kIo, kLimit, kInvalidInput (not such a file, or an index of bricks that are not there).
+/// Reads an atlas. Errors: kIo, kLimit, kInvalidInput (not an atlas, or an index to a missing brick).
 [[nodiscard]] Result<BrickAtlas> loadBrickAtlas(const std::filesystem::path& path);
-/// Errors: kIo.
+/// Writes an atlas. Errors: kIo.
 [[nodiscard]] Result<void> saveBrickAtlas(const BrickAtlas& atlas, const std::filesystem::path& path);
 
 }  // namespace relief

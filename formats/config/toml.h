@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one way to include toml++: with what it needs so that no file, however hostile, meets undefined
-// behaviour.
+// Includes toml++ with workarounds for undefined behaviour on hostile files. Always include it through this header.
 #pragma once
 
 #include <algorithm>
 #include <vector>
 
 #define TOML_HEADER_ONLY 1
-// toml++ asserts that a key starts as a key must, just before it checks the same and reports the error: a
-// file must not be able to end a debug build.
+// toml++ asserts that a key starts with a valid character just before it checks for that and reports an error. Hostile
+// files must not abort a debug build.
 #define TOML_ASSERT(expression) static_cast<void>(0)
 #include <toml++/impl/preprocessor.h>
-// Where nothing of its tables matches (an é outside of quotes, for one), toml++ 3.0's classification of
-// characters tells the compiler that it cannot get there, instead of answering no.
+// toml++ 3.0's character classification marks the no-match case, such as an unquoted é, as unreachable instead of
+// returning false.
 #pragma push_macro("TOML_UNREACHABLE")
 #undef TOML_UNREACHABLE
 #define TOML_UNREACHABLE return false
@@ -22,7 +21,7 @@
 
 namespace relief {
 
-/// The keys of a table in the order of the file, so that the first error is the one reported.
+/// Returns the keys of a table in file order, so that the first error is reported.
 inline std::vector<const toml::key*> keysInOrder(const toml::table& table) {
     std::vector<const toml::key*> keys;
     for (const auto& [key, node] : table) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a table of a TOML file into a struct with fields() (formats/base/field.h). Unknown keys, wrong types, values out of
-// their range and keys that exclude each other are errors, each reported as "file:line:column: table.key …; the cure".
+// Reads a TOML table into a struct with fields() (formats/base/field.h). Unknown keys, wrong types, values out of range
+// and mutually exclusive keys are errors, reported as "file:line:column: table.key …; the fix".
 #pragma once
 
 #include <cstdint>
@@ -19,30 +19,30 @@
 
 namespace relief {
 
-/// As people write it: "0.1".
+/// Formats a number in its usual form: "0.1".
 [[nodiscard]] std::string numberText(double value);
-/// A line of text that a hostile file can neither break nor colour.
+/// Returns the text as one line without control characters, for messages about untrusted files.
 [[nodiscard]] std::string oneLine(std::string_view text);
 
-/// A file, as its values know it.
+/// The file that values come from.
 struct TomlFile {
-    std::string name;              ///< as messages have it
-    std::filesystem::path folder;  ///< that the file's paths start from and may not leave (confined_path.h)
-    std::filesystem::path root;    ///< another folder that they may lead to; empty: none
-    std::string_view owner;        ///< of the folder, in messages: "scene"
+    std::string name;              ///< as shown in messages
+    std::filesystem::path folder;  ///< base of relative paths, which may not leave it (confined_path.h)
+    std::filesystem::path root;    ///< additional folder that paths may lead to; empty: none
+    std::string_view owner;        ///< owner of the folder, for messages: "scene"
     const toml::table* top = nullptr;
-    bool is_text = true;  ///< false: its values have no lines and columns
+    bool is_text = true;  ///< false: values have no line and column
 };
 
-/// Thrown by everything below where a value is wrong; readTomlFile() turns it into an Error.
+/// Thrown by the functions below if a value is invalid; readTomlFile() converts it into an Error.
 struct TomlError {
     std::string message;
 };
 
-/// A value of a file with its key and its place. Cheap to copy; node and file must outlive it.
+/// A value with its key and position. Cheap to copy; node and file must outlive it.
 class TomlValue {
   public:
-    /// \param name  "render.size"; empty for the file itself.
+    /// \param name  "render.size"; empty for the top level.
     TomlValue(const toml::node& node, std::string name, const TomlFile& file)
         : node_(&node), name_(std::move(name)), file_(&file) {}
 
@@ -50,33 +50,32 @@ class TomlValue {
     [[nodiscard]] const toml::array* array() const { return node_->as_array(); }
     [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] const TomlFile& file() const { return *file_; }
-    [[nodiscard]] std::string place() const;  ///< "file:line:column", or "file" if it is no text
-    /// "table.key"
+    [[nodiscard]] std::string place() const;  ///< "file:line:column", or "file" if is_text is false
+    /// Returns "table.key".
     [[nodiscard]] std::string full(std::string_view key) const;
 
-    /// The value at a path from here: "key", "emitter[1].key[0].time". A table is its own element 0.
+    /// Returns the value at a relative path: "key", "emitter[1].key[0].time". A table counts as its own element 0.
     [[nodiscard]] std::optional<TomlValue> find(std::string_view path) const;
-    /// An element of an array.
     [[nodiscard]] TomlValue operator[](std::size_t i) const { return {*array()->get(i), name_, *file_}; }
 
     [[nodiscard]] double number(const FieldRange& range) const;
     [[nodiscard]] std::int64_t whole(const FieldRange& range) const;
     [[nodiscard]] bool boolean() const;
     [[nodiscard]] std::string text() const;
-    /// The index of one of `words`.
+    /// Returns the index of the value in `words`.
     [[nodiscard]] std::size_t word(std::span<const std::string_view> words) const;
-    /// A path, resolved.
+    /// Returns a path, resolved.
     [[nodiscard]] std::filesystem::path path() const;
-    /// An index into the tables `key` of the top level, or the index of the one of that name.
+    /// Returns an index into the top-level tables `key`; a name selects the table with that name.
     [[nodiscard]] std::int64_t indexOf(std::string_view key, const FieldRange& range) const;
-    /// Numbers [a, b, …], as many as said. \param unit  begins with the names of the parts.
+    /// Returns an array of `size` numbers. \param unit  starts with the names of the elements: "[a, b, …]".
     [[nodiscard]] const toml::array& list(std::size_t size, bool whole, std::string_view unit) const;
-    /// This table, or each table of this array.
+    /// Returns this table, or each table of this array.
     [[nodiscard]] std::vector<TomlValue> tables(const FieldInfo& info) const;
     void needTable() const;
 
     [[noreturn]] void wrongType(std::string_view wanted) const;
-    [[noreturn]] void fail(const std::string& message) const;  ///< "place: message"
+    [[noreturn]] void fail(const std::string& message) const;  ///< throws "place: message"
 
   private:
     const toml::node* node_;
@@ -87,17 +86,17 @@ class TomlValue {
 /// Reads one value.
 void readValue(const TomlValue& from, FieldRef value, const FieldInfo& info);
 
-/// Reads a table into a struct, and judges it by the rules of its fields and by its check(), which may also complete the
+/// Reads a table into a struct, then applies the rules of its fields and its check(), which may also complete the
 /// struct:
 ///     std::optional<FieldFault> check(T& value, const GivenFields& given);
-/// A member `place` of the struct becomes the place of the table.
+/// Sets the struct's member `place`, if it has one, to the position of the table.
 void readToml(const TomlValue& from, FieldRef value);
 
-/// A whole file. \param read  gets its top level, and may throw TomlError.
+/// Parses a whole file. \param read  receives the top level, and may throw TomlError.
 /// Errors: kInvalidInput, with file, line and column.
 [[nodiscard]] Result<void> readTomlFile(std::string_view text, TomlFile file,
                                         const std::function<void(const TomlValue&)>& read);
-/// The same of a table that is no text: messages have no line and column.
+/// Reads a table that was not parsed from text; messages have no line and column.
 [[nodiscard]] Result<void> readTomlTable(const toml::table& top, TomlFile file,
                                          const std::function<void(const TomlValue&)>& read);
 

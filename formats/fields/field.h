@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What fields() of reports need beside formats/base/field.h: a report is only written, and visits expressions as well as
-// members.
+// Helpers for the fields() of reports, in addition to formats/base/field.h. Reports are only written, and visit
+// expressions as well as members.
 #pragma once
 
 #include <cmath>
@@ -13,14 +13,14 @@
 
 namespace relief {
 
-/// visit("bounds", group([&](FieldVisitor& visit) { visit("min", …); }), {…})
+/// Writes an object: visit("bounds", group([&](FieldVisitor& visit) { visit("min", …); }), {…})
 /// \param visit_fields  borrowed
 template <class Visit>
 [[nodiscard]] FieldGroup group(const Visit& visit_fields) {
     return {&visit_fields,
             [](const void* of, FieldVisitor& visit) { (*static_cast<const Visit*>(of))(visit); }};
 }
-/// The same or null. For its schema the fields are visited although it is not present.
+/// Writes an object, or null if not present. The schema visits the fields in either case.
 template <class Visit>
 [[nodiscard]] FieldGroup groupIf(bool present, const Visit& visit_fields) {
     FieldGroup made = group(visit_fields);
@@ -29,12 +29,13 @@ template <class Visit>
     return made;
 }
 
-/// Null where the condition is false.
+/// Returns the value if the condition holds, otherwise nullopt (null in JSON).
 template <class T>
 [[nodiscard]] std::optional<T> onlyIf(bool condition, T value) {
     return condition ? std::optional<T>(std::move(value)) : std::nullopt;
 }
-/// A view of each: `viewsOf<PlaceReport>(places, collider)` makes PlaceReport{place, collider} of each place.
+/// Constructs a view of each element: `viewsOf<PlaceReport>(places, collider)` returns PlaceReport{place, collider} for
+/// each place.
 template <class View, class T, class... More>
 [[nodiscard]] std::vector<View> viewsOf(const std::vector<T>& all, const More&... more) {
     std::vector<View> views;
@@ -43,16 +44,16 @@ template <class View, class T, class... More>
     }
     return views;
 }
-/// Null where a number is infinite or NaN.
+/// Returns nullopt (null) if a number is infinite or NaN.
 [[nodiscard]] inline std::optional<double> finite(double value) {
     return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
-/// Null where a text is empty.
+/// Returns nullopt (null) if a text is empty.
 [[nodiscard]] inline std::optional<std::string_view> nonEmpty(std::string_view text) {
     return text.empty() ? std::nullopt : std::optional(text);
 }
 
-/// An empty T. References of a view are initialized with it, so that a schema can be made from the view's type alone.
+/// An empty T to initialize the references of a view with, so that a schema can be derived from the view's type.
 template <class T>
 inline const T kNone{};
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that are derived from fields(). Schemas and dictionaries of fuzz targets are written by the build. What users read in the
-// source tree is checked in: scripts/generate.sh writes it anew, and the test generated.fresh fails if it is stale.
+// Files that are derived from fields(). The build writes schemas and fuzzer dictionaries. Files that users read in the
+// source tree are checked in: scripts/generate.sh rewrites them, and the test generated.fresh fails if they are stale.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@
 
 namespace relief {
 
-/// A whole file, or a part of one between the lines "<!-- generated: PART -->" and "<!-- end of PART -->" (in languages
-/// other than Markdown behind "//" or "#" instead).
+/// A whole file, or the part of a file between the lines "<!-- generated: PART -->" and "<!-- end of PART -->"
+/// (comments with "//" or "#" in other languages).
 struct GeneratedText {
-    std::string path;    ///< from the root of the source tree, or of the folder that is written
+    std::string path;    ///< relative to the source tree, or to the output folder if `built`
     std::string part;    ///< empty: the whole file
     std::string text;    ///< ends with a line feed
-    bool built = false;  ///< by the build, in a folder of its own
+    bool built = false;  ///< written by the build into its own folder
 };
 
 using GeneratedTexts = std::vector<GeneratedText>;

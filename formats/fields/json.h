@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A struct with fields() as the text of JSON, and the JSON Schema of that. The tools write their reports with it. Values of
-// JSON are in formats/fields/json_value.h.
+// Converts structs with fields() to JSON text, and derives its JSON Schema. The tools write their reports with it.
+// formats/fields/json_value.h declares the JSON values.
 #pragma once
 
 #include <string>
@@ -11,12 +11,12 @@
 
 namespace relief {
 
-/// Indented, with a line feed at the end. Bytes that are not UTF-8 are replaced.
+/// Returns indented JSON that ends with a line feed. Invalid UTF-8 is replaced.
 [[nodiscard]] std::string jsonTextOf(FieldRef value);
-/// The same in one line.
+/// Returns the same JSON on one line.
 [[nodiscard]] std::string jsonLineOf(FieldRef value);
 
-/// The file NAME.schema.json, which the build writes: the schema of the text that the functions above write.
+/// Returns the file NAME.schema.json, which the build writes: the schema of the output of the functions above.
 [[nodiscard]] GeneratedText schemaFile(const std::string& name, std::string_view title,
                                        std::string_view description, FieldRef value);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a JSON document into a struct with fields() (formats/base/field.h): the counterpart of jsonOf(). Unknown keys, wrong
-// types, numbers out of their range and required fields that are missing are errors, each reported as
-// "bodies[3].rotation must be …; the cure".
+// Reads a JSON document into a struct with fields() (formats/base/field.h): the inverse of jsonOf(). Unknown keys,
+// wrong types, numbers out of range and missing required fields are errors, reported as "bodies[3].rotation must be …;
+// …".
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -11,8 +11,9 @@
 
 namespace relief {
 
-/// \param value  whose floats have ranges that floats can hold. Changed also where it fails.
-/// Errors: kInvalidInput, kLimit (more elements than a field may have), without the file's name.
+/// Reads `json` into `value`.
+/// \param value  its float fields must have ranges that floats can represent. May be partly changed on failure.
+/// Errors: kInvalidInput, kLimit (more elements than a field allows); messages do not include the file name.
 [[nodiscard]] Result<void> readJson(const nlohmann::json& json, FieldRef value);
 
 }  // namespace relief

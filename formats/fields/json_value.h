@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values with fields() as values of JSON, for sources that build JSON or schemas by hand.
+// JSON values of types with fields(), for sources that build JSON or schemas by hand.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -12,37 +12,37 @@ namespace relief {
 
 using Json = nlohmann::ordered_json;
 
-/// Json for headers that do without its own (FieldCustom).
+/// Wraps Json so that headers can forward-declare it (FieldCustom).
 struct FieldJson {
     Json json;
 };
 
-/// The double whose shortest decimal is that of the float: 0.1F becomes 0.1.
+/// Returns the double whose shortest decimal equals the float's: 0.1F becomes 0.1.
 [[nodiscard]] Json jsonNumber(float value);
 
-/// Indented, with a line feed at the end. Bytes that are not UTF-8 are replaced.
+/// Returns indented JSON that ends with a line feed. Invalid UTF-8 is replaced.
 [[nodiscard]] std::string jsonText(const Json& json);
-/// The same in one line.
+/// Returns the same JSON on one line.
 [[nodiscard]] std::string jsonLine(const Json& json);
 
-/// Enumerations are their words, an optional without a value is null, a path its bytes, a vector of three an array. Fields
-/// are members of an object, in the order of the visits: those for the word of the selecting field, and a single table
-/// without its list if FieldRules::single.
+/// Converts a value to JSON. Enumerations become words, empty optionals null, paths their bytes, and vec3 an array.
+/// Fields become members of an object in visiting order. Fields of other kinds are omitted (see FieldRules::only); with
+/// FieldRules::single, a list of one table becomes that table.
 [[nodiscard]] Json jsonOf(FieldRef value);
 
-/// The schema of such a field: type, range, description; closed objects, of which every field is required that is not
-/// left_out. \param value  any: of a struct that visits other fields by its kind, one of that kind.
+/// Returns the schema of a field: type, range and description. Objects are closed and require every field that is not
+/// left_out. \param value  any value; for structs whose fields depend on their kind, a value of that kind.
 [[nodiscard]] Json schemaOf(FieldRef value);
 [[nodiscard]] Json schemaOf(FieldRef value, const FieldInfo& info);
 
-/// "Centre of attraction, m".
+/// Returns the description with its unit: "Centre of attraction, m".
 [[nodiscard]] std::string fieldDescription(const FieldInfo& info);
-/// "type" with the limits of its range, or the words.
+/// Returns "type" with the limits of its range, or the words.
 [[nodiscard]] Json numberSchema(bool whole, bool is_unsigned, const FieldInfo& info);
-/// "type" with its pattern, or the words.
+/// Returns "type" with its pattern, or the words.
 [[nodiscard]] Json textSchema(const FieldInfo& info);
 [[nodiscard]] Json arraySchema(Json items, const FieldRange& count);
-/// The same, or null.
+/// Returns a schema that also accepts null.
 [[nodiscard]] Json nullable(Json schema);
 
 }  // namespace relief

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A struct that is read from files (formats/config/toml_reader.h), described for people, editors and fuzzers: tables of
-// Markdown, JSON Schema and dictionaries. All are made of one tree.
+// Documents structs that are read from files (formats/config/toml_reader.h) for users, editors and fuzzers: Markdown
+// tables, JSON Schema and dictionaries, all derived from one tree.
 #pragma once
 
 #include <map>
@@ -22,30 +22,31 @@ struct FieldSchema {
 struct FieldReference {
     std::string_view name;
     FieldInfo info;
-    FieldSchema type;                    ///< of a table: nothing
-    std::string fallback;                ///< the default, as the file would have it
+    FieldSchema type;                    ///< empty for a table
+    std::string fallback;                ///< the default in the file's syntax
     std::vector<FieldReference> fields;  ///< of a table
-    bool several = false;                ///< [[name]]
+    bool several = false;                ///< true for [[name]]
 };
 
-/// Types that FieldCustom::read reads.
+/// Schemas of the types that FieldCustom::read reads.
 using CustomSchemas = std::map<const FieldCustom*, FieldSchema>;
 
-/// The fields of a struct.
+/// Returns the fields of a struct.
 [[nodiscard]] std::vector<FieldReference> referenceOf(FieldRef value, const CustomSchemas& custom = {});
 template <class T>
 [[nodiscard]] std::vector<FieldReference> referenceOf() {
     return referenceOf(T{});
 }
 
-/// Rows of a table: | key | meaning | default | range |, with its head. Nested tables are left out.
+/// Returns a Markdown table | key | meaning | default | range | with its header. Omits nested tables.
 [[nodiscard]] std::string markdownTable(const std::vector<FieldReference>& fields);
-/// The same of all tables in `fields`, each key with its table in front; \param names  of those; others are left out.
+/// Returns one table for several nested tables in `fields`; keys are prefixed with their table. \param names  tables to
+/// include.
 [[nodiscard]] std::string markdownTables(const std::vector<FieldReference>& fields,
                                          std::span<const std::string_view> names);
-/// A JSON Schema of the file.
+/// Returns a JSON Schema of the file.
 [[nodiscard]] Json fileSchema(const std::vector<FieldReference>& fields);
-/// Keys, words and tables, for libFuzzer.
+/// Returns keys, words and table names for libFuzzer.
 [[nodiscard]] std::string fuzzDictionary(const std::vector<FieldReference>& fields);
 
 }  // namespace relief

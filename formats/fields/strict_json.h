@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// JSON from outside, parsed without what nlohmann's parser lets pass.
+// Parses untrusted JSON more strictly than nlohmann's parser.
 #pragma once
 
 #include <cstddef>
@@ -12,12 +12,13 @@
 namespace relief {
 
 struct JsonLimits {
-    std::size_t depth = 256;  ///< of objects and arrays within each other
-    std::size_t values = std::numeric_limits<std::size_t>::max();  ///< of the whole text, keys not counted
+    std::size_t depth = 256;  ///< nesting depth of objects and arrays
+    std::size_t values =
+        std::numeric_limits<std::size_t>::max();  ///< number of values in the text, excluding keys
 };
 
-/// Refuses, besides what is no JSON, equal keys in one object and a byte of 0. Nothing is allocated for a text beyond the
-/// limits. Errors, without a cure: kInvalidInput, kLimit.
+/// Rejects invalid JSON, duplicate keys in an object, and zero bytes. Checks the limits before any allocation. Errors,
+/// whose messages include no fix: kInvalidInput, kLimit.
 [[nodiscard]] Result<nlohmann::json> parseStrictJson(std::string_view text, const JsonLimits& limits = {});
 
 }  // namespace relief

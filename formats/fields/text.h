@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values of fields as words: of a command line, of Python's arguments, of a container's provenance.
+// Field values as words: for command lines, Python arguments and the provenance of containers.
 #pragma once
 
 #include <cstdint>
@@ -14,55 +14,56 @@
 
 namespace relief {
 
-/// "is 'x' but must be MUST"
+/// Returns "is 'x' but must be MUST".
 [[nodiscard]] std::string butMustBe(std::string_view word, std::string_view must);
-/// "is 'x' but must be one of a, b, c; did you mean 'a'?", or "but must be a or b".
+/// Returns "is 'x' but must be one of a, b, c; did you mean 'a'?", or "is 'x' but must be a or b".
 [[nodiscard]] std::string butMustBeOneOf(std::string_view word, std::span<const std::string_view> words);
 
-/// "1MB" for 1000000, and the plain number where no unit of 1000 divides it.
+/// Returns "1MB" for 1000000; the plain number if no power of 1000 divides it.
 [[nodiscard]] std::string bytesWord(std::uint64_t bytes);
 
-/// The shortest decimal that reads back as the same number.
+/// Returns the shortest decimal that reads back as the same number.
 [[nodiscard]] std::string numberWord(float value);
 [[nodiscard]] std::string numberWord(double value);
 
-/// Reads a word into a value; a list gets one more. \return empty, or the clause that follows the field's name in a message:
-/// "is 'x' but must be …".
+/// Parses a word into a value; appends to a list. \return an empty string on success, otherwise the clause that follows
+/// the field's name in a message: "is 'x' but must be …".
 [[nodiscard]] std::string readWord(std::string_view word, const FieldInfo& info, FieldRef value);
 
-/// The words that readWord() makes the value of: none of an optional without a value, one for each entry of a list.
+/// Returns the words from which readWord() restores the value: none for an empty optional, one for each element of a
+/// list.
 [[nodiscard]] std::vector<std::string> wordsOf(FieldRef value);
 
-/// How many words a field takes, and of which sort: what its readers need beside the FieldInfo.
+/// Number of words that a field accepts.
 enum class FieldKind : std::uint8_t { kFlag, kValue, kList };
 
-/// A field of a struct, distinct from its type.
+/// A field of a struct, described independently of its type.
 struct FieldWords {
     std::string name;
     FieldInfo info;
     FieldKind kind = FieldKind::kValue;
-    std::vector<std::string> words;           ///< of its value
+    std::vector<std::string> words;           ///< current value
     std::vector<std::string_view> choices{};  ///< of an enumeration
-    bool optional = false;                    ///< the default is no value
+    bool optional = false;                    ///< there is no default value
     bool number = false;
 };
 
 [[nodiscard]] FieldWords describeField(std::string_view name, FieldRef value, const FieldInfo& info);
 
-/// All fields of a struct, in their order.
+/// Returns all fields of a struct, in order.
 [[nodiscard]] std::vector<FieldWords> fieldsOf(FieldRef value);
-/// The fields that differ from those of a new struct.
+/// Returns the fields that differ from a newly constructed struct.
 [[nodiscard]] std::vector<FieldWords> changedFields(FieldRef value);
 
-/// Reads a word into the field of that name.
-/// Errors: kUsage: no field has the name, or its value is wrong; names the option.
+/// Parses a word into the field with this name.
+/// Errors: kUsage if no field has the name or the value is invalid; messages name the option.
 [[nodiscard]] Result<void> setField(FieldRef target, std::string_view name, std::string_view word);
 
-/// "1MB", "60", "512; with --holes keep and --animated, 256"; empty: there is no default.
+/// Returns the default: "1MB", "60", "512; with --holes keep and --animated, 256"; empty if there is none.
 [[nodiscard]] std::string defaultText(const FieldWords& field);
-/// Stands for the value in --help: "BYTES", "fast|normal|best".
+/// Returns the placeholder of the value in --help: "BYTES", "fast|normal|best".
 [[nodiscard]] std::string valueText(const FieldWords& field);
-/// A table of options for a README: name, sentence, default.
+/// Returns a Markdown table of options: name, description, default.
 [[nodiscard]] std::string optionTable(const std::vector<FieldWords>& fields);
 
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bytes of a binary little-endian PLY, in the order of the file.
+// Builds the bytes of a binary little-endian PLY, in file order.
 #pragma once
 
 #include <cstddef>

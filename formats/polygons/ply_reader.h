@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PLY files, read: the header and the numbers behind it. The caller decides what a file must hold.
+// Reads the header and the numbers of PLY files. The caller decides which elements are required.
 #pragma once
 
 #include <cstdint>
@@ -17,55 +17,55 @@ namespace relief {
 enum class PlyEncoding : std::uint8_t { kAscii, kLittle, kBig };
 enum class PlyType : std::uint8_t { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
 
-/// Properties of one element that a reader takes, and elements of one file: more than any program writes.
+/// Limits on the properties of one element and on the elements of a file; real files have fewer.
 inline constexpr std::size_t kPlyPropertiesMax = 256;
 inline constexpr std::size_t kPlyElementsMax = 64;
 
 struct PlyProperty {
     std::string_view name;
-    PlyType type = PlyType::kInt8;       ///< of a list: of its items
-    std::optional<PlyType> length_type;  ///< of a list
+    PlyType type = PlyType::kInt8;       ///< for lists, the type of the items
+    std::optional<PlyType> length_type;  ///< set for lists
 
     [[nodiscard]] bool isList() const { return length_type.has_value(); }
 };
 
 struct PlyElement {
     std::string_view name;
-    std::uint64_t count = 0;  ///< by the header; the file may hold fewer
+    std::uint64_t count = 0;  ///< from the header; the file may contain fewer
     std::vector<PlyProperty> properties;
 };
 
-/// It borrows from the file's bytes.
+/// A parsed header. Borrows the file's bytes.
 struct PlyHeader {
     PlyEncoding encoding = PlyEncoding::kAscii;
     std::vector<PlyElement> elements;
-    std::size_t lines = 0;  ///< of the header itself
+    std::size_t lines = 0;  ///< number of lines in the header
 };
 
-/// Cuts the whole header off `data`, a file from its start.
-/// Errors, naming no file: kInvalidInput.
+/// Parses the header at the start of `data` and removes it.
+/// Errors, without the file: kInvalidInput.
 [[nodiscard]] Result<PlyHeader> takePlyHeader(std::string_view& data);
 
-/// The numbers behind a header, one after the other, as words or as bytes.
+/// Reads the numbers after a header in order, from text or binary.
 class PlyNumbers {
   public:
-    /// \param data  from the byte after "end_header\n"; or a part of it, such as a line. Borrowed.
-    /// \param lines_before  of the file.
+    /// \param data  the bytes after "end_header\n", or a part of them such as a line. Borrowed.
+    /// \param lines_before  number of lines in the file before `data`.
     PlyNumbers(std::string_view data, PlyEncoding encoding, std::size_t lines_before = 0)
         : data_(data), text_(data), encoding_(encoding), lines_before_(lines_before) {}
 
-    /// \return nullopt if the data have ended, or where a word is no number.
+    /// Returns the next number; nullopt at the end of the data, or if a word is not a number.
     [[nodiscard]] std::optional<double> next(PlyType type);
-    /// After next() has failed: the data have ended.
+    /// Returns whether next() failed because the data ended.
     [[nodiscard]] bool ended() const { return ended_; }
-    /// The data behind the last number.
+    /// Returns the data after the last number.
     [[nodiscard]] std::string_view rest() const { return isText() ? text_.rest() : data_; }
     [[nodiscard]] bool isText() const { return encoding_ == PlyEncoding::kAscii; }
-    /// \return true if no word follows the last one on its line. \pre isText()
+    /// Returns whether the last word was the last on its line. \pre isText()
     [[nodiscard]] bool atLineEnd() { return text_.atLineEnd(); }
-    /// "line 12: ", of the last word; "" where there are no lines.
+    /// Returns "line 12: " for the last word; "" for binary data.
     [[nodiscard]] std::string where() const;
-    /// The last word, of a text.
+    /// Returns the last word of a text file.
     [[nodiscard]] std::string_view word() const { return word_; }
 
   private:
@@ -79,30 +79,30 @@ class PlyNumbers {
     bool ended_ = false;
 };
 
-/// The error of a next() that failed; it names no file.
+/// Returns the error of a failed next(), without the file.
 [[nodiscard]] tl::unexpected<Error> plyNumberError(const PlyNumbers& numbers);
 
-/// The length of a list. Errors: as plyNumberError; kInvalidInput for what is no length.
+/// Reads the length of a list. Errors: as plyNumberError; kInvalidInput for an invalid length.
 [[nodiscard]] Result<std::uint64_t> takePlyLength(PlyNumbers& numbers, PlyType type);
 
-/// Reads a property that is not needed: a number, or a list of them. Errors: as takePlyLength.
+/// Skips a property: a number or a list. Errors: as takePlyLength.
 [[nodiscard]] Result<void> passPlyProperty(const PlyProperty& property, PlyNumbers& numbers);
 
-/// The properties of one element that a reader takes, single numbers by their names.
+/// Reads the properties of one element that a reader needs: single numbers, by name.
 class PlyColumns {
   public:
-    /// \param element  borrowed. \param names  as many as the values of read().
+    /// \param element  borrowed. \param names  one for each value of read().
     PlyColumns(const PlyElement& element, std::span<const std::string_view> names);
 
-    /// How many of the element's properties have the name'th name: 1, unless its header is odd.
+    /// Returns how many properties of the element have this name: 1 in a well-formed header.
     [[nodiscard]] std::size_t count(std::size_t name) const;
-    /// Takes the element's next item. \param values  those that the element has not stay as they are.
+    /// Reads the element's next item. \param values  entries without a property are unchanged.
     /// Errors: as takePlyLength.
     [[nodiscard]] Result<void> read(PlyNumbers& numbers, std::span<double> values) const;
 
   private:
     const PlyElement& element_;
-    std::vector<int> places_;  // of each property among the names, -1: none
+    std::vector<int> places_;  // index into the names for each property, or -1
 };
 
 }  // namespace relief

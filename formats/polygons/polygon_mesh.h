@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The surface of a file in polygons: what the readers of OBJ, OFF, PLY and STL make of it.
+// The polygons of a file, as read from OBJ, OFF, PLY and STL.
 #pragma once
 
 #include <array>
@@ -13,55 +13,54 @@
 
 namespace relief {
 
-/// As kTriangleMax of bake/mesh, which the tools keep to. A file may have thrice as many vertices.
+/// Equals kTriangleMax in bake/mesh, the limit of the tools. A file may have three times as many vertices.
 inline constexpr std::uint64_t kPolygonTrianglesMax = 100'000'000;
 
-/// Colours of vertices are read for pictures alone.
+/// Whether to read vertex colours; only pictures need them.
 enum class PolygonColors : std::uint8_t { kSkip, kRead };
 
-/// Counts of a file, before anything is left out or triangulated; what is used twice counts once.
+/// Counts for a file before triangulation and clean-up. Shared elements count once.
 struct MeshParts {
-    std::uint64_t polygons = 0;  ///< faces of at least three corners
+    std::uint64_t polygons = 0;  ///< faces with at least three corners
     std::uint64_t lines = 0;
     std::uint64_t points = 0;
     std::uint64_t free_forms = 0;  ///< curves, surfaces and patches without polygons
     std::uint64_t vertices = 0;
     std::uint64_t unused = 0;  ///< vertices that no polygon uses
-    std::uint64_t loose = 0;   ///< and neither a line nor a point
+    std::uint64_t loose = 0;   ///< vertices that no polygon, line or point uses
     std::uint64_t meshes = 0;
-    std::uint64_t unplaced = 0;  ///< meshes that no node of the scene places
+    std::uint64_t unplaced = 0;  ///< meshes that no node of the scene references
 };
 
-/// Polygons in a row that have the same names.
+/// Consecutive polygons with the same names.
 struct PolygonGroup {
-    std::size_t begin = 0;             ///< index of the first; it ends where the next group begins
-    std::vector<std::string> names{};  ///< as the file has them
-    std::string node{};      ///< of SurfaceName: the group, object or solid; one of a name is one node
-    std::string material{};  ///< of SurfaceName
+    std::size_t begin = 0;             ///< index of the first polygon; the group ends where the next begins
+    std::vector<std::string> names{};  ///< as in the file
+    std::string node{};      ///< for SurfaceName: the group, object or solid; equal names form one node
+    std::string material{};  ///< for SurfaceName
 };
 
 struct PolygonMesh {
-    std::vector<glm::vec3> positions;  ///< of all its vertices; may be no numbers
-    /// Positions, counter-clockwise seen from outside: the corners of all polygons, one polygon after the other.
+    std::vector<glm::vec3> positions;  ///< all vertices; coordinates may be NaN or infinite
+    /// Indices into positions, counter-clockwise seen from outside: the corners of all polygons, polygon by polygon.
     std::vector<std::uint32_t> corners;
     std::vector<std::array<std::uint8_t, 4>>
-        colors{};  ///< of its positions, sRGB and alpha; empty: they have none, or are not read
-    std::vector<std::uint32_t> sizes;   ///< of each polygon, in corners; 1 and 2 are possible, 0 is not
-    std::vector<PolygonGroup> groups;   ///< by their beginnings; polygons before the first have no names
-    std::vector<std::string> warnings;  ///< without the file's name
-    /// Lines and points that are no polygons of it, free forms, and how many vertices only those use. The rest is counted
-    /// from the polygons.
+        colors{};                       ///< for each position, sRGB and alpha; empty if absent or not read
+    std::vector<std::uint32_t> sizes;   ///< corners of each polygon; may be 1 or 2, but not 0
+    std::vector<PolygonGroup> groups;   ///< ascending by begin; polygons before the first group have no names
+    std::vector<std::string> warnings;  ///< without the file name
+    /// Counts that are not derived from the polygons: lines, points, free forms, and vertices that only those use.
     MeshParts others;
     std::vector<std::uint8_t>
-        in_others;  ///< of each position, 1 for those that lines and points use; empty: none does
+        in_others;  ///< for each position, 1 if lines or points use it; empty if none are used
 };
 
-/// "line 12: WHAT", kInvalidInput.
+/// Creates the error "line 12: WHAT", kInvalidInput.
 [[nodiscard]] inline tl::unexpected<Error> wrongLine(std::size_t line, const std::string& what) {
     return invalidInput("line " + std::to_string(line) + ": " + what);
 }
 
-/// kLimit where a file has, or its header announces, more than so many "triangles" or "vertices".
+/// Fails with kLimit if a file contains, or its header declares, more than `most` "triangles" or "vertices".
 [[nodiscard]] inline Result<void> checkCount(std::uint64_t count, std::uint64_t most, const char* things) {
     return count <= most ? Result<void>()
                          : fail(ErrorCode::kLimit, "it has " + std::to_string(count) + " " + things +

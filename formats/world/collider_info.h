@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The facts about a collider that a page needs beside the texels: ColliderInfo in runtime/web/relief.d.ts.
+// Collider properties that a web page needs in addition to the texels: ColliderInfo in runtime/web/relief.d.ts.
 #pragma once
 
 #include "formats/collider.h"

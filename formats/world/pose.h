@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pose of a body: a rigid transform with one scale for all axes.
+// The pose of a body: a rigid transform with a uniform scale.
 #pragma once
 
 #include <glm/gtc/quaternion.hpp>
@@ -12,8 +12,8 @@ namespace relief {
 /// world = position + scale · rotation · object
 struct Pose {
     glm::vec3 position{0.0F};                    ///< world units
-    glm::quat rotation{1.0F, 0.0F, 0.0F, 0.0F};  ///< of length 1
-    float scale = 1.0F;                          ///< world units of an object unit, > 0
+    glm::quat rotation{1.0F, 0.0F, 0.0F, 0.0F};  ///< unit length
+    float scale = 1.0F;                          ///< world units per object unit, > 0
     friend bool operator==(const Pose&, const Pose&) = default;
 };
 
@@ -21,7 +21,7 @@ struct Pose {
     return pose.position + pose.scale * (pose.rotation * p);
 }
 
-/// The box, along the world's axes, of a box of object space.
+/// Returns the world-space axis-aligned box of an object-space box.
 [[nodiscard]] inline Bounds toWorld(const Pose& pose, const Bounds& box) {
     Bounds world;
     for (int corner = 0; corner < 8; ++corner) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A world: colliders, and the bodies that are placed instances of them, in one readable file beside the colliders' files.
+// A world: colliders and the bodies that place them, in one readable file beside the collider files.
 //
 //     {
 //       "format": "relief-world", "version": 1, "unit": "m",
@@ -7,8 +7,9 @@
 //       "bodies": [{"collider": 0, "node": "chair.001", "position": [3, 0, 1], "rotation": [0, 0, 0, 1], "scale": 1, …}]
 //     }
 //
-// README.md beside this file describes it. It differs from a tileset.json of OGC 3D Tiles in that a collider is named once
-// however often it is placed, and that a pose keeps shapes: distances of a collider are those of its body times the scale.
+// README.md in this folder describes the format. It differs from a tileset.json of OGC 3D Tiles: a collider is listed
+// once however often it is placed, and poses preserve shapes. Distances of a body are those of its collider times the
+// scale.
 #pragma once
 
 #include <array>
@@ -37,12 +38,12 @@ inline constexpr std::size_t kWorldMaterialsMax = 4096;
 inline constexpr std::uint64_t kWorldBytesMax = std::uint64_t{64} << 20;
 inline constexpr std::uint32_t kWorldVersion = 1;
 inline constexpr std::string_view kWorldFormat = "relief-world";
-/// The name of the file in the folder of a world.
+/// File name inside a world's folder.
 inline constexpr const char* kWorldFileName = "world.json";
 inline constexpr double kWorldCoordinateMax = double{1e15F};
-inline constexpr double kWorldFileBytesMax = 2147483648.0;  ///< all texels of a container
+inline constexpr double kWorldFileBytesMax = 2147483648.0;  ///< limit for the texels of one container
 
-/// A container of a world.
+/// A container of a world, as listed in the file.
 struct WorldFile {
     std::string file;
     std::string hash;
@@ -59,7 +60,7 @@ struct WorldCollider : WorldFile {
 
 void fields(FieldVisitor& visit, WorldCollider& collider);
 
-/// Of a collider its own container, or its coarse one where it has that.
+/// Selects a collider's own container, or its coarse one if it has one.
 enum class WorldDetail : std::uint8_t { kFine, kCoarse };
 [[nodiscard]] const WorldFile& fileOf(const WorldCollider& collider, WorldDetail detail);
 
@@ -91,42 +92,42 @@ inline constexpr std::array<std::string_view, 2> kWorldUnits{"m", ""};
 
 void fields(FieldVisitor& visit, World& world);
 
-/// The numbers of the bodies of a node, in the world's order: several in one place where its mesh was cut into tiles, which move
-/// as one; those of all nodes that share the name. Empty: there is none.
+/// Returns the indices of the bodies with this node name, in world order. Several bodies share a name if the node's
+/// mesh was cut into tiles, which move together, or if several nodes have the same name. Empty if there are none.
 [[nodiscard]] std::vector<std::size_t> findBodies(const World& world, std::string_view node);
 
-/// The box that holds all bodies where they are.
+/// Returns a box that contains all bodies.
 [[nodiscard]] Bounds worldBounds(const World& world);
 
-/// A line for each collider and each body. The same world is the same text.
+/// Writes a line for each collider and each body. Equal worlds give equal text.
 [[nodiscard]] std::string worldText(const World& world);
 
-/// Reads untrusted text; the files that it names are not looked at. Rotations get length 1.
-/// Errors, in one line and without the file's name: kInvalidInput, kUnsupported (another version), kLimit.
+/// Parses untrusted text; does not open the files that it names. Normalizes rotations.
+/// Errors, in one line without the file name: kInvalidInput, kUnsupported (another version), kLimit.
 [[nodiscard]] Result<World> parseWorld(std::string_view text);
 
 struct LoadedWorld {
     World world;
-    std::vector<Collider> colliders;  ///< of world.colliders
+    std::vector<Collider> colliders;  ///< in the order of world.colliders
 };
 
-/// A world with its colliders, whose hashes, sizes and boxes are compared with the file's.
-/// \param limits  texel_bytes: of all colliders together.
-/// Errors, with the file in front: those of parseWorld, readFile and readContainer; kInvalidInput: a path that leads out of
-/// the folder, a hash, a size or a box that differs; kIo: a container that is missing.
+/// Loads a world with its colliders, and compares their hashes, sizes and boxes with those in the file.
+/// \param limits  texel_bytes applies to the total of all colliders.
+/// Errors, prefixed with the file: those of parseWorld, readFile and readContainer; kInvalidInput for a path that
+/// leaves the folder, or a hash, size or box that differs; kIo for a missing container.
 [[nodiscard]] Result<LoadedWorld> loadWorld(const std::filesystem::path& path,
                                             const ContainerLimits& limits = {},
                                             WorldDetail detail = WorldDetail::kFine);
 
-/// The world alone. Errors: as loadWorld.
+/// Loads only the world file. Errors: as loadWorld.
 [[nodiscard]] Result<World> loadWorldFile(const std::filesystem::path& path);
 
-/// One of its colliders.
-/// \param folder  of the world. Errors: as loadWorld, with the collider's place in front.
+/// Loads one collider of a world.
+/// \param folder  of the world. Errors: as loadWorld, prefixed with the position of the collider.
 [[nodiscard]] Result<Collider> loadWorldCollider(const World& world, std::size_t collider, WorldDetail detail,
                                                  const std::filesystem::path& folder,
                                                  const ContainerLimits& limits = {});
-/// The same of the bytes of its container.
+/// Reads one collider from the bytes of its container.
 [[nodiscard]] Result<Collider> readWorldCollider(const World& world, std::size_t collider, WorldDetail detail,
                                                  std::span<const std::byte> bytes,
                                                  const ContainerLimits& limits = {});
