@@ -2,10 +2,8 @@
 // One depth map: its frame in object space, its texels, and its vote at a point. CPU reference of
 // shaders/collider/collider.glsl.
 //
-//
 // An orthographic map looks along +z of its map coordinates. T = object_to_map maps the map's volume to the unit cube.
 // In the texture, x runs to the right and y upwards (row 0 is y = 0); z runs from near to far:
-//
 //
 //          y                         the outermost ring of texels is an empty border: the volume that the
 //          ^   +--+--+--+--+         map speaks for is inside it

@@ -2,7 +2,6 @@
 // The materials of a collider: names, responses, and an octree that assigns a material to each point. Described in
 // README.md in this folder, "Materials"; shaders/bodies/materials.glsl implements materialAt() on the GPU.
 //
-//
 // The tree covers a cube around the collider, independent of texels, so that maps of every format share it. A cell is
 // split only if surfaces of different materials are near it. A cell without a surface gets the nearest surface's
 // material because contacts lie slightly off the surface.

@@ -13,7 +13,6 @@ inline constexpr int kNormalHalfRange = 127;
 
 /// A normal as a pair of 8-bit indices (s, t) into the 256×256 table of normals.
 ///
-///
 /// Index i encodes the coordinate (i − 127)/127 in [−1, 1], so that 0 and the six axis directions are exact. 255 is
 /// never written and decodes like 254.
 ///

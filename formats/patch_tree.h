@@ -3,7 +3,6 @@
 // 13 axes that sees its piece of surface best, so that no part of a mesh is hidden. formats/README.md specifies the
 // format and shaders/collider/patches.glsl implements it in GLSL; change all three together.
 //
-//
 // Map space is measured in root cells: the volume is [0, n.x] × [0, n.y] × [0, n.z], and cells are cubes in object
 // space. A texel has 8 bytes, four little-endian words of 16 bits. Below, `low` is the first two words and `high` the
 // last two, lowest word first.
@@ -20,8 +19,8 @@
 //               fastest); 10-17: mask of inside children among the       others follow; 24-31: distance of the cell's
 //               rest; 18-31: s and t of a coarse plane's normal, 7       centre from the coarse plane, in 128ths of the
 //               bits each                                                cell, + 128
-//     patch     3 in bits 0-1; 2-3: 0, 1 or 2 for 2², 3² or 5² heights;  0-23: texel of all heights but the last, a byte
-//               4: outside is below; 5-6: 0 axis, 1 face diagonal,       each, x fastest; for 2², these heights
+//     patch     3 in bits 0-1; 2-3: 0, 1 or 2 for 2², 3² or 5² heights;  0-23: texel of all heights except the last, a
+//               4: outside is below; 5-6: 0 axis, 1 face diagonal,       byte each, x fastest; for 2², these heights
 //               2 cube diagonal; 7-8: the first axis; 9-10: first and    themselves; 24-31: scale
 //               second axis mirrored; 11-22: base + 2048; 23-30: last
 //               height

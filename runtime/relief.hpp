@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The core for programs that embed Relief: a collider, its textures, an emitter, the particles. Installed as
-// <relief/relief.hpp>. Each layer has headers of its own: <runtime/picture/particle_renderer.h>, <runtime/air/particle_air.h>.
+// The core for programs that embed Relief: collider, textures, emitter and particles. Installed as <relief/relief.hpp>.
+// Other layers have their own headers, such as <runtime/picture/particle_renderer.h> and <runtime/air/particle_air.h>.
 #pragma once
 
 #include "formats/collider.h"

@@ -6,11 +6,11 @@
 
 namespace relief {
 
-/// The text of a shader by its path in shaders/, "collider/collider.glsl"; empty if there is none.
+/// Returns the text of a shader by its path in shaders/, such as "collider/collider.glsl"; empty if there is none.
 [[nodiscard]] std::string_view shaderSource(std::string_view path);
 
-/// The numbers that C++ and GLSL share, "#define RELIEF_TILE_SIDE 16\n" and so on (embed.cmake). They stand in front of every
-/// shader.
+/// Returns the constants shared by C++ and GLSL, "#define RELIEF_TILE_SIDE 16\n" and so on (embed.cmake). They are
+/// prepended to every shader.
 [[nodiscard]] std::string_view shaderConstants();
 
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shaders as text, with the files that they include.
+// Shader text with includes resolved.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace relief {
 
-/// A file of shaders/, "collider/collider.glsl", with its includes. Fails with kFailure (no such file).
+/// Returns a file in shaders/, such as "collider/collider.glsl", with its includes. Errors: kFailure (no such file).
 [[nodiscard]] Result<std::string> includedShader(std::string_view file);
 
 /// The first lines of an exported shader.
@@ -17,8 +17,8 @@ inline constexpr std::string_view kShaderLicence =
     "// SPDX-License-Identifier: Apache-2.0\n"
     "// From Relief, for any program: no part of it is under the GNU GPL.\n";
 
-/// The same behind those of shaderConstants() that it uses: for
-/// programs of one's own, between whose version line and text it goes.
+/// Returns the shader's text, preceded by the licence and the entries of shaderConstants() that it uses. Insert it
+/// after the version line of your own program.
 [[nodiscard]] Result<std::string> shaderText(std::string_view file);
 
 }  // namespace relief

@@ -107,9 +107,8 @@ struct AnimatedMesh {
     std::vector<MeshClip> clips;
     /// Names: clean UTF-8, unique; "" stands for all unnamed materials. Empty if the file has no materials.
     std::vector<std::string> materials;
-    std::vector<std::uint16_t>
-        triangle_materials;  ///< index into `materials` for each triangle; empty if `materials`
-                             ///< is
+    /// Index into `materials` for each triangle; empty if `materials` is.
+    std::vector<std::uint16_t> triangle_materials;
     friend bool operator==(const AnimatedMesh&, const AnimatedMesh&) = default;
 };
 

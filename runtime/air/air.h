@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Forces on a particle besides collision and gravity: moving air, which acts through drag, and fields,
-// which accelerate. Plain settings; shaders/air/air.glsl computes with them, and air_block.h brings them there.
+// Forces on particles besides collision and gravity: moving air, which acts through drag, and force fields, which
+// accelerate. These are plain settings; air_block.h uploads them and shaders/air/air.glsl evaluates them.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -16,26 +16,26 @@
 
 namespace relief {
 
-/// Pulls towards a point, all particles alike. `strength` is the acceleration at distance `radius`, its
-/// greatest: inside it falls off linearly to 0 at the point, outside as (radius / distance)^falloff. With
-/// falloff 2 it is the gravity of a ball of even density.
+/// Pulls all particles towards a point. `strength` is the maximum acceleration, reached at distance `radius`. Inside
+/// the radius it decreases linearly to 0 at the point; outside it decreases as (radius / distance)^falloff. Falloff 2
+/// is the gravity of a ball of uniform density.
 struct Attractor {
     glm::vec3 position{0.0F};                         ///< object units
-    float strength = 0.0F;                            ///< object units a second squared; below 0 it repels
+    float strength = 0.0F;                            ///< object units/s²; negative: repels
     float radius = 1.0F;                              ///< object units, > 0
     int falloff = 2;                                  ///< 0, 1 or 2
-    float reach = std::numeric_limits<float>::max();  ///< object units, > 0; nothing beyond
+    float reach = std::numeric_limits<float>::max();  ///< object units, > 0; no effect beyond
     friend bool operator==(const Attractor&, const Attractor&) = default;
 };
 
 void fields(FieldVisitor& visit, Attractor& a);
 
-/// Drives round a straight line, right-handed about `axis`; along and across it, it does nothing. The
-/// strength goes with the distance from the line as an attractor's does with that from the point.
+/// Accelerates particles around a straight line, right-handed about `axis`, with no radial or axial component. The
+/// strength depends on the distance from the line as an attractor's does on the distance from its point.
 struct Vortex {
     glm::vec3 center{0.0F};            ///< a point on the line, object units
-    glm::vec3 axis{0.0F, 1.0F, 0.0F};  ///< the line's direction, of any length but 0
-    float strength = 0.0F;             ///< object units a second squared; below 0 it turns the other way
+    glm::vec3 axis{0.0F, 1.0F, 0.0F};  ///< direction of the line, nonzero, any length
+    float strength = 0.0F;             ///< object units/s²; negative: opposite rotation
     float radius = 1.0F;               ///< object units, > 0
     int falloff = 1;                   ///< 0, 1 or 2
     friend bool operator==(const Vortex&, const Vortex&) = default;
@@ -43,7 +43,7 @@ struct Vortex {
 
 void fields(FieldVisitor& visit, Vortex& v);
 
-/// The greatest strength over the radius stays a float.
+/// Raises tiny radii so that strength / radius does not overflow a float.
 template <class Field>
 requires std::same_as<Field, Attractor> || std::same_as<Field, Vortex> std::optional<FieldFault> check(
     Field& field, const GivenFields& /*given*/) {
@@ -55,25 +55,25 @@ struct AirSettings {
     static constexpr std::size_t kAttractorsMax = kAirFieldsMax;
     static constexpr std::size_t kVorticesMax = kAirFieldsMax;
 
-    glm::vec3 wind{0.0F};                   ///< object units a second, everywhere
-    std::shared_ptr<const FlowField> flow;  ///< may be null; shared, for it may be large
+    glm::vec3 wind{0.0F};                   ///< object units/s, uniform
+    std::shared_ptr<const FlowField> flow;  ///< may be null; shared because it may be large
     std::optional<CurlNoise> curl_noise;
-    std::vector<Attractor> attractors;  ///< kAttractorsMax at most
-    std::vector<Vortex> vortices;       ///< kVorticesMax at most
-    /// Dynamic viscosity, object mass units / (object length units · s), ≥ 0: drag by Stokes' law, other for
-    /// every size and mass of particle. Without it drag is one rate for all.
+    std::vector<Attractor> attractors;  ///< at most kAttractorsMax
+    std::vector<Vortex> vortices;       ///< at most kVorticesMax
+    /// Dynamic viscosity, object mass units / (object length units · s), ≥ 0. Enables drag by Stokes' law, which
+    /// depends on a particle's size and mass. If unset, all particles have one drag rate.
     std::optional<float> viscosity;
     friend bool operator==(const AirSettings&, const AirSettings&) = default;
 };
 
-/// The tables of a scene that describe forces; wind and viscosity are in its [forces].
+/// Visits the scene tables of forces; wind and viscosity belong to its [forces].
 void fields(FieldVisitor& visit, AirSettings& air);
 
-/// Fails as checkFlow does, and with kUsage (a number out of the range given above, too many).
+/// Checks all settings. Errors: those of checkFlow; kUsage (a number out of range, too many fields).
 [[nodiscard]] Result<void> checkAir(const AirSettings& air);
 
-/// The time to hand to the shader, from seconds since the start. Count them
-/// in a double, and not by a particle system's own clock, which is set back now and then.
+/// Converts seconds since the start into the shader's time. Count them in a double. Do not use a particle system's own
+/// clock, which is set back periodically.
 [[nodiscard]] float airTime(const AirSettings& air, double seconds);
 
 }  // namespace relief

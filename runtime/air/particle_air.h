@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Moving air and fields in the step of a particle system.
+// Adds moving air and force fields to a particle system.
 #pragma once
 
 #include "formats/base/result.h"
@@ -8,8 +8,8 @@
 
 namespace relief {
 
-/// Moving air and fields from the next step on. Its wind takes the place of Forces::wind; its viscosity is ignored, because
-/// Forces has one. Fails as AirBlock::create and ParticleSystem::replaceFeature do.
+/// Sets the air for subsequent steps. Its wind replaces Forces::wind. Its viscosity is ignored; set Forces::viscosity
+/// instead. Errors: those of AirBlock::create and ParticleSystem::replaceFeature.
 [[nodiscard]] Result<void> setAir(ParticleSystem& particles, const AirSettings& air);
 
 }  // namespace relief

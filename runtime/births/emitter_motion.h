@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Emitters that go along a trajectory or with a body, and births that a filter lets pass.
+// Emitters that follow a trajectory or a body, and filters of births.
 #pragma once
 
 #include <cstdint>
@@ -13,36 +13,37 @@
 
 namespace relief {
 
-/// Which births come into being: one for each. The others are made all the same, so that these do not depend on them.
-/// \param births      of one emitter in one step, in the world.
-/// \param velocities  of their places, world units a second.
-/// \param time        when they enter a step: the `time` of carry().
+/// Selects births: returns one flag for each. Rejected births are still generated, so that the others do not depend on
+/// the filter.
+/// \param births      of one emitter in one step, world space.
+/// \param velocities  of their emitting points, world units/s.
+/// \param time        start of the step, the `time` of carry().
 using BirthFilter = std::function<std::vector<bool>(std::span<const Birth> births,
                                                     std::span<const glm::vec3> velocities, double time)>;
-/// Births of an emitter with a filter that a step makes at most; the rest is refused.
+/// Maximum births per step of an emitter with a filter; the rest are refused.
 inline constexpr std::uint64_t kFilteredMax = std::uint64_t{1} << 20;
 
-/// The trajectory that carries an emitter's births. Its places are then in a space of its own, which `keys` bring into the
-/// space of the body, and `body` into the world; a scale scales places, but no velocities.
+/// The trajectory of an emitter. Its points are in emitter space; `keys` transform them into the space of a body, and
+/// `body` transforms that into the world. Scales affect positions, but not velocities.
 struct EmitterMotion {
-    std::vector<PoseKey> keys;  ///< empty: its space is that of the body
-    std::vector<PoseKey> body;  ///< one key: a body at rest; empty: the space of the body is the world
-    float inherit = 0.0F;       ///< share of the velocity of its place that a birth takes on
-    BirthFilter filter = {};    ///< of emitAll(); empty: all births come into being
+    std::vector<PoseKey> keys;  ///< empty: emitter space is body space
+    std::vector<PoseKey> body;  ///< one key: a static body; empty: body space is world space
+    float inherit = 0.0F;       ///< fraction of the emitting point's velocity that a birth inherits
+    BirthFilter filter = {};    ///< used by emitAll(); empty: all births are kept
     [[nodiscard]] bool none() const { return keys.empty() && body.empty(); }
 };
 
-/// Brings births into the world: each from where the emitter is at its own moment, `age` before `time`.
-/// \param time  when they enter a step: its beginning, seconds on the clock of the keys.
-/// \param own   velocities of their places in the emitter's space, of which they take on a share as well; empty: none moves.
-/// \param velocities  becomes those of their places in the world; may be null.
+/// Transforms births into the world. Each uses the emitter's pose at its own moment, `age` before `time`.
+/// \param time  start of the step that they enter, in seconds on the clock of the keys.
+/// \param own   velocities of the emitting points in emitter space, inherited likewise; empty: zero.
+/// \param velocities  receives the world-space velocities of the emitting points; may be null.
 void carry(const EmitterMotion& motion, double time, std::span<Birth> births,
            std::span<const glm::vec3> own = {}, std::vector<glm::vec3>* velocities = nullptr);
 
-/// emit() of each in turn: where there is too little room, the earlier ones take it.
-/// \param motions  of as many, or none: they carry the births along, at once, and filter them. What a filter drops takes no room.
-/// \param time     of the beginning of these `dt` seconds, on the clock of the motions.
-/// \return the sum.
+/// Calls emit() for each emitter in turn; if room is short, earlier emitters get it.
+/// \param motions  one for each emitter, or empty: they transform and filter the births. Filtered births take no room.
+/// \param time     start of these `dt` seconds, on the clock of the motions.
+/// \return the sum of the values that emit() returned.
 std::uint64_t emitAll(std::span<Emitter> emitters, double dt, std::uint64_t room, std::vector<Birth>& births,
                       std::span<const EmitterMotion> motions = {}, double time = 0.0);
 

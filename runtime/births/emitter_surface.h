@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles that give birth: uniform by their area, which moves and bends with its vertices.
+// Emits from triangles, uniformly by area; the surface may move and deform with its vertices.
 //
 //     EmitterSurface surface = *EmitterSurface::create(triangles, weights, positions);
-//     surface.move(before, now, dt);               // each step in which something is born
+//     surface.move(before, now, dt);               // each step with births
 //     EmitterSurface::Place at = surface.draw(random, age);
 //
-// Between the two ends of a step a vertex goes along a straight line at an even speed. Of one that goes round at ω radians a second at a
-// distance r from its axis that is off by r (ω dt)² / 8 at most, and its velocity by r ω² dt / 2. Areas are those of the end; so where time is
-// cut differently, of the births that a stretching surface makes a share as small as its stretch within a step lies on another triangle.
+// Between the two ends of a step, vertices move along straight lines at constant speed. For rotation at ω rad/s at
+// distance r from the axis, positions are off by at most r (ω dt)² / 8 and velocities by r ω² dt / 2. Areas are those
+// at the end of the step. On a stretching surface, the triangle of a birth therefore depends on the step length, for a
+// fraction of births as small as the stretch within a step.
 #pragma once
 
 #include <cstddef>
@@ -27,12 +28,13 @@ class EmitterSurface : public BirthSurface {
   public:
     static constexpr std::size_t kTrianglesMax = std::size_t{1} << 22;
 
-    /// Without triangles: nothing is born.
+    /// Has no triangles and emits nothing.
     EmitterSurface() = default;
-    /// At rest.
-    /// \param triangles  of indices of positions, anticlockwise seen from outside. Those without area or weight are left out.
-    /// \param weights    density of the births at each position, ≥ 0, linear in between; empty: 1 everywhere.
-    /// Errors: kUsage (an index, a number), kLimit (more than kTrianglesMax), kInvalidInput (no area that has a weight).
+    /// Creates a surface at rest.
+    /// \param triangles  indices into positions, counter-clockwise seen from outside. Triangles without area or weight
+    /// are ignored.
+    /// \param weights    density of births at each position, ≥ 0, interpolated linearly; empty: 1 everywhere.
+    /// Errors: kUsage (an invalid index or number), kLimit (more than kTrianglesMax), kInvalidInput (no weighted area).
     [[nodiscard]] static Result<EmitterSurface> create(std::span<const glm::uvec3> triangles,
                                                        std::vector<float> weights,
                                                        std::vector<glm::vec3> positions);
@@ -42,7 +44,7 @@ class EmitterSurface : public BirthSurface {
     [[nodiscard]] std::unique_ptr<BirthSurface> clone() const override {
         return std::make_unique<EmitterSurface>(*this);
     }
-    /// \param before, now  vertices() each. Takes a time by its triangles.
+    /// \param before, now  vertices() each. Costs time per triangle.
     void move(std::span<const glm::vec3> before, std::span<const glm::vec3> now, double seconds) override;
     [[nodiscard]] double area() const override { return upto_.empty() ? 0.0 : upto_.back(); }
     [[nodiscard]] Bounds bounds() const override;
@@ -54,9 +56,9 @@ class EmitterSurface : public BirthSurface {
 
     std::vector<glm::uvec3> triangles_;
     std::vector<float> weights_;
-    std::vector<glm::vec3> begin_;  // empty: it does not move
+    std::vector<glm::vec3> begin_;  // empty if at rest
     std::vector<glm::vec3> end_;
-    std::vector<double> upto_;  // of triangle i: Σ area · weight of those up to it
+    std::vector<double> upto_;  // prefix sums of area · weight, up to and including triangle i
     double seconds_ = 0.0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh that bends, at the last two moments that were shown: between these fall the births on its surface.
+// The last two poses of a deforming mesh; births on its surface are interpolated between them.
 #pragma once
 
 #include <functional>
@@ -13,31 +13,32 @@ namespace relief {
 
 class MeshTrail {
   public:
-    /// Called once at most, when something is to be born.
+    /// Called at most once, when a birth needs the vertices.
     using Vertices = std::function<std::vector<glm::vec3>()>;
 
-    /// \param time   seconds. \param vertices  as they are then, object space.
-    /// \param jumps  from the moment before; as where the time does not rise.
+    /// Records the current pose.
+    /// \param time      seconds. \param vertices  at that time, object space.
+    /// \param jumps     do not interpolate from the previous pose; also assumed if the time does not increase.
     void show(double time, Vertices vertices, bool jumps);
 
     [[nodiscard]] bool empty() const { return !now_; }
 
-    /// It has not moved since the last moment.
+    /// Records that the mesh has not moved since the last pose.
     void hold() { before_.reset(); }
 
-    /// Moves the surface of an emitter, of the same vertices, to where it is; once show() has been called.
-    /// \param seconds  between the two moments, instead of the difference of their times.
+    /// Moves an emitter's surface, which must have the same vertices, to the current pose. Call show() first.
+    /// \param seconds  duration between the two poses; nullopt: the difference of their times.
     void bend(Emitter& emitter, std::optional<double> seconds = std::nullopt);
 
   private:
     struct Moment {
         double time = 0.0;
         Vertices make;
-        std::vector<glm::vec3> made = {};  // empty: not yet
+        std::vector<glm::vec3> made = {};  // empty until needed
 
         const std::vector<glm::vec3>& vertices();
     };
-    std::optional<Moment> before_;  // nullopt: it jumped
+    std::optional<Moment> before_;  // nullopt after a jump
     std::optional<Moment> now_;
 };
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The broad phase of a world: which bodies a point may be in. Plain arithmetic, no GL.
+// The broad phase of a world: finds the bodies that a point may be in. Independent of GL.
 //
-// A body's box goes to the level whose cells are some times smaller, a power of 2, and there into the cells that it meets, turned
-// as it is. The cells of a level lie in a hash table of lists, a power of two of them:
+// Each body is assigned to a level by the size of its box; cell sizes are powers of 2. It is inserted into the cells of
+// that level that its oriented box intersects. The cells of a level are hashed into a power-of-two table of lists:
 //
 //     floor(p / cell size)  ──hash──▶  list [first, end)  ──▶  entries: body, hash of its cell
 //
-// A point asks one list of each level. Levels of few bodies join the next coarser one: each costs every point a look.
+// A point queries one list per level. Levels with few bodies are merged into the next coarser one because every level
+// costs every point a query.
 #pragma once
 
 #include <cstdint>
@@ -18,31 +19,31 @@
 
 namespace relief {
 
-/// The box of a body in the world.
+/// The oriented box of a body in the world.
 struct BodyBox {
     glm::vec3 center{0.0F};
-    glm::mat3 half{0.0F};  ///< columns: from the centre to its sides, at right angles to each other
-    float margin = 0.0F;   ///< around it
+    glm::mat3 half{0.0F};  ///< columns: from the centre to its sides, mutually perpendicular
+    float margin = 0.0F;   ///< added around the box
     std::uint32_t body = 0;
-    bool unbounded = false;  ///< met by every point: a list of its own holds these
+    bool unbounded = false;  ///< intersects every point; stored in a separate list
 
-    /// From the centre to the sides of the box around it whose edges are along the axes.
+    /// Returns half the sides of the enclosing axis-aligned box.
     [[nodiscard]] glm::vec3 extent() const {
         return glm::abs(half[0]) + glm::abs(half[1]) + glm::abs(half[2]) + margin;
     }
 };
 
-/// Levels of one grid, at most.
+/// Maximum levels of a grid.
 inline constexpr std::size_t kGridLevelsMax = 8;
 
 struct BodyGrid {
     struct Level {
         float cells_per_unit = 0.0F;  ///< a power of 2; 0: all points are in cell 0
-        std::uint32_t first = 0;      ///< of its lists
-        std::uint32_t mask = 0;       ///< of the hash
+        std::uint32_t first = 0;      ///< index of its first list
+        std::uint32_t mask = 0;       ///< mask applied to the hash
     };
     struct List {
-        std::uint32_t first = 0;  ///< of `entries`
+        std::uint32_t first = 0;  ///< index into `entries`
         std::uint32_t end = 0;
     };
     struct Entry {
@@ -51,15 +52,16 @@ struct BodyGrid {
     };
     std::vector<Level> levels;
     std::vector<List> lists;
-    std::vector<Entry> entries;  ///< of a list by rising body
+    std::vector<Entry> entries;  ///< each list is sorted by body
 
-    /// \param boxes  finite where they are bounded, and no coordinate above 1e9 cells.
-    /// \param cell_size  of the longest side of a body, at least; at most twice that. Small cells have short lists, and more
-    ///     entries.
+    /// Builds a grid.
+    /// \param boxes  finite unless unbounded; no coordinate exceeds 1e9 cells.
+    /// \param cell_size  cell size relative to the longest side of a body, rounded up by less than a factor of 2.
+    /// Smaller cells give shorter lists but more entries.
     [[nodiscard]] static BodyGrid of(std::span<const BodyBox> boxes, float cell_size);
 };
 
-/// The hash of a cell, as bodies/bodies.glsl finds it.
+/// Returns the hash of a cell; must match bodies/bodies.glsl.
 [[nodiscard]] std::uint32_t cellHash(const glm::ivec3& cell);
 
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The materials of bodies as words, for the texture that shaders/bodies/materials.glsl reads. Plain arithmetic, no GL.
+// The materials of bodies as words for the texture that shaders/bodies/materials.glsl reads. Independent of GL.
 #pragma once
 
 #include <cstdint>
@@ -12,24 +12,25 @@
 
 namespace relief {
 
-/// Of a body: materials.glsl.
+/// Materials of one body; must match materials.glsl.
 struct MaterialHead {
     glm::vec4 cube{0.0F};  ///< lowest corner, object space, and 1 / side
-    glm::ivec4 grids{0};   ///< texels of the first material and of the top grid, log2 of the cells of both
+    glm::ivec4 grids{
+        0};  ///< texel index of the first material and of the top grid, log2 of the cells of both
 };
 
 struct MaterialTable {
     std::vector<std::string>
-        names;  ///< different ones, in the order of the bodies; empty: there are no materials
-    std::vector<glm::uvec4> texels;  ///< of the texture, row by row; none without names
-    int log2_width = 0;              ///< of its rows; it is no higher than wide
-    int bricks = 0;                  ///< one within the other at most
-    bool responds = false;           ///< some material changes what particles do
-    bool loses = false;              ///< some material costs lifetime
-    MaterialHead head;               ///< of a single body
+        names;  ///< unique names, in the order of the bodies; empty: there are no materials
+    std::vector<glm::uvec4> texels;  ///< texture texels, row by row; empty if `names` is
+    int log2_width = 0;              ///< of the row length; the height does not exceed it
+    int bricks = 0;                  ///< maximum nesting depth
+    bool responds = false;           ///< a material changes the reaction of particles
+    bool loses = false;              ///< a material costs lifetime
+    MaterialHead head;               ///< for a single body
 };
 
-/// \param bodies  the materials of each; null, or empty: it has none. Bodies may share some.
+/// Builds the table. \param bodies  materials of each body; null or empty for none. Bodies may share materials.
 [[nodiscard]] MaterialTable makeMaterialTable(std::span<const Materials* const> bodies);
 
 }  // namespace relief

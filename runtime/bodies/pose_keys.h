@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A trajectory through the world: poses at times, with straight lines and even turns between them.
+// A trajectory through the world: keyed poses with linear interpolation of positions and constant-speed rotation.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -10,23 +10,22 @@
 namespace relief {
 
 struct PoseKey {
-    double time = 0.0;  ///< seconds since the beginning
+    double time = 0.0;  ///< equal for all keys
     Pose pose;          ///< its scale is that of every other key
     friend bool operator==(const PoseKey&, const PoseKey&) = default;
 };
 
-/// The motion of a rigid body: a point q of it goes with velocity + turn × (q − position of the pose).
+/// The motion of a rigid body: a point q of it moves at velocity + turn × (q − position of the pose).
 struct Motion {
-    glm::vec3 velocity{0.0F};  ///< of the pose's position, world units a second
-    glm::vec3 turn{0.0F};      ///< right-handed, radians a second
+    glm::vec3 velocity{0.0F};  ///< of the pose's position, world units/s
+    glm::vec3 turn{0.0F};      ///< angular velocity, right-handed, rad/s
 };
 
-/// The pose at a time; before the first key and after the last it rests. Between two keys it turns the shorter way
-/// round; half a turn goes as the keys' quaternions have it: from 0 to 180 degrees about an axis right-handed, from 0 to
-/// -180 left-handed.
-/// \param keys  at least one, their times rising.
+/// Returns the pose at a time; constant before the first key and after the last. Rotations take the shorter arc. For
+/// half turns, the keys' quaternions decide: 0 to 180 degrees about an axis is right-handed, 0 to -180 left-handed.
+/// \param keys  at least one, in ascending order of time.
 [[nodiscard]] Pose poseAt(std::span<const PoseKey> keys, double time);
-/// The motion at a time; at a key that of the piece after it.
+/// Returns the motion at a time; at a key, that of the following segment.
 [[nodiscard]] Motion motionAt(std::span<const PoseKey> keys, double time);
 
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bodies of a world (formats/world) as WorldTextures takes them.
+// Converts the bodies of a world (formats/world) into the input of WorldTextures.
 //
 //     const LoadedWorld level = *loadWorld("level/world.json");
 //     WorldTextures textures = *WorldTextures::create(worldBodies(level));
@@ -7,7 +7,7 @@
 //     for (const std::size_t tile : findBodies(level.world, "door")) {
 //         poses[tile].position.y += 0.1F;
 //     }
-//     textures.setPoses(poses);   // before each step while the door moves, and once more when it has stopped
+//     textures.setPoses(poses);   // before each step while the door moves, and once after it stops
 #pragma once
 
 #include <vector>
@@ -18,10 +18,10 @@
 
 namespace relief {
 
-/// In the world's order, each with its pose and response. They point to the colliders of `world`, which must stay until they
-/// are uploaded.
+/// Returns the bodies in world order, with poses and responses. They point to colliders of `world`, which must outlive
+/// their upload.
 [[nodiscard]] std::vector<ColliderBody> worldBodies(const LoadedWorld& world);
-/// The poses of all bodies, in the world's order.
+/// Returns the poses of all bodies, in world order.
 [[nodiscard]] std::vector<Pose> worldPoses(const World& world);
 
 }  // namespace relief

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colliders with poses and materials on the GPU: a world of bodies, which takes a texture beside those of the maps
-// (body_table.h), or one collider in its own object space. The materials of those that have some lie in one more texture, of
-// RGBA32UI (material_table.h); only steps read it.
+// Colliders with poses and materials on the GPU: either a world of bodies, which uses an additional texture
+// (body_table.h), or a single collider in its own object space. Materials are stored in one more texture of RGBA32UI
+// (material_table.h), which only steps read.
 //
-// The maps of a live body (runtime/live) have no texels yet: each gets a rectangle of its texture to be
-// drawn to, below what is packed, and one of the float texture, of RGBA32F, for how the surface in each of
-// its texels moves: a rectangle for the front and one above it for the back.
+// The maps of a live body (runtime/live) have no texels at first. Each gets a rectangle of its texture to render into,
+// below the packed texels. Each also gets a rectangle of the float texture (RGBA32F) for the motion of the surface in
+// each texel: one half for the front and one above it for the back.
 #pragma once
 
 #include <cstddef>
@@ -26,22 +26,22 @@
 
 namespace relief {
 
-/// A collider with a place in the world.
+/// A collider placed in the world.
 struct ColliderBody {
-    const Collider* collider = nullptr;  ///< for create() alone
+    const Collider* collider = nullptr;  ///< used only by create()
     Pose pose{};
-    float restitution = 1.0F;  ///< factor of the particle's own, 0…1
-    /// ν, 0…1: what is left of the tangential speed is (1 − ν) of the particle's share.
+    float restitution = 1.0F;  ///< multiplies the particle's restitution, 0…1
+    /// ν, 0…1: (1 − ν) multiplies the particle's own factor on tangential speed.
     float friction = 0.0F;
-    bool live = false;  ///< the collider's maps have no texels yet; these are drawn later
-    /// 0 to 7: the bit of ParticleType::collides that it answers to. Without one the body's own number, or 7 beyond that.
+    bool live = false;  ///< the collider's maps have no texels yet; they are rendered later
+    /// Bit of ParticleType::collides for this body, 0 to 7. nullopt: the index of the body, at most 7.
     std::optional<std::uint32_t> group = {};
 };
 
-/// The place of the texels of a live map.
+/// Where the texels of a live map are rendered.
 struct LiveSlot {
-    const GlTexture* texels = nullptr;  ///< the texture of its layout
-    GLint x = 0;                        ///< of its texel (0, 0)
+    const GlTexture* texels = nullptr;  ///< texture of its layout
+    GLint x = 0;                        ///< position of its texel (0, 0)
     GLint y = 0;
     const GlTexture* motion = nullptr;  ///< the float texture
     GLint motion_x = 0;
@@ -53,41 +53,42 @@ class WorldTextures : public ShaderCollider {
     static constexpr std::size_t kBodiesMax = 65'536;
     static constexpr std::uint32_t kGroups = 8;
 
-    /// Uploads a collider in its own object space, with its materials. Fails as ColliderTextures::create does.
+    /// Uploads a collider in its own object space, with its materials. Errors: those of ColliderTextures::create.
     [[nodiscard]] static Result<WorldTextures> create(const Collider& collider);
-    /// Uploads up to kBodiesMax of them, which share a world; a collider that several have, once. The maps of those that
-    /// are live are empty at first. Fails as above, and with kLimit (more bodies) and kUsage (a scale that is not above 0,
-    /// a pose that is not finite, a share outside 0…1, a group above 7).
-    /// \param room_texels  for maps of patches that come later: upload().
+    /// Uploads up to kBodiesMax bodies that share a world. A collider that several bodies use is uploaded once. The
+    /// maps of live bodies are empty at first.
+    /// \param room_texels  reserved for maps of patches that upload() adds later.
+    /// Errors: as above; kLimit (too many bodies), kUsage (a scale that is not above 0, a pose that is not finite, a
+    /// factor outside 0…1, a group above 7).
     [[nodiscard]] static Result<WorldTextures> create(std::span<const ColliderBody> bodies,
                                                       std::size_t room_texels = 0);
 
-    /// The first texel of that room.
+    /// Returns the first reserved texel.
     [[nodiscard]] std::size_t room() const { return room_; }
-    /// The most texels of patches that a texture of this GL holds, those of the bodies included.
+    /// Returns the maximum patch texels in a texture of this GL, including those of the bodies.
     [[nodiscard]] static std::size_t texelsMost();
-    /// The texels in a row of the room's texture.
+    /// Returns the texels per row of the texture with the reserved range.
     [[nodiscard]] std::size_t rowTexels() const { return std::size_t{1} << room_log2_width_; }
-    /// Copies texels of a map of patches into the room, for exchange(). Waits for nothing.
-    /// \param first  texel of the room, counted as room() is.
-    /// \param texels  whole ones, of 8 bytes, or a part of them.
+    /// Copies texels of a map of patches into the reserved range, for exchange(). Does not wait.
+    /// \param first  texture texel, counted as room() is.
+    /// \param texels  whole texels of 8 bytes; may be part of a map.
     void upload(std::size_t first, std::span<const std::byte> texels);
-    /// Gives all bodies that have the collider of a body another map of patches, whose texels lie in the room, or that with which
-    /// they were made.
-    /// \param first  its first texel; none: where the one that they were made with lies.
-    /// Errors: kUnsupported: not a single map of patches, or of other flags than the one before.
+    /// Gives all bodies that share this body's collider another map of patches from the reserved range, or restores
+    /// their original map.
+    /// \param first  first texel of the new map; nullopt: the original map.
+    /// Errors: kUnsupported (not a single map of patches, or flags that differ from the previous map).
     [[nodiscard]] Result<void> exchange(std::size_t body, const Collider& collider,
                                         std::optional<std::size_t> first);
 
-    /// The poses at the end of the next step; those of the call before become those at its beginning. Call it
-    /// before each step while anything moves, and once more when it has stopped. Bodies beyond poses.size() stay. Scales
-    /// may not change. Costs time by the bodies that have ever moved.
+    /// Sets the poses at the end of the next step; the poses of the previous call become those at its start. Call it
+    /// before each step while anything moves, and once after it stops. Bodies beyond poses.size() are unchanged. Scales
+    /// must not change. Costs time per body that has ever moved.
     void setPoses(std::span<const Pose> poses);
 
-    /// One slot for each map of a live body, in their order; none for another body. The textures are this
-    /// object's: call again after it has been moved.
+    /// Returns one slot for each map of a live body, in order; empty for other bodies. The textures belong to this
+    /// object: call again after moving it.
     [[nodiscard]] std::vector<LiveSlot> liveSlots(std::size_t body) const;
-    /// After the texels of a live body have changed.
+    /// Call after the texels of a live body have changed.
     void noteLiveUpdate() { ++revision_; }
 
     using ShaderCollider::attach;
@@ -108,29 +109,29 @@ class WorldTextures : public ShaderCollider {
   private:
     struct World {
         BodyTable bodies;
-        glm::ivec4 head{0};  // of the block
+        glm::ivec4 head{0};  // part of the block
         GlTexture texture;
         GlBuffer upload;
     };
-    /// \param materials  of each body.
+    /// \param materials  one for each body.
     [[nodiscard]] static Result<WorldTextures> upload(std::span<const PlacedMap> maps,
                                                       std::vector<TableBody> bodies,
                                                       std::span<const Materials* const> materials,
                                                       std::size_t room_texels = 0);
     [[nodiscard]] Result<void> uploadMaterials(std::span<const Materials* const> bodies);
-    /// Takes over what has changed in world_.
+    /// Uploads the changes in world_.
     void updateWorld() const;
 
-    std::vector<MapPlace> places_;  // of the maps
+    std::vector<MapPlace> places_;  // one for each map
     MapTextures maps_;
     std::string defines_;
-    std::unique_ptr<World> world_;  // null: one collider
+    std::unique_ptr<World> world_;  // null for a single collider
     std::uint64_t revision_ = 0;
-    MaterialTable materials_;  // without its texels
+    MaterialTable materials_;  // without texels
     GlTexture material_texture_;
     std::size_t material_bytes_ = 0;
     std::size_t room_ = 0;
-    int room_log2_width_ = 0;  // of its texture
+    int room_log2_width_ = 0;  // of the texture with the reserved range
 };
 
 }  // namespace relief

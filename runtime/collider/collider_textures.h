@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One collider on the GPU, in its own object space. Worlds of bodies, and materials, are the layer runtime/bodies.
+// One collider on the GPU, in its own object space. runtime/bodies adds worlds of bodies and materials.
 //
 //     const Collider bunny = *readContainer(bytes);
 //     ColliderTextures textures = *ColliderTextures::create(bunny);
@@ -20,8 +20,8 @@ namespace relief {
 class ColliderTextures : public ShaderCollider {
   public:
     /// Uploads a collider without its materials. Needs a current context.
-    /// Errors: kLimit (the texels or the number of maps above what this GL takes; the message has both
-    /// numbers), kUnsupported (no maps).
+    /// Errors: kLimit (more texels or maps than this GL supports; the message contains both numbers), kUnsupported (no
+    /// maps).
     [[nodiscard]] static Result<ColliderTextures> create(const Collider& collider);
 
     using ShaderCollider::attach;
@@ -32,7 +32,7 @@ class ColliderTextures : public ShaderCollider {
     [[nodiscard]] int mapCount() const override { return maps_.count(); }
     [[nodiscard]] std::size_t bytes() const override { return maps_.bytes(); }
 
-    /// For a layer that adds to a single collider.
+    /// Moves the maps out, for layers that extend a single collider.
     [[nodiscard]] MapTextures takeMaps() && { return std::move(maps_); }
 
   private:

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The maps of colliders on the GPU: three textures and a uniform block, read by shaders/collider/collider.glsl.
 //
-// Maps of one texel layout share a 2-D texture: RGBA32F for float, RGBA8 for fixed8 and cube, RGBA16UI for
-// front-back of either depth and patches. Their texels (runtime/layout/gpu_image.h) follow each other as they do in the
-// container, wrapped at the texture's width. So a texture takes the bytes of its maps and less than a row more:
+// Maps with the same texel layout share a 2-D texture: RGBA32F for float, RGBA8 for fixed8 and cube, RGBA16UI for
+// front-back of either depth and for patches. Texels are in container order (runtime/layout/gpu_image.h), wrapped at
+// the texture's width. A texture therefore takes the bytes of its maps plus less than one row:
 //
 //     bytes on the GPU < Σ texel bytes + Σ over the textures: width · texel size
 //
-// The width is the least power of two that makes the texture no higher than wide.
+// The width is the smallest power of two for which the height does not exceed the width.
 #pragma once
 
 #include <array>
@@ -23,16 +23,16 @@ namespace relief {
 
 class MapTextures {
   public:
-    /// The longest side of a texture of this GL, texels.
+    /// Returns the maximum texture side of this GL, in texels.
     [[nodiscard]] static GLint sideMax();
 
     MapTextures() = default;
-    /// Uploads the maps that are not live, with the state of a pass (PassState). The block is empty at first. Its caller checks
-    /// that the GL had the memory (checkAllocated).
+    /// Uploads the maps that are not live. Call it inside a PassState. The block is empty at first. The caller checks
+    /// for out-of-memory errors (checkAllocated).
     MapTextures(std::span<const PlacedMap> maps, const MapLayout& layout);
 
     void setBlock(std::span<const std::byte> block) const;
-    /// The functions of ShaderCollider with these names, for the maps and the block.
+    /// Implement the ShaderCollider functions of the same names for maps and block.
     void attach(GLuint program, const ShaderCollider::Binding& binding) const;
     void bind(const ShaderCollider::Binding& binding) const;
     void bindStorage(int binding) const;

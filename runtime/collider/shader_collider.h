@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inputs of shaders that include collider/collider.glsl: a collider in its own object space (ColliderTextures), or a world
-// of bodies (runtime/bodies).
+// The inputs of shaders that include collider/collider.glsl: a collider in its own object space (ColliderTextures) or a
+// world of bodies (runtime/bodies).
 #pragma once
 
 #include <cstddef>
@@ -14,44 +14,48 @@ namespace relief {
 
 class ShaderCollider {
   public:
-    /// Texture units and the uniform block binding that bind() uses: `first_unit`, + 1, + 2, and for a world one more.
+    /// Texture units and uniform block binding used by bind(): `first_unit` and the next two; worlds also use
+    /// `world_unit`.
     struct Binding {
         int first_unit = 0;
         int uniform_block = 0;
         int world_unit = 9;
-        int material_unit = 10;  ///< of bindMaterials() only
+        int material_unit = 10;  ///< used only by bindMaterials()
     };
 
     virtual ~ShaderCollider() = default;
 
-    /// Connects a program: samplers, block binding. Once after linking; leaves the program current.
+    /// Connects a program: samplers and block binding. Call it once after linking; it leaves the program current.
     virtual void attach(GLuint program, const Binding& binding) const = 0;
     void attach(const GlProgram& program, const Binding& binding) const { attach(program.name(), binding); }
     /// Binds textures and block for the next draw.
     virtual void bind(const Binding& binding) const = 0;
-    /// Binds the block's buffer as shader storage as well, for a compute shader (collider_tour.glsl). Needs hasCompute().
+    /// Also binds the block's buffer as shader storage, for compute shaders (collider_tour.glsl). Requires
+    /// hasCompute().
     virtual void bindStorage(int binding) const = 0;
-    /// Lines for makeProgram (runtime/layout/collider_block.h).
+    /// Returns lines for makeProgram (runtime/layout/collider_block.h).
     [[nodiscard]] virtual const std::string& defines() const = 0;
     [[nodiscard]] virtual int mapCount() const = 0;
-    /// Of maps and materials on the GPU.
+    /// Returns the bytes of maps and materials on the GPU.
     [[nodiscard]] virtual std::size_t bytes() const = 0;
 
-    /// The radius of the largest ball that a shader will query, so that a world finds the bodies that such a ball meets.
+    /// Sets the radius of the largest ball that a shader will query, so that the broad phase of a world finds all
+    /// bodies it touches.
     virtual void reach(float /*radius*/) const {}
-    /// 0 for one collider in its own space.
+    /// Returns 0 for a single collider in its own space.
     [[nodiscard]] virtual std::size_t bodyCount() const { return 0; }
-    /// Changes when a pose or a live body does.
+    /// Returns a number that changes with every change of a pose or a live body.
     [[nodiscard]] virtual std::uint64_t revision() const { return 0; }
 
-    /// The names of all materials, of which a shader has the numbers; equal names of several colliders are one. Empty without
-    /// materials.
+    /// Returns the names of all materials, indexed by the numbers that shaders use. Equal names in several colliders
+    /// share a number. Empty without materials.
     [[nodiscard]] virtual std::span<const std::string> materialNames() const { return {}; }
-    /// Some material has another restitution than 1, a friction or a loss of lifetime: without one only events need them.
+    /// Returns whether a material has a restitution other than 1, a friction or a lifetime loss. If false, only events
+    /// need materials.
     [[nodiscard]] virtual bool materialsRespond() const { return false; }
-    /// Lines for makeProgram behind defines(), for a shader that includes the materials' file.
+    /// Returns lines for makeProgram, after defines(), for shaders that include the materials' file.
     [[nodiscard]] virtual std::string materialDefines() const { return {}; }
-    /// Binds the texture of the materials, if there are any.
+    /// Binds the texture of the materials, if there is one.
     virtual void bindMaterials(const Binding& /*binding*/) const {}
 
   protected:

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// A triangle mesh on the GPU whose triangles stay and whose vertices may move: what depth maps are rendered
-// from (depth_map_renderer.h).
+// A triangle mesh on the GPU with fixed triangles and movable vertices, from which depth maps are rendered
+// (depth_map_renderer.h).
 //
-// Positions lie in a 2-D texture of floats, so that a shader finds the corners of any triangle. Triangles are
-// drawn with an index buffer over *slots*: slot t < triangleCount() belongs to triangle t alone and is its
-// last, provoking corner, so that gl_VertexID of a flat varying names the triangle (a fragment shader of
-// OpenGL ES 3.0 has no gl_PrimitiveID). Vertices that own no slot so far have one behind those.
+// Positions are stored in a 2-D float texture so that shaders can fetch the corners of any triangle. Triangles are
+// drawn with an index buffer over *slots*: slot t < triangleCount() belongs only to triangle t and is its last,
+// provoking corner, so that a flat varying of gl_VertexID identifies the triangle (fragment shaders of OpenGL ES 3.0
+// have no gl_PrimitiveID). Vertices that own no such slot get one after those.
 //
 //                       b                 slots of t:  a (t's own, provoking), b and c (owned by other
-//                      /t\                             triangles, wherever possible)
-//                     a---c               slots < triangles + vertices, and mostly as many as triangles
+//                      /t\                             triangles if possible)
+//                     a---c               slots < triangles + vertices; usually as many as triangles
 //
 //     bytes on the GPU = 24 or 32 · vertices + 4 · slots + 44 · triangles
 #pragma once
@@ -26,48 +26,47 @@ namespace relief {
 
 class GpuMesh {
   public:
-    /// Needs a current context, as every call does; restores what it touches.
+    /// Needs a current context, as do all calls; restores the GL state that it changes.
     /// \param positions  finite, object space, at least one.
-    /// \param triangles  at least one; anticlockwise seen from outside.
-    /// Errors: kInvalidInput (an index beyond the positions, a position that is not finite, no triangle),
-    /// kLimit (more than this GL's textures or indices hold, no room), kUnsupported, kFailure (the driver's compiler).
+    /// \param triangles  at least one; counter-clockwise seen from outside.
+    /// Errors: kInvalidInput (an index out of range, a position that is not finite, no triangles), kLimit (more than
+    /// this GL's textures or indices support, or out of memory), kUnsupported, kFailure (shader compilation).
     [[nodiscard]] static Result<GpuMesh> create(std::span<const glm::vec3> positions,
                                                 std::span<const glm::uvec3> triangles);
 
     /// Moves the vertices.
-    /// \param positions  finite, as many as at first.
-    /// Errors: kUsage (another number), kInvalidInput (not finite); the mesh then stays as it was.
+    /// \param positions  finite, as many as at creation.
+    /// Errors: kUsage (a different count), kInvalidInput (not finite); the mesh is then unchanged.
     [[nodiscard]] Result<void> setPositions(std::span<const glm::vec3> positions);
-    /// The same from a buffer of the GPU: tightly packed triples of floats from `offset` bytes on, a multiple
-    /// of 4. Copied by the GPU in the order of commands; nothing waits, and finiteness is not checked:
-    /// a triangle with a corner that is not is not drawn, or anywhere. Errors: kUsage (0, no buffer, an
-    /// offset that is no multiple of 4, a buffer that is too short).
+    /// Moves the vertices to positions in a GPU buffer: tightly packed triples of floats from byte `offset` on. The GPU
+    /// copies them in command order, without waiting. Values are not checked: a triangle with a corner that is not
+    /// finite may be missing or drawn anywhere.
+    /// Errors: kUsage (no such buffer, an offset that is not a multiple of 4, a buffer that is too short).
     [[nodiscard]] Result<void> setPositions(GLuint buffer, std::size_t offset = 0);
-    /// Forgets the motion, as if the vertices had always been where they are (after a jump, or when they have come to rest).
+    /// Resets the motion to zero, after a jump or once the vertices have come to rest.
     void settle();
 
     [[nodiscard]] std::uint32_t triangleCount() const { return triangle_count_; }
     [[nodiscard]] std::uint32_t slotCount() const { return slot_count_; }
-    /// Changes with every change of the positions.
+    /// Returns a number that changes with every change of the positions.
     [[nodiscard]] std::uint64_t revision() const { return revision_; }
 
-    // For passes. Item i lies at (i & ((1 << shift) − 1), i >> shift).
+    // Inputs of passes. Item i lies at (i & ((1 << shift) − 1), i >> shift).
 
-    /// RGB32F, or RGBA32F where the GL does not copy triples: xyz of vertex i.
+    /// RGB32F, or RGBA32F if the GL cannot copy triples: xyz of vertex i.
     [[nodiscard]] GLuint positions() const { return positions_[current_].name(); }
-    /// Those of before the last setPositions(), for the motion of the surface.
+    /// The positions before the last setPositions(), for the motion of the surface.
     [[nodiscard]] GLuint previousPositions() const;
     [[nodiscard]] int vertexShift() const { return vertex_shift_; }
-    /// RGBA32UI: the vertices of triangle i, its own corner last; w is 0.
+    /// RGBA32UI: the vertices of triangle i, its provoking corner last; w is 0.
     [[nodiscard]] GLuint corners() const { return corners_.name(); }
-    /// RGBA32UI: of triangle i the unit normal's bits as floats by the right-hand rule (0: no area), and in w
-    /// its packed index (normal_index.h) plus 65536 times that of the opposite normal. Made anew, by one
-    /// draw, if the positions have changed since the last call, which leaves GL state changed: call it inside
-    /// a PassState.
+    /// RGBA32UI for each triangle: the bits of its right-handed unit normal as floats (0 if it has no area), and in w
+    /// its packed index (normal_index.h) plus 65536 times that of the opposite normal. Updated with one draw if the
+    /// positions have changed since the last call. Call it inside a PassState because it changes GL state.
     [[nodiscard]] GLuint planes();
     [[nodiscard]] int triangleShift() const { return triangle_shift_; }
-    /// Draws all triangles with the current program; attribute 0 is the slot's vertex, an unsigned integer.
-    /// Binds a vertex array.
+    /// Draws all triangles with the current program; attribute 0 is the slot's vertex, an unsigned integer. Binds a
+    /// vertex array.
     void draw() const;
 
   private:

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The events of a step as lists on the GPU, and its way back to the CPU some steps later.
+// Lists the events of a step on the GPU, and reads them back to the CPU some steps later.
 //
-// The step writes what happened to each particle into two textures (shaders/events/step_event.glsl). The list is made of them
-// by fragments alone, on either path: sums of kEventsCounted in kEventLevels levels count the events before each
-// index, and every texel of the list looks its own event up (a histogram pyramid, Ziegler et al. 2006).
+// The step writes the event of each particle into two textures (shaders/events/step_event.glsl). On either step path,
+// fragment shaders build the list from them: sums of kEventsCounted elements in kEventLevels levels count the events
+// before each index, and every texel of the list looks up its own event (a histogram pyramid, Ziegler et al. 2006).
 #pragma once
 
 #include <array>
@@ -25,52 +25,53 @@ class EventList {
   public:
     static constexpr int kInFlightMax = 8;  ///< requests not yet collected
 
-    /// A step that has just been made, in the particle system's textures.
+    /// The completed step, in the particle system's textures.
     struct Step {
-        const GlTexture& velocity;  ///< as step_event.glsl writes them
+        const GlTexture& velocity;  ///< written by step_event.glsl; likewise the next three
         const GlTexture& surface;
         const GlTexture& position_before;
         const GlTexture& birth;
-        std::uint32_t width = 0;   ///< of the textures
-        std::uint32_t extent = 0;  ///< particles that were stepped
+        std::uint32_t width = 0;   ///< width of the textures
+        std::uint32_t extent = 0;  ///< number of particles stepped
         std::span<const ParticleType> types;
         std::uint64_t tag = 0;
-        std::uint64_t number = 0;  ///< of the step
-        double begin = 0.0;        ///< of the step, seconds
+        std::uint64_t number = 0;  ///< step number
+        double begin = 0.0;        ///< start of the step, seconds
         double end = 0.0;
-        std::uint32_t materials = 0;  ///< names of materials, WorldTextures::materialNames()
+        std::uint32_t materials = 0;  ///< number of material names, WorldTextures::materialNames()
     };
-    /// The most (bodies + 1) · (names of materials + 1) whose events a step can tell apart.
+    /// Maximum (bodies + 1) · (material names + 1) that events can distinguish.
     static constexpr std::size_t kPlacesMax = (std::size_t{1} << 24) / (kEventFlags * kEventDirections);
-    /// A list read back: ids are modulo 2^24.
+    /// A list that was read back; ids are modulo 2^24.
     struct Collected {
         StepEvents events;
         std::uint64_t number = 0;
     };
 
     /// \param lists     1 to kEventLists. \param capacity  of the particle system.
-    /// Errors: kUsage (the options), kLimit, kUnsupported, kFailure.
+    /// Errors: kUsage (invalid options), kLimit, kUnsupported, kFailure.
     [[nodiscard]] static Result<EventList> create(std::span<const EventOptions> lists,
                                                   std::uint32_t capacity);
 
-    /// Makes the list, and requests its read-back. With the state of a pass (PassState).
-    /// \return false, and nothing is made, while kInFlightMax are under way.
+    /// Builds the lists and requests their read-back. Call it inside a PassState.
+    /// \return false, without effect, if kInFlightMax requests are pending.
     bool request(const Step& step);
-    /// The oldest list, if the GPU has finished it: never waits.
+    /// Returns the oldest list if the GPU has finished it; never waits.
     [[nodiscard]] std::optional<Collected> poll();
-    /// The oldest list, which the GPU is waited for; nullopt if none is under way.
-    /// Errors: kFailure (the GPU has not answered for ten seconds, or its memory cannot be read).
+    /// Waits for the oldest list; nullopt if none is pending.
+    /// Errors: kFailure (no response from the GPU for ten seconds, or its memory cannot be read).
     [[nodiscard]] Result<std::optional<Collected>> wait();
     [[nodiscard]] int inFlight() const { return in_flight_; }
-    /// The number of the oldest step under way.
+    /// Returns the number of the oldest pending step.
     [[nodiscard]] std::optional<std::uint64_t> oldestNumber() const {
         return in_flight_ == 0 ? std::nullopt : std::optional(requests_[oldest_].number);
     }
 
-    /// The lists of the last request, four textures of RGBA32F, kEventsWidth texels in a row: position, surface,
-    /// velocity and identity of shaders/events/event_list.frag. Each list begins with a row of its own.
+    /// Returns the lists of the last request as four RGBA32F textures with kEventsWidth texels per row: position,
+    /// surface, velocity and identity (shaders/events/event_list.frag). Each list starts in a new row.
     [[nodiscard]] std::span<const GlTexture, 4> textures() const { return list_; }
-    /// A texel: x is the number of events of the first list, y that of the second, and so on; each list holds `most` of them.
+    /// Returns a texel with the number of events of the first list in x, of the second in y, and so on; each list
+    /// stores at most `most` of them.
     [[nodiscard]] const GlTexture& total() const { return counts_[kLevels - 1].texture; }
 
   private:
@@ -79,9 +80,9 @@ class EventList {
         GlTexture texture;
         GlFramebuffer target;
     };
-    /// A list on its way back. Requests are collected in their order.
+    /// A pending list. Requests are collected in order.
     struct Request {
-        std::uint64_t tag = 0;  // these as Step has them
+        std::uint64_t tag = 0;  // copied from Step, as are the next three
         std::uint64_t number = 0;
         double begin = 0.0;
         double end = 0.0;
@@ -95,16 +96,17 @@ class EventList {
     [[nodiscard]] Result<void> createPrograms();
     [[nodiscard]] std::uint32_t listWidth() const;
     [[nodiscard]] std::uint32_t longest() const;
-    /// Of a system of so many particles. \return of all lists. \param first_row  of each; of those that do not exist, never met.
+    /// Computes the layout for a number of particles. \return rows of all lists. \param first_row  of each list;
+    /// unreachable for lists that do not exist.
     std::uint32_t layOut(std::uint32_t particles, std::array<std::uint32_t, kEventLists>& first_row) const;
     void useFilter(const GlProgram& program) const;
     void count(const Step& step) const;
     void makeLists(const Step& step, const Request& request, std::uint32_t rows) const;
     void read(std::uint32_t rows) const;
-    /// The oldest, which the GPU has finished; nullopt if its memory was lost.
+    /// Collects the oldest request, which the GPU has finished; nullopt if its memory was lost.
     [[nodiscard]] std::optional<Collected> collect();
     [[nodiscard]] static bool readFloats(const Request& request, std::size_t first, std::span<float> out);
-    /// Adds the events of a list. \param values  of them, plane by plane.
+    /// Appends the events of a list. \param values  its texels, plane by plane.
     void decode(const Request& request, std::span<const float> values, StepEvents& to) const;
 
     std::vector<EventOptions> lists_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Events of a particle system: each step records what hit and what died, and lists of these come to the CPU later.
+// Events of a particle system: each step records hits and deaths, and the CPU receives lists of them later.
 #pragma once
 
 #include <cstdint>
@@ -12,26 +12,26 @@
 
 namespace relief {
 
-/// From the next step on, each step records the event of every particle. nullopt: no longer, as at first; a step
-/// then costs nothing more, in time or memory. Compiles the step where that changes; what is under way is lost.
-/// Errors: kUsage (the options), kLimit, kUnsupported (a GL that draws to fewer textures), kFailure.
+/// Starts recording events with the next step; nullopt stops it (the default), after which steps have no extra cost.
+/// Recompiles the step if this changes it; pending lists are lost.
+/// Errors: kUsage (invalid options), kLimit, kUnsupported (too few draw buffers), kFailure.
 [[nodiscard]] Result<void> setEvents(ParticleSystem& particles, const std::optional<EventOptions>& options);
-/// The same with several lists, each of events of its own; an event may be in more than one.
+/// Records several lists, each with its own selection; an event may be in more than one.
 /// \param lists  up to kEventLists.
 [[nodiscard]] Result<void> setEvents(ParticleSystem& particles, std::span<const EventOptions> lists);
 
-/// Lists the events of the last step on the GPU, and requests their read-back. Restores the GL state. Collect each request:
-/// until then every id that a birth takes the place of is kept.
-/// \param tag  comes back with them, the number of the step for example.
-/// \return false, and nothing is done, while EventList::kInFlightMax lists are under way, and without setEvents().
+/// Lists the events of the last step on the GPU and requests their read-back. Restores the GL state. Collect each
+/// request: until then, the ids of replaced particles are kept in memory.
+/// \param tag  returned with the events, for example the number of the step.
+/// \return false, without effect, if EventList::kInFlightMax lists are pending or events are not recorded.
 bool requestEvents(ParticleSystem& particles, std::uint64_t tag);
-/// The oldest list, if the GPU has finished it: never waits.
+/// Returns the oldest list if the GPU has finished it; never waits.
 [[nodiscard]] std::optional<StepEvents> pollEvents(ParticleSystem& particles);
-/// The oldest list, which the GPU is waited for; nullopt if none is under way.
-/// Errors: kFailure (the GPU has not answered for ten seconds, or its memory cannot be read).
+/// Waits for the oldest list; nullopt if none is pending.
+/// Errors: kFailure (no response from the GPU for ten seconds, or its memory cannot be read).
 [[nodiscard]] Result<std::optional<StepEvents>> waitEvents(ParticleSystem& particles);
 [[nodiscard]] int eventsInFlight(const ParticleSystem& particles);
-/// The list of the last request on the GPU, for shaders of your own; null without setEvents().
+/// Returns the list of the last request on the GPU, for your own shaders; null without setEvents().
 [[nodiscard]] const EventList* eventList(const ParticleSystem& particles);
 
 }  // namespace relief

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Births where particles hit or die: splashes, debris, sparks. On the CPU, from the events that a particle system lists;
-// the same events, settings and seed give the same births, bit for bit, on every machine.
+// Spawns particles where others hit or die: splashes, debris, sparks. Runs on the CPU, on the listed events of a
+// particle system. The same events, settings and seed give bit-identical births on every machine.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@
 namespace relief {
 
 enum class SpawnOn : std::uint8_t {
-    kCollision,  ///< a hit where the step before touched nothing
-    kDeath,      ///< of age or of a hit
+    kCollision,  ///< a hit of a particle without contact in the previous step
+    kDeath,      ///< a death by age or by a hit
 };
 
 template <>
@@ -25,44 +25,46 @@ inline constexpr std::array<std::string_view, 2> kWordsOf<SpawnOn>{"collision", 
 
 struct SpawnSettings {
     SpawnOn on = SpawnOn::kCollision;
-    std::optional<std::uint32_t> of;  ///< the type of those that hit or die; nullopt: all
-    float min_speed = 0.0F;           ///< slower hits make nothing; ≥ 0; for kCollision
-    std::optional<int> material;  ///< as ParticleEvent::material: hits on others make nothing; for kCollision
+    std::optional<std::uint32_t> of;  ///< type of the parent; nullopt: all
+    float min_speed = 0.0F;           ///< ignores slower hits; ≥ 0; for kCollision
+    std::optional<int> material;  ///< only hits on this material, see ParticleEvent::material; for kCollision
 
-    std::uint32_t type = 0;  ///< of what is born
-    /// Births for each event, uniform between the two.
+    std::uint32_t type = 0;  ///< type of the births
+    /// Births per event, uniform in [count_min, count_max].
     std::uint32_t count_min = 1;
     std::uint32_t count_max = 1;
-    std::uint32_t most = 10'000;  ///< births of a step, ≥ 1; the rest is refused
-    float lifetime_min = 1.0F;    ///< seconds, > 0; uniform between the two
+    std::uint32_t most = 10'000;  ///< births per step, ≥ 1; further births are refused
+    float lifetime_min = 1.0F;    ///< seconds, > 0; uniform between both limits
     float lifetime_max = 1.0F;
 
-    /// Share of the parent's velocity, ≥ 0: of a hit that along the surface, which itself may move.
+    /// Fraction of the parent's velocity that births inherit, ≥ 0; for hits, of the velocity along the surface, which
+    /// may itself move.
     float inherit = 0.0F;
-    /// On top of it a speed about the normal of a hit, or about the velocity of a particle that dies of age (upwards where it stands):
-    /// uniform between the two and `kick` times the speed of the hit; world units a second, ≥ 0.
+    /// Additional speed, uniform in [speed_min, speed_max] plus `kick` times the speed of the hit; world units/s, ≥ 0.
+    /// Its direction is around the normal of a hit, or around the velocity of a particle that dies of age (upwards if
+    /// it is at rest).
     float speed_min = 0.0F;
     float speed_max = 0.0F;
     float kick = 0.0F;
-    float cone_degrees = 180.0F;  ///< half angle, 0…180; uniform over its solid angle
+    float cone_degrees = 180.0F;  ///< half angle, 0…180; uniform over the solid angle
 
     friend bool operator==(const SpawnSettings&, const SpawnSettings&) = default;
 };
 
 class Spawner {
   public:
-    /// \param settings  finite, within the ranges of its members, spans in order.
-    /// \param stream    spawners of one seed and different streams are independent.
+    /// \param settings  finite, within the ranges of the members, with ordered limits.
+    /// \param stream    spawners with the same seed and different streams are independent.
     Spawner(const SpawnSettings& settings, std::uint64_t seed, std::uint64_t stream = 0);
 
-    /// The births that the events of a step make, in their order, of age 0. Those behind the first `most` that it heeds change
-    /// nothing but the number refused, where each counts as its least number of births. Where a hit makes them, they touch the
-    /// surface from outside.
-    /// \param types   of the particle system: their radii.
-    /// \param room    at most so many are made.
-    /// \param births  they are added at its end.
-    /// \return how many were due but found no room, were above `most`, or have no finite place or velocity, because the
-    /// event has none.
+    /// Generates the births of a step's events, in order, with age 0. Births of hits touch the surface from outside.
+    /// Only the first `most` matching events are used; each later one only adds its minimum number of births to the
+    /// number refused.
+    /// \param types   of the particle system, for their radii.
+    /// \param room    maximum number of births to generate.
+    /// \param births  receives the births at its end.
+    /// \return the number of births refused: no room, above `most`, or without a finite position or velocity because
+    /// the event has none.
     std::uint64_t spawn(std::span<const ParticleEvent> events, std::span<const ParticleType> types,
                         std::uint64_t room, std::vector<Birth>& births);
     std::uint64_t spawn(const StepEvents& step, std::span<const ParticleType> types, std::uint64_t room,
@@ -70,7 +72,7 @@ class Spawner {
         return spawn(step.events, types, room, births);
     }
 
-    /// Exactly the events that it heeds, and as many of a step as it can use.
+    /// Returns options that select exactly the matching events, up to the number that a step can use.
     [[nodiscard]] EventOptions eventOptions() const;
 
     [[nodiscard]] const SpawnSettings& settings() const { return settings_; }
@@ -81,7 +83,7 @@ class Spawner {
 
     SpawnSettings settings_;
     Pcg32 random_;
-    float opening_ = 0.0F;  // oneMinusCosine of the cone
+    float opening_ = 0.0F;  // oneMinusCosine() of the cone
 };
 
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Buffers that the GPU has written, back in memory.
+// Reads back buffers that the GPU has written.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace relief {
 
-/// Waits until the GPU has come by, for at most so many nanoseconds; where nothing may wait, in a browser, readBuffer()
-/// does so.
+/// Waits until the GPU has passed the fence, at most for the given time. Does not wait in a browser, where readBuffer()
+/// waits instead.
 [[nodiscard]] bool waitToRead(const GlFence& fence, GLuint64 nanoseconds);
 
 /// Copies bytes of a buffer from `offset` on, as GL_PIXEL_PACK_BUFFER; at least one. Waits for the GPU.

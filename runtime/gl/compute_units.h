@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The image units and shader storage blocks of compute passes. They save what PassState leaves out, since few passes use
-// them; both need hasCompute().
+// The image units and shader storage bindings of compute passes. These classes save state that PassState does not,
+// because few passes use it. Both require hasCompute().
 #pragma once
 
 #include <array>
@@ -9,12 +9,12 @@
 
 namespace relief {
 
-/// An indexed binding of a buffer, as it was on construction.
+/// Saves an indexed buffer binding on construction.
 class SavedRange {
   public:
     /// \param target  GL_UNIFORM_BUFFER, GL_SHADER_STORAGE_BUFFER or GL_TRANSFORM_FEEDBACK_BUFFER.
     SavedRange(GLenum target, GLuint index);
-    /// Binds the target itself, too.
+    /// Restores the indexed binding and the generic one.
     void restore() const;
 
   private:
@@ -33,10 +33,10 @@ class ImageUnits {
     ImageUnits(const ImageUnits&) = delete;
     ImageUnits& operator=(const ImageUnits&) = delete;
 
-    /// Level 0 of a texture, to be written; of GL_RGBA32F, or in the format of the texture.
+    /// Binds level 0 of a texture for writing, as GL_RGBA32F or in the given format.
     static void write(GLuint unit, const GlTexture& texture);
     static void write(GLuint unit, const GlTexture& texture, GLenum format);
-    /// Makes the writes of compute passes visible to everything.
+    /// Makes the writes of compute passes visible to all later commands.
     static void finish();
 
   private:
@@ -46,19 +46,19 @@ class ImageUnits {
     std::array<Unit, kUnits> saved_;
 };
 
-/// Saves shader storage bindings 0 to 3 and the buffer bound to the target on construction, and restores them on destruction.
+/// Saves shader storage bindings 0 to 3 and the generic binding on construction, and restores them on destruction.
 class StorageUnits {
   public:
-    static constexpr GLuint kUnits = 4;  ///< as many as OpenGL ES 3.1 promises
+    static constexpr GLuint kUnits = 4;  ///< minimum guaranteed by OpenGL ES 3.1
     StorageUnits();
     ~StorageUnits();
     StorageUnits(const StorageUnits&) = delete;
     StorageUnits& operator=(const StorageUnits&) = delete;
 
-    /// A buffer of so many bytes, contents undefined. Leaves it bound to the target.
+    /// Creates a buffer with undefined contents. Leaves it bound to the target.
     [[nodiscard]] static GlBuffer make(GLsizeiptr bytes);
     static void bind(GLuint unit, const GlBuffer& buffer);
-    /// Between passes: the next one sees the stores of those before, and stores nothing that they still read.
+    /// Orders passes: later ones see earlier stores and do not overwrite data that earlier ones still read.
     static void order();
 
   private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two APIs that every shader and every class of runtime/ works with.
+// The two APIs that all shaders and classes of runtime/ support.
 #pragma once
 
 namespace relief {

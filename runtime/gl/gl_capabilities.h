@@ -4,19 +4,19 @@
 
 namespace relief {
 
-/// True if the current context is OpenGL ES.
+/// Returns true if the current context is OpenGL ES.
 [[nodiscard]] bool isGles();
 
-/// True if the processor draws, not a GPU.
+/// Returns true if the context renders on the CPU.
 [[nodiscard]] bool isSoftwareRenderer();
 
-/// True if the current context has compute shaders: OpenGL 4.3, OpenGL ES 3.1, or later.
+/// Returns true if the current context has compute shaders: OpenGL 4.3, OpenGL ES 3.1, or later.
 [[nodiscard]] bool hasCompute();
 
 /// \param name  "GL_EXT_color_buffer_float"
 [[nodiscard]] bool hasGlExtension(const char* name);
 
-/// True if the GPU was reset; checkGpu() makes an error of it.
+/// Returns true if the GPU was reset; checkGpu() turns this into an error.
 [[nodiscard]] bool gpuWasReset();
 
 }  // namespace relief

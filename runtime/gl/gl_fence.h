@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mark in the GPU's commands.
+// A fence in the GPU's command stream.
 #pragma once
 
 #include <utility>
@@ -8,7 +8,7 @@
 
 namespace relief {
 
-/// Owns a sync object of the current context's share group. Moves, like GlName; empty until inserted.
+/// Owns a sync object of the current context's share group. Movable, like GlName; empty until insert().
 class GlFence {
   public:
     GlFence() = default;
@@ -19,18 +19,18 @@ class GlFence {
     }
     ~GlFence() { remove(); }
 
-    /// Marks the end of the commands so far.
+    /// Inserts the fence after all commands so far.
     void insert();
     void remove();
-    /// Flushes the commands, and waits for at most so many nanoseconds.
-    /// \return whether the GPU has come by; false also where the GL reports an error.
+    /// Flushes the commands and waits at most for the given time.
+    /// \return whether the GPU has passed the fence; false also if the GL reports an error.
     [[nodiscard]] bool passed(GLuint64 nanoseconds = 0) const;
-    /// True if there is nothing to wait for: never inserted, or the GL reported an error to passed().
+    /// Returns true if there is nothing to wait for: never inserted, or passed() met a GL error.
     [[nodiscard]] bool failed() const;
 
   private:
     GLsync sync_ = nullptr;
-    mutable GLenum state_ = 0;  // of the last passed()
+    mutable GLenum state_ = 0;  // result of the last passed()
 };
 
 }  // namespace relief

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenGL's functions and numbers: libepoxy's, or in a browser those of WebGL2 under their names of OpenGL ES 3.0.
-// Everything that calls the GL includes this.
+// Declares OpenGL functions and constants: from libepoxy, or in a browser from WebGL2 under the names of OpenGL ES 3.0.
+// All code that calls the GL includes this header.
 #pragma once
 
 #if defined(__EMSCRIPTEN__)
 
 #include <GLES3/gl31.h>
 
-// Only in desktop GL. isGles() is a constant in browsers, so no call of these remains.
+// Desktop GL only. isGles() is constant in browsers, so calls of these functions are eliminated.
 #define GL_CLAMP_READ_COLOR 0x891C
 #define GL_COLOR_LOGIC_OP 0x0BF2
 #define GL_DEPTH_CLAMP 0x864F

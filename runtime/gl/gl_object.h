@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenGL names as move-only values. Every constructor needs a current context, and so does every destructor
-// of a non-empty object. Nothing here binds more than it must; what is bound is restored.
+// OpenGL names as move-only values. Constructors need a current context, as do destructors of non-empty objects.
+// Functions restore all bindings that they change unless documented otherwise.
 #pragma once
 
 #include <glm/fwd.hpp>
@@ -61,11 +61,11 @@ using GlSampler = GlName<gl_detail::deleteSampler>;
 class GlProgram : public GlName<gl_detail::deleteProgram> {
   public:
     using GlName::GlName;
-    /// Makes it current, as set() needs it.
+    /// Makes the program current, as required by set().
     void use() const;
-    /// Location of a uniform; −1 where the program does not use it, which the GL's setters ignore.
+    /// Returns the location of a uniform; −1 if the program does not use it, which the GL's setters ignore.
     [[nodiscard]] GLint location(const char* uniform) const;
-    /// Sets a uniform; without effect where the program does not use it.
+    /// Sets a uniform; no effect if the program does not use it.
     void set(const char* uniform, bool value) const;
     void set(const char* uniform, GLint value) const;
     void set(const char* uniform, GLuint value) const;
@@ -81,37 +81,37 @@ class GlProgram : public GlName<gl_detail::deleteProgram> {
     void set(const char* uniform, std::span<const glm::vec4> values) const;
 
     /// Runs the fragment shader of makeScreenProgram() over the viewport of the bound framebuffer, or over the pixels
-    /// (0, 0) … (width − 1, height − 1) of one, which it leaves bound. Leaves program and vertex array bound.
+    /// (0, 0) … (width − 1, height − 1) of a framebuffer, which stays bound. Leaves program and vertex array bound.
     void drawScreen() const;
     void drawScreen(GLuint framebuffer, GLsizei width, GLsizei height) const;
 
   private:
-    mutable std::map<std::string, GLint, std::less<>> locations_;  // of uniforms so far
-    mutable GlVertexArray no_attributes_;                          // of drawScreen()
+    mutable std::map<std::string, GLint, std::less<>> locations_;  // cached so far
+    mutable GlVertexArray no_attributes_;                          // for drawScreen()
 };
 
 [[nodiscard]] GlFramebuffer makeFramebuffer();
 [[nodiscard]] GlBuffer makeBuffer();
-/// Binds it as GL_PIXEL_PACK_BUFFER, made if it is empty, with new memory that the GPU writes and the CPU reads once.
+/// Binds the buffer as GL_PIXEL_PACK_BUFFER, with new memory for one read-back; creates it if empty.
 void bindPackBuffer(GlBuffer& buffer, GLsizeiptr bytes);
 [[nodiscard]] GlVertexArray makeVertexArray();
-/// Nearest filter, clamped, and no comparing: to read a texture of the caller's as it is.
+/// Returns a sampler with nearest filter, clamping and no comparison, to read a caller's texture unmodified.
 [[nodiscard]] GlSampler makeSampler();
 
-/// A 2-D texture of one level, nearest filter, clamped to its edge; contents undefined unless given.
-/// \param format, type  of `pixels`, tightly packed rows from y = 0; used for allocation alone if it is null.
+/// Creates a 2-D texture with one level, nearest filter and clamping; contents are undefined if `pixels` is null.
+/// \param format, type  of `pixels`, tightly packed rows from y = 0. Must be valid even if `pixels` is null.
 [[nodiscard]] GlTexture makeTexture2D(GLenum internal_format, GLsizei width, GLsizei height, GLenum format,
                                       GLenum type, const void* pixels = nullptr);
 
-/// The same, immutable, for compute shaders to write to; where hasCompute().
+/// Creates an immutable 2-D texture for compute shaders to write to. Requires hasCompute().
 [[nodiscard]] GlTexture makeImageTexture2D(GLenum internal_format, GLsizei width, GLsizei height);
 
-/// The same in 3-D. \param filter  GL_NEAREST or GL_LINEAR.
+/// Creates a 3-D texture. \param filter  GL_NEAREST or GL_LINEAR.
 [[nodiscard]] GlTexture makeTexture3D(GLenum internal_format, const glm::ivec3& size, GLenum format,
                                       GLenum type, GLenum filter, const void* pixels = nullptr);
 
-/// A framebuffer with these colour attachments, in order, and an optional depth texture, as draw buffers.
-/// Errors: kUnsupported, with the status, if the GL does not render to that combination.
+/// Creates a framebuffer with these colour attachments as draw buffers, in order, and an optional depth texture.
+/// Errors: kUnsupported, with the status, if the GL cannot render to that combination.
 [[nodiscard]] Result<GlFramebuffer> makeFramebuffer(std::span<const GLuint> color_textures,
                                                     GLuint depth_texture = 0);
 [[nodiscard]] inline Result<GlFramebuffer> makeFramebuffer(std::initializer_list<GLuint> color_textures,
@@ -119,38 +119,39 @@ void bindPackBuffer(GlBuffer& buffer, GLsizeiptr bytes);
     return makeFramebuffer(std::span(color_textures.begin(), color_textures.size()), depth_texture);
 }
 
-/// Compiles and links a program from GLSL ES 3.00 subset sources. In front come the version line of the current
-/// context, `#version 330 core` or `#version 300 es`, shaderConstants() and precision statements.
+/// Compiles and links a program from sources in a subset of GLSL ES 3.00. Prepends the version line of the current
+/// context (`#version 330 core` or `#version 300 es`), shaderConstants() and precision statements.
 /// \param vertex, fragment  paths in shaders/, for example "base/quad.vert".
-/// \param defines  lines put behind the constants, such as "#define RELIEF_X 1\n".
-/// Fails with kFailure, the driver's log and the file's name.
+/// \param defines  lines inserted after the constants, such as "#define RELIEF_X 1\n".
+/// Errors: kFailure, with the file name and the driver's log.
 [[nodiscard]] Result<GlProgram> makeProgram(std::string_view vertex, std::string_view fragment,
                                             std::string_view defines = {});
 
-/// The same of a fragment shader over whole rectangles of pixels, by "base/quad.vert": for GlProgram::drawScreen().
+/// Creates a program that runs a fragment shader over rectangles of pixels, with "base/quad.vert": for
+/// GlProgram::drawScreen().
 [[nodiscard]] Result<GlProgram> makeScreenProgram(std::string_view fragment, std::string_view defines = {});
 
-/// A program of a compute shader, from the same subset of GLSL; its version line is `#version 430 core` or
-/// `#version 310 es`, and RELIEF_COMPUTE is defined. Where hasCompute(). Fails as makeProgram does.
+/// Creates a program from a compute shader in the same subset of GLSL. Its version line is `#version 430 core` or
+/// `#version 310 es`, and RELIEF_COMPUTE is defined. Requires hasCompute(). Errors: as makeProgram.
 [[nodiscard]] Result<GlProgram> makeComputeProgram(std::string_view compute, std::string_view defines = {});
 
-/// A program of a vertex shader alone, whose outputs transform feedback writes, interleaved in their order.
-/// Fails as makeProgram does.
+/// Creates a program with only a vertex shader, whose outputs transform feedback writes interleaved, in order. Errors:
+/// as makeProgram.
 [[nodiscard]] Result<GlProgram> makeFeedbackProgram(std::string_view vertex,
                                                     std::span<const char* const> outputs,
                                                     std::string_view defines = {});
 
-/// Reads a texture (level 0 of a 2-D texture of a float format) back as RGBA floats, 4 · width · height.
+/// Reads level 0 of a 2-D float texture back as RGBA: 4 · width · height floats.
 [[nodiscard]] Result<std::vector<float>> readTextureFloats(const GlTexture& texture, GLsizei width,
                                                            GLsizei height);
 
-/// Copies bytes of one buffer to another on the GPU.
+/// Copies bytes from the start of one buffer to another on the GPU.
 void copyBuffer(const GlBuffer& from, const GlBuffer& to, GLsizeiptr to_offset, GLsizeiptr bytes);
 
-/// Binds a 3-D texture to texture unit `unit` and leaves that unit active.
+/// Binds a 3-D texture to a texture unit and leaves that unit active.
 void useTexture3D(int unit, const GlTexture& texture);
 
-/// Binds a 2-D texture to texture unit `unit` and leaves that unit active.
+/// Binds a 2-D texture to a texture unit and leaves that unit active.
 void useTexture(int unit, GLuint texture);
 inline void useTexture(int unit, const GlTexture& texture) {
     useTexture(unit, texture.name());

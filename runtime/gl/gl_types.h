@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenGL's types, as every GL header defines them: repeated, they agree. So no public header brings a loader of the GL
-// along, and a program may include its own before or after.
+// Declares OpenGL's types as every GL header does; identical redeclarations are valid. Public headers thus need no GL
+// loader, and programs may include their own before or after.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
-// NOLINTBEGIN: the GL's own names
+// NOLINTBEGIN: names defined by the GL
 typedef unsigned int GLenum;
 typedef unsigned char GLboolean;
 typedef unsigned int GLuint;

@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// The GL state in which a pass of Relief runs, whatever the caller's was.
+// The GL state in which Relief's passes run, independent of the caller's state.
 #pragma once
 
 #include <memory>
 
 namespace relief {
 
-/// On construction: saves all GL state that a pass of Relief sets or that could spoil one, and sets what the
-/// passes count on, so that a draw writes its shader's outputs and a transfer is tightly packed. On
-/// destruction: puts everything back. That is: current program and vertex array; array, pack and unpack buffer,
-/// uniform buffer and uniform block bindings 0 and 1; draw and read framebuffer; viewport and scissor box;
-/// active texture unit and, of the first kUnits units, 2-D texture, 3-D texture and sampler object; blending,
-/// depth, cull, scissor and stencil test, dithering, alpha-to-coverage, rasterizer discard, polygon offset and
-/// primitive restart (all off in a pass); blend functions and equations, depth function and mask, colour mask,
-/// clear colour; pixel store alignments and windows; on desktop GL also polygon mode, logic operation, program
-/// point size, point sprite origin and sRGB conversion.
+/// On construction, saves all GL state that Relief's passes change or depend on, and sets the state that they require:
+/// draws write their shaders' outputs, and transfers are tightly packed. On destruction, restores everything. This
+/// covers: current program and vertex array; array, pack, unpack and uniform buffer; uniform block bindings 0 and 1;
+/// draw and read framebuffer; viewport and scissor box; active texture unit and, for the first kUnits units, 2-D
+/// texture, 3-D texture and sampler object; blending, depth, cull, scissor and stencil test, dithering,
+/// alpha-to-coverage, rasterizer discard, polygon offset and primitive restart (all off in a pass); blend functions and
+/// equations, depth function and mask, colour mask, clear colour; pixel store alignments and windows; on desktop GL
+/// also polygon mode, logic operation, program point size, point sprite origin and sRGB conversion.
 class PassState {
   public:
     static constexpr int kUnits = 11;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Maps as shaders/collider/collider.glsl reads them, and what that shader is compiled for.
+// Maps in the layout of shaders/collider/collider.glsl, and the defines that this shader is compiled with.
 #pragma once
 
 #include <cstddef>
@@ -22,21 +22,21 @@ struct BlockMap {
     std::int32_t info[4];
 };
 
-/// The maps that a block of so many bytes has room for.
+/// Returns the number of maps that fit into a block of this size.
 [[nodiscard]] std::size_t mapsInBlock(std::size_t block_bytes);
 
 [[nodiscard]] BlockMap blockMap(const PlacedMap& map, const MapPlace& at);
 
-/// The shader's u_relief_count.
+/// Returns the shader's u_relief_count.
 [[nodiscard]] glm::ivec4 blockHead(std::span<const PlacedMap> maps, const MapLayout& layout);
 [[nodiscard]] std::vector<BlockMap> blockMaps(std::span<const PlacedMap> maps, const MapLayout& layout);
-/// The whole block of a single collider, std140: the head and the maps.
+/// Returns the whole block of a single collider, std140: the head and the maps.
 [[nodiscard]] std::vector<std::byte> colliderBlock(std::span<const PlacedMap> maps, const MapLayout& layout);
 
-/// Lines for makeProgram of a single collider. The shader leaves out what no map needs, because a GL may run every branch for
-/// every map, so a program is of one collider only.
+/// Returns lines for makeProgram for a single collider. They exclude code that no map needs, because a GL may execute
+/// every branch for every map. A program is therefore specific to a collider.
 [[nodiscard]] std::string colliderDefines(std::span<const PlacedMap> maps, const MapLayout& layout);
-/// Those of any maps: widths of the textures, formats and flags.
+/// Returns the lines for any maps: widths of the textures, formats and flags.
 [[nodiscard]] std::string mapDefines(std::span<const PlacedMap> maps, const MapLayout& layout);
 
 }  // namespace relief

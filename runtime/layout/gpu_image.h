@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The upload of ColliderTextures as bytes: for loaders of your own (LAYOUT.md). Needs no GL.
+// The data that ColliderTextures uploads, as bytes, for your own loaders (LAYOUT.md). Independent of GL.
 #pragma once
 
 #include <array>
@@ -15,11 +15,11 @@
 
 namespace relief {
 
-/// The format of the texels of a texture.
+/// The texel format of a texture.
 struct TexelFormat {
-    const char* sampler;            ///< that reads it in collider.glsl
-    const char* name;               ///< of the internal format: "GL_RGBA32F"
-    std::uint32_t internal_format;  ///< the GL's numbers, as are the next two
+    const char* sampler;            ///< uniform name in collider.glsl
+    const char* name;               ///< name of the internal format: "GL_RGBA32F"
+    std::uint32_t internal_format;  ///< GL constant; likewise the next two
     std::uint32_t format;
     std::uint32_t type;
     std::size_t texel_size;  ///< bytes
@@ -29,26 +29,26 @@ struct TexelFormat {
 
 struct GpuTexture {
     std::uint32_t width = 0;
-    std::uint32_t height = 0;       ///< at least 1: a sampler must have something bound
-    std::vector<std::byte> texels;  ///< width · height · texel_size; zero where no map lies
+    std::uint32_t height = 0;       ///< at least 1: samplers need a texture
+    std::vector<std::byte> texels;  ///< width · height · texel_size bytes; zero outside maps
 };
 
 struct GpuImage {
-    std::array<GpuTexture, kTexelKinds> textures;  ///< by TexelKind
+    std::array<GpuTexture, kTexelKinds> textures;  ///< indexed by TexelKind
     std::vector<std::byte> block;                  ///< ReliefCollider, std140
-    std::string defines;                           ///< lines that collider.glsl is compiled with
+    std::string defines;                           ///< lines to compile collider.glsl with
 };
 
-/// The textures of maps in their places. Of a live one: nothing on any ray, and nothing moves.
+/// Returns the textures of placed maps. Live maps are empty and without motion.
 [[nodiscard]] std::array<GpuTexture, kTexelKinds> mapTextures(std::span<const PlacedMap> maps,
                                                               const MapLayout& layout);
 
-/// A collider by itself, in its own object space, as ColliderTextures::create(collider) has it.
-/// \param side_max  of a texture, texels.
-/// Fails with kUnsupported (no maps) or kLimit (a texture would have to be larger).
+/// Returns a collider in its own object space, as uploaded by ColliderTextures::create(collider).
+/// \param side_max  maximum side of a texture, texels.
+/// Errors: kUnsupported (no maps), kLimit (a texture would exceed side_max).
 [[nodiscard]] Result<GpuImage> gpuImage(const Collider& collider, std::int32_t side_max = 16384);
 
-/// Whether some map has such texels. A texture of one texel stands for one that no map uses: a GL fills it with anything.
+/// Returns whether a map uses this kind of texel. Unused textures have one texel with arbitrary contents.
 [[nodiscard]] bool isUsed(const Collider& collider, TexelKind kind);
 
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The layout of all maps of some colliders in the three textures of ColliderTextures. Plain arithmetic, no GL.
+// Assigns the maps of colliders to regions of the three textures of ColliderTextures. Independent of GL.
 #pragma once
 
 #include <array>
@@ -14,16 +14,16 @@
 
 namespace relief {
 
-/// A map, and whether it is live: drawn anew before each step, its texels not yet known.
+/// A map. Live maps are rendered before each step, and their texels are not known in advance.
 struct PlacedMap {
     const DepthMap* map = nullptr;
     bool live = false;
 };
 
-/// The maps of a collider by itself.
+/// Returns the maps of a single collider.
 [[nodiscard]] std::vector<PlacedMap> placedMaps(const Collider& collider);
 
-/// A part of a texture that is drawn to.
+/// A region of a texture that is rendered to.
 struct TexelRectangle {
     std::int32_t x = 0;
     std::int32_t y = 0;
@@ -31,31 +31,31 @@ struct TexelRectangle {
     std::int32_t height = 0;
 };
 
-/// The layout of one texture: texels that follow each other row by row, and below them rectangles. Add everything, call
-/// finish(), then query.
+/// The layout of one texture: texels packed row by row, and rectangles below them. Add everything, call finish(), then
+/// query.
 class TexelLayout {
   public:
     void addPacked(std::size_t texels) { packed_ += texels; }
     void addRectangle(std::int32_t width, std::int32_t height) {
         rectangles_.push_back({0, 0, width, height});
     }
-    /// Chooses the least power of two as width that holds it all no higher than wide. False where that is
+    /// Chooses the smallest power of two as width for which the height does not exceed it. Returns false if that is
     /// above `side_max`.
     [[nodiscard]] bool finish(std::int32_t side_max);
 
     [[nodiscard]] std::int32_t log2Width() const { return log2_width_; }
     [[nodiscard]] std::int32_t width() const { return std::int32_t{1} << log2_width_; }
-    [[nodiscard]] std::int32_t height() const { return height_; }  ///< 0: nothing in it
-    [[nodiscard]] std::size_t texels() const;                      ///< of what was added
-    /// The i-th that was added.
+    [[nodiscard]] std::int32_t height() const { return height_; }  ///< 0 if empty
+    [[nodiscard]] std::size_t texels() const;                      ///< total number of texels added
+    /// Returns the i-th rectangle added.
     [[nodiscard]] const TexelRectangle& rectangle(std::size_t i) const { return rectangles_[i]; }
-    /// Of its texel (0, 0), counted row by row.
+    /// Returns the row-major index of its texel (0, 0).
     [[nodiscard]] std::size_t index(const TexelRectangle& r) const {
         return (static_cast<std::size_t>(r.y) << log2_width_) + static_cast<std::size_t>(r.x);
     }
 
   private:
-    /// On shelves from left to right; the height, or side_max + 1 where it does not fit.
+    /// Places the rectangles on shelves from left to right. Returns the height, or side_max + 1 if they do not fit.
     std::int32_t place(std::int32_t side_max);
 
     std::size_t packed_ = 0;
@@ -64,32 +64,32 @@ class TexelLayout {
     std::int32_t height_ = 0;
 };
 
-/// The textures: one for each layout of texels, in the order of the block's widths.
+/// The textures: one for each texel layout, in the order of the widths in the block.
 enum TexelKind : std::size_t { kFloatTexels = 0, kFixedTexels = 1, kFrontBackTexels = 2 };
 inline constexpr std::size_t kTexelKinds = 3;
 
 [[nodiscard]] TexelKind texelKindOf(MapFormat format);
 
-/// The place of one map.
+/// The location of one map.
 struct MapPlace {
     TexelKind kind = kFloatTexels;
-    std::size_t first = 0;   ///< index of its texel (0, 0), counted row by row of the texture
-    std::int32_t pitch = 0;  ///< texels from one of its rows to the next
-    TexelRectangle texels;   ///< of a live map: where it is drawn to
-    TexelRectangle motion;   ///< of a live map: where its motion is drawn to, in the float texture
+    std::size_t first = 0;   ///< row-major index of its texel (0, 0) in the texture
+    std::int32_t pitch = 0;  ///< texels between its rows
+    TexelRectangle texels;   ///< live maps: where the map is rendered
+    TexelRectangle motion;   ///< live maps: where its motion is rendered, in the float texture
     std::size_t motion_first = 0;
 };
 
 struct MapLayout {
-    std::array<TexelLayout, kTexelKinds> textures;  ///< by TexelKind
-    std::vector<MapPlace> places;                   ///< of the maps, in their order
+    std::array<TexelLayout, kTexelKinds> textures;  ///< indexed by TexelKind
+    std::vector<MapPlace> places;                   ///< one for each map, in order
 
-    /// The first texel of the room for more patches, behind those of the maps.
+    /// First texel reserved for more patches, after those of the maps.
     std::size_t room = 0;
 
-    /// \param side_max  of a texture, texels.
-    /// \param room_texels  for patches that come later.
-    /// Errors: kUnsupported (no maps), kLimit (a texture would have to be larger).
+    /// \param side_max  maximum side of a texture, texels.
+    /// \param room_texels  texels to reserve for later patches.
+    /// Errors: kUnsupported (no maps), kLimit (a texture would exceed side_max).
     [[nodiscard]] static Result<MapLayout> create(std::span<const PlacedMap> maps, std::int32_t side_max,
                                                   std::size_t room_texels = 0);
 };

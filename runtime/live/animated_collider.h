@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// A collider that moves as a glTF's clips, or the program, would have it: a character, a machine. Its mesh is posed on the
-// GPU (skin_pass.h) and drawn into the maps of a LiveCollider, whose box goes with it:
+// A collider animated by glTF clips or by the program: a character, a machine. Its mesh is posed on the GPU
+// (skin_pass.h) and rendered into the maps of a LiveCollider, whose box moves with it:
 //
 //     AnimatedCollider walker = *AnimatedCollider::create(mesh);
 //     ColliderBody body{.collider = &walker.frames(), .pose = walker.placed(pose), .live = true};
-//     WorldTextures textures = *WorldTextures::create({&body, 1});   // other bodies may stand beside it
-//     each step:  walker.setPose(poseAt(*mesh, clip, time));               // at the end of the step
+//     WorldTextures textures = *WorldTextures::create({&body, 1});   // other bodies may be added
+//     each step:  walker.setPose(poseAt(*mesh, clip, time));         // pose at the end of the step
 //                 textures.setPoses({walker.placed(pose), …});
 //                 walker.update(textures, 0);
 //                 particles.step(dt);
 //
-// The maps cover as much as the mesh ever takes up, not the whole way that it goes: the box keeps its size, and its middle
-// is the object's origin on the GPU. What placed() returns has that in it.
+// The maps cover the largest extent of any pose, not the whole path. The box has a constant size, and its centre is the
+// object's origin on the GPU. placed() accounts for this offset.
 #pragma once
 
 #include <cstdint>
@@ -27,38 +27,40 @@
 
 namespace relief {
 
-/// Maps for a mesh that takes up a box of these sides: liveFrames() about the origin, that know free space around the mesh.
-/// \param room  object units, as poseExtent() finds it. Errors: as liveFrames().
+/// Returns liveFrames() around the origin for a mesh whose poses fit into a box of this size; space around the mesh is
+/// known to be free.
+/// \param room  object units, see poseExtent(). Errors: as liveFrames().
 [[nodiscard]] Result<Collider> animatedFrames(const glm::vec3& room, std::uint32_t resolution);
 
 struct AnimatedColliderOptions {
-    std::uint32_t resolution = 512;  ///< texels along the longest side of its box
-    /// Sides of the box that holds it in every pose, object units; nullopt: that of poseExtent().
+    std::uint32_t resolution = 512;  ///< texels along the longest side of the box
+    /// Sides of a box that fits every pose, object units; nullopt: that of poseExtent().
     std::optional<glm::vec3> room{};
 };
 
 class AnimatedCollider {
   public:
-    /// Needs a current context, as every call but placed() does; every call restores the GL state that it touches, and none
-    /// waits. It has its firstPose().
-    /// \param mesh  valid; shared by all that move as it does.
-    /// Fails as animatedFrames(), LiveCollider and SkinPass do.
+    /// Starts in firstPose(). Every call except placed() needs a current context, restores the GL state that it
+    /// changes, and does not wait.
+    /// \param mesh  valid; may be shared by several colliders.
+    /// Errors: those of animatedFrames(), LiveCollider and SkinPass.
     [[nodiscard]] static Result<AnimatedCollider> create(std::shared_ptr<const AnimatedMesh> mesh,
                                                          const AnimatedColliderOptions& options = {});
 
-    /// Errors: kUsage (another number of joints or weights; a number that is not finite; a pose that takes up more than the
-    /// room).
+    /// Checks a pose. Errors: kUsage (wrong number of joints or weights, a number that is not finite, a pose that
+    /// exceeds the room).
     [[nodiscard]] Result<void> check(const MeshPose& pose) const;
-    /// Moves the vertices; update() shows it. Once between two updates.
-    /// Fails as check(), and with kUsage (called twice). Nothing then changes.
+    /// Moves the vertices; update() renders them. Call it once between two updates.
+    /// Errors: those of check(); kUsage (called twice). The state is then unchanged.
     [[nodiscard]] Result<void> setPose(const MeshPose& pose);
-    /// The last change was a jump: LiveCollider::settle(). Poses of the body are WorldTextures' own.
+    /// Treats the last change as a jump: LiveCollider::settle(). Body poses are handled by WorldTextures.
     void settle() { live_.settle(); }
 
-    /// The pose to give to WorldTextures: that of the middle of its box. \param body  where the mesh's own origin is.
+    /// Returns the pose to pass to WorldTextures: that of the centre of the box. \param body  pose of the mesh's
+    /// origin.
     [[nodiscard]] Pose placed(const Pose& body) const;
 
-    /// LiveCollider::update().
+    /// Calls LiveCollider::update().
     [[nodiscard]] Result<void> update(WorldTextures& textures, std::size_t body) {
         return live_.update(textures, body);
     }
@@ -67,7 +69,7 @@ class AnimatedCollider {
     [[nodiscard]] const std::shared_ptr<const AnimatedMesh>& shared() const { return mesh_; }
     [[nodiscard]] const LiveCollider& live() const { return live_; }
     [[nodiscard]] const Collider& frames() const { return live_.frames(); }
-    [[nodiscard]] const glm::vec3& middle() const { return middle_; }  ///< of its box, object space
+    [[nodiscard]] const glm::vec3& middle() const { return middle_; }  ///< centre of the box, object space
 
   private:
     AnimatedCollider(std::shared_ptr<const AnimatedMesh> mesh, const glm::vec3& room, SkinPass pass,
@@ -83,7 +85,7 @@ class AnimatedCollider {
     glm::vec3 room_;
     SkinPass pass_;
     LiveCollider live_;
-    std::optional<MeshPose> pose_;  // the last
+    std::optional<MeshPose> pose_;  // the last one set
     glm::vec3 middle_{0.0F};
 };
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// A collider that deforms: a mesh whose vertices move, and its depth maps, which the GPU renders anew before
-// the particles move (Kolb, Latta and Rezk-Salama 2004, section 5). Beside each texel it keeps how far the
-// surface there has gone since the update before: the velocity that a particle is met with.
+// A deforming collider: a mesh with moving vertices whose depth maps the GPU renders before each step of the particles
+// (Kolb, Latta and Rezk-Salama 2004, section 5). For each texel it also stores how far the surface has moved since the
+// previous update, for the relative velocity at contacts.
 //
 //     LiveCollider live = *LiveCollider::create(positions, triangles, *liveFrames(box));
 //     ColliderBody body{.collider = &live.frames(), .live = true};
-//     WorldTextures textures = *WorldTextures::create({&body, 1});   // static bodies may stand beside
-//     it each step:  live.setPositions(…);  live.update(textures, 0);  particles.step(dt);
+//     WorldTextures textures = *WorldTextures::create({&body, 1});   // static bodies may be added
+//     each step:  live.setPositions(…);  live.update(textures, 0);  particles.step(dt);
 //
-//     bytes on the GPU = those of GpuMesh and of WorldTextures, and 44 a texel of a map
+//     bytes on the GPU = those of GpuMesh and WorldTextures, and 44 per texel of a map
 #pragma once
 
 #include <cstdint>
@@ -24,49 +24,48 @@
 
 namespace relief {
 
-/// The sizes of live maps.
 enum class LiveSize : std::uint8_t {
-    kEqual,  ///< `resolution` texels along each side
-    kSquareTexels,  ///< `resolution` texels along the longest side of the box, and as many in proportion along the others
+    kEqual,         ///< `resolution` texels along every side of the box
+    kSquareTexels,  ///< `resolution` texels along the longest side of the box, in proportion along the others
 };
 
-/// Three front-back maps of planes along the axes, without texels, which enclose `box`.
-/// \param box         object units: what the mesh never leaves, whatever it does.
+/// Returns three axis-aligned front-back plane maps without texels, which enclose `box`.
+/// \param box         object units; must contain the mesh at all times.
 /// \param resolution  texels along a side, kMapSizeMin…kMapSizeMax.
-/// Errors: kUsage (an empty box or one that is not finite, a resolution out of range).
+/// Errors: kUsage (an empty or infinite box, a resolution out of range).
 [[nodiscard]] Result<Collider> liveFrames(const Bounds& box, std::uint32_t resolution = 256,
                                           LiveSize size = LiveSize::kEqual);
 
 class LiveCollider {
   public:
-    /// Needs a current context, as every call does; every call restores the GL state that it touches, and
-    /// none waits.
-    /// \param positions, triangles  as GpuMesh::create wants them: the mesh before its first change.
-    /// \param frames  maps as liveFrames() makes them. A map's box must hold the mesh at all times: what
-    ///                leaves it is cut off, and a map that encloses everything then calls that free.
-    /// Fails as GpuMesh and DepthMapRenderer do, and with kUsage (other maps).
+    /// Every call needs a current context, restores the GL state that it changes, and does not wait.
+    /// \param positions, triangles  the initial mesh, as required by GpuMesh::create.
+    /// \param frames  maps from liveFrames(). The box of a map must contain the mesh at all times: geometry outside is
+    /// clipped, and a map that encloses everything treats it as free space.
+    /// Errors: those of GpuMesh and DepthMapRenderer; kUsage (other maps).
     [[nodiscard]] static Result<LiveCollider> create(std::span<const glm::vec3> positions,
                                                      std::span<const glm::uvec3> triangles, Collider frames);
 
-    /// Moves the vertices; update() shows it. Once between two updates, for the motion is that of one change.
-    /// \param positions  object units, finite, as many as at first.
-    /// Errors: kUsage (called twice; another number; a vertex outside of a map that encloses everything),
-    /// kInvalidInput (not finite). Nothing then changes.
+    /// Moves the vertices; update() renders them. Call it once between two updates, because the motion is that of one
+    /// change.
+    /// \param positions  object units, finite, as many as at creation.
+    /// Errors: kUsage (called twice, a different count, a vertex outside a map that encloses everything), kInvalidInput
+    /// (not finite). The state is then unchanged.
     [[nodiscard]] Result<void> setPositions(std::span<const glm::vec3> positions);
-    /// The same from a buffer of the GPU: tightly packed triples of floats from `offset` bytes on; copied by
-    /// the GPU in the order of commands. The numbers are not checked. Errors: kUsage (called twice;
+    /// Moves the vertices to positions in a GPU buffer: tightly packed triples of floats from byte `offset` on. The GPU
+    /// copies them in command order; values are not checked. Errors: kUsage (called twice, or as
     /// GpuMesh::setPositions).
     [[nodiscard]] Result<void> setPositions(GLuint buffer, std::size_t offset = 0);
-    /// The last change was a jump, as if the vertices had always been there: the next update() has no motion.
+    /// Treats the last change as a jump: the next update() shows no motion.
     void settle();
 
-    /// Renders the maps and the motion into their places. Call it before every step of the particles: each
-    /// takes the motion since the update before as that of its own time. Costs nothing while the mesh rests.
-    /// \param body  of `textures`, created from frames() with `live`.
+    /// Renders maps and motion into their textures. Call it before every step of the particles: the step interprets the
+    /// motion since the previous update as that of its own duration. Costs nothing while the mesh is at rest.
+    /// \param body  index in `textures`, created from frames() with `live`.
     /// Errors: kUsage (a body that is not live or has other maps), kFailure.
     [[nodiscard]] Result<void> update(WorldTextures& textures, std::size_t body);
 
-    /// Bounds, and maps without texels.
+    /// Returns bounds, and maps without texels.
     [[nodiscard]] const Collider& frames() const { return frames_; }
     [[nodiscard]] const GpuMesh& mesh() const { return mesh_; }
 
@@ -78,13 +77,13 @@ class LiveCollider {
     void copyMotion(const LiveSlot& slot, const DepthMap& map) const;
 
     GpuMesh mesh_;
-    DepthMapRenderer renderer_;  // of one map after another
+    DepthMapRenderer renderer_;  // used for one map after another
     Collider frames_;
     GlProgram motion_program_;
     GlFramebuffer texel_target_, motion_target_;
-    bool shown_ = false;   // by a first update
+    bool shown_ = false;   // update() was called
     bool moved_ = false;   // since the last update
-    bool moving_ = false;  // the motion shown is not zero
+    bool moving_ = false;  // the rendered motion is not zero
 };
 
 }  // namespace relief

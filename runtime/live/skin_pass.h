@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses an animated mesh on the GPU, by shaders/live/skin.vert and transform feedback into a buffer: for
-// LiveCollider::setPositions(buffer), and for the mesh's picture.
+// Poses an animated mesh on the GPU, with shaders/live/skin.vert and transform feedback into a buffer, for
+// LiveCollider::setPositions(buffer) and for rendering the mesh.
 //
 //     bytes on the GPU = 40 · vertices + 8 · influences + 16 · deltas + 96 · joints + 32 · targets,
-//                        and the buffer that is written: 12 or 24 a vertex
+//                        and the output buffer: 12 or 24 per vertex
 #pragma once
 
 #include <cstddef>
@@ -19,20 +19,21 @@ namespace relief {
 
 class SkinPass {
   public:
-    /// Needs a current context, as run() does.
+    /// Needs a current context, as does run().
     /// \param mesh     valid.
-    /// \param normals  one a vertex, of length 1 or zero, in the space of the positions; or none: then run() writes positions
-    ///                 alone.
-    /// Errors: kUsage (another number of normals), kLimit (more than this GL's textures hold), kFailure (the driver's compiler).
+    /// \param normals  one per vertex, of unit length or zero, in the space of the positions. If empty, run() only
+    /// writes positions.
+    /// Errors: kUsage (a different number of normals), kLimit (more than this GL's textures support), kFailure (shader
+    /// compilation).
     [[nodiscard]] static Result<SkinPass> create(const AnimatedMesh& mesh,
                                                  std::span<const glm::vec3> normals = {});
 
-    /// Writes all vertices of that pose, object space less `origin`, into buffer(). Does not wait. Restores the GL state; no
-    /// transform feedback of the caller's may be active.
-    /// \param pose  of as many joints and weights as the mesh has.
+    /// Writes all vertices of a pose into buffer(), in object space minus `origin`. Does not wait. Restores the GL
+    /// state; the caller must not have transform feedback active.
+    /// \param pose  has as many joints and weights as the mesh.
     void run(const MeshPose& pose, const glm::vec3& origin = glm::vec3(0.0F));
 
-    /// Of VertexOutput::kPositions, or of kPositionsAndNormals. Rewritten by every run().
+    /// Returns the output, in the layout kPositions or kPositionsAndNormals of VertexOutput. Rewritten by every run().
     [[nodiscard]] const GlBuffer& buffer() const { return feedback_.buffer(); }
     [[nodiscard]] std::size_t bytes() const { return feedback_.bytes(); }
 
@@ -43,9 +44,9 @@ class SkinPass {
     GlTexture pose_;
     GlTexture influences_;
     GlTexture deltas_;
-    glm::ivec3 shifts_{0};  // of these three
+    glm::ivec3 shifts_{0};  // of the three textures above
     int joints_ = 0;
-    std::vector<glm::vec4> texels_;  // of pose_, kept for their memory
+    std::vector<glm::vec4> texels_;  // staging for pose_, kept to avoid reallocation
 };
 
 }  // namespace relief

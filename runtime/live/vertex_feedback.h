@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vertices that a vertex shader makes on the GPU, by transform feedback into a buffer; nothing is rasterised.
+// Captures the output of a vertex shader in a buffer by transform feedback; nothing is rasterised.
 #pragma once
 
 #include <cstddef>
@@ -10,28 +10,29 @@
 
 namespace relief {
 
-/// The output of a vertex.
+/// The output for each vertex.
 enum class VertexOutput : std::uint8_t {
     kPositions,           ///< v_position: three floats, tightly packed
-    kPositionsAndNormals  ///< and v_normal: six, as ColliderMesh's vertices
+    kPositionsAndNormals  ///< also v_normal: six floats, as ColliderMesh's vertices
 };
 
 class VertexFeedback {
   public:
-    /// Needs a current context, and a PassState around it, as run() does.
-    /// \param shader    its file, which has v_normal only where RELIEF_NORMALS is defined.
+    /// Needs a current context and a surrounding PassState, as does run().
+    /// \param shader    file name; the shader declares v_normal only if RELIEF_NORMALS is defined.
     /// \param vertices  1 to 2³¹ − 1
-    /// Leaves the array that run() draws from bound, for its attributes.
-    /// Errors: kLimit (no room), kFailure (the driver's compiler).
+    /// Leaves the vertex array used by run() bound, to set up its attributes.
+    /// Errors: kLimit (out of memory), kFailure (shader compilation).
     [[nodiscard]] static Result<VertexFeedback> create(const char* shader, std::size_t vertices,
                                                        VertexOutput output);
 
     [[nodiscard]] GlProgram& program() { return program_; }
-    /// Of 12 or 24 bytes a vertex, rewritten by every run().
+    /// Returns the output: 12 or 24 bytes per vertex, rewritten by every run().
     [[nodiscard]] const GlBuffer& buffer() const { return output_; }
     [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
-    /// With the program in use and its uniforms set. Waits for nothing; no transform feedback of the caller's may be active.
+    /// Requires the program in use with its uniforms set. Does not wait; the caller must not have transform feedback
+    /// active.
     void run() const;
 
   private:
@@ -39,7 +40,7 @@ class VertexFeedback {
     std::size_t bytes_ = 0;
     GlBuffer output_;
     GlVertexArray array_;
-    GlTexture pixel_;  // a draw needs a whole framebuffer, even one that rasterises nothing
+    GlTexture pixel_;  // a draw needs a complete framebuffer even if nothing is rasterised
     GlFramebuffer target_;
     GlProgram program_;
 };

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes the vertices of a mesh wobble, on the GPU, by shaders/live/wobble.vert and transform feedback into a buffer:
-// for LiveCollider::setPositions(buffer), and for the mesh's picture.
+// Animates the vertices of a mesh with a wobble on the GPU, with shaders/live/wobble.vert and transform feedback into a
+// buffer, for LiveCollider::setPositions(buffer) and for rendering the mesh.
 //
 //     p + n · amplitude/3 · Σ_k sin(2π (p_k / wavelength − r_k frequency·t) + phase + k)
 //     for k = 0, 1, 2 of x, y, z; r = (1, 1.25, 0.8); n the normal of the vertex
 //
-//     bytes on the GPU = 24 · vertices, and the buffers that are written: 12 or 24 a vertex
+//     bytes on the GPU = 24 · vertices, and the output buffers: 12 or 24 per vertex
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -18,7 +18,7 @@
 
 namespace relief {
 
-/// A box that is larger than the mesh by the amplitude on every side holds the whole motion.
+/// Settings of the wobble. The mesh's box, enlarged by the amplitude on every side, contains the whole motion.
 struct Wobble {
     float amplitude = 0.0F;   ///< object units
     float frequency = 1.0F;   ///< 1/s, ≥ 0
@@ -27,26 +27,26 @@ struct Wobble {
     friend bool operator==(const Wobble&, const Wobble&) = default;
 };
 
-/// The vertices at a time, by the formula above: CPU truth of WobblePass::run().
+/// Returns the vertices at a time by the formula above. CPU reference of WobblePass::run().
 [[nodiscard]] std::vector<glm::vec3> wobbled(const Wobble& wobble, std::span<const glm::vec3> positions,
                                              std::span<const glm::vec3> normals, double time);
 
 class WobblePass {
   public:
-    /// Needs a current context, as run() does.
+    /// Needs a current context, as does run().
     /// \param positions  at rest, object units, finite; at least one.
-    /// \param normals    as many, of length 1 or zero.
-    /// Errors: kUsage (a number that is not finite or out of its range; no vertex, or not as many normals), kLimit (no
-    /// room), kFailure (the driver's compiler).
+    /// \param normals    as many as positions, of unit length or zero.
+    /// Errors: kUsage (a number that is not finite or out of range, no vertices, a different number of normals), kLimit
+    /// (out of memory), kFailure (shader compilation).
     [[nodiscard]] static Result<WobblePass> create(const Wobble& wobble, std::span<const glm::vec3> positions,
                                                    std::span<const glm::vec3> normals,
                                                    VertexOutput output = VertexOutput::kPositions);
 
-    /// Writes all vertices as they are at `time`, in seconds, into buffer(). Does not wait. Restores the GL
-    /// state; no transform feedback of the caller's may be active.
+    /// Writes all vertices at `time`, in seconds, into buffer(). Does not wait. Restores the GL state; the caller must
+    /// not have transform feedback active.
     void run(double time);
 
-    /// Of bytes(), rewritten by every run().
+    /// Returns the output of bytes() bytes, rewritten by every run().
     [[nodiscard]] const GlBuffer& buffer() const { return feedback_.buffer(); }
     [[nodiscard]] std::size_t bytes() const { return feedback_.bytes(); }
 

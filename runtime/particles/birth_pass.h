@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes newborn particles into the state textures: as points that are drawn, or by a compute shader.
+// Writes newborn particles into the state textures, as points or with a compute shader.
 #pragma once
 
 #include <cstdint>
@@ -16,16 +16,16 @@ namespace relief {
 
 class BirthPass {
   public:
-    /// As the shaders have it.
+    /// Layout of the shaders' input.
     struct Newborn {
-        std::uint32_t index;  ///< of its texel; no two are the same
+        std::uint32_t index;  ///< texel index, unique
         glm::vec3 position;
         glm::vec3 velocity;
         glm::vec4 birth;  ///< time of birth, time of death, type, id modulo 2^24
     };
-    /// The target, of either path.
+    /// The render target, for either path.
     struct Target {
-        GLuint framebuffer = 0;  ///< of the three textures, in their order
+        GLuint framebuffer = 0;  ///< with the three textures as attachments, in order
         const GlTexture& position;
         const GlTexture& velocity;
         const GlTexture& birth;
@@ -33,10 +33,10 @@ class BirthPass {
 
     BirthPass() = default;
     /// \param size  of the state textures, texels. \param path  not kAuto.
-    /// Errors: kFailure (the driver's compiler).
+    /// Errors: kFailure (shader compilation).
     [[nodiscard]] static Result<BirthPass> create(const glm::uvec2& size, StepPath path);
 
-    /// With the state of a pass (PassState).
+    /// Call it inside a PassState.
     void run(std::span<const Newborn> newborn, const Target& target) const;
 
   private:
@@ -47,7 +47,7 @@ class BirthPass {
     StepPath path_ = StepPath::kFragment;
     glm::uvec2 size_{0};
     GlBuffer newborn_;
-    GlVertexArray array_;  // of the points
+    GlVertexArray array_;  // for drawing points
     GlProgram program_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A surface that gives birth, as an emitter sees it: runtime/births/emitter_surface.h.
+// The interface of a surface that emits particles; implemented in runtime/births/emitter_surface.h.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -17,26 +17,26 @@ class BirthSurface {
     virtual ~BirthSurface() = default;
     [[nodiscard]] virtual std::unique_ptr<BirthSurface> clone() const = 0;
 
-    /// Its vertices now, and `seconds` ago.
-    /// \param before, now  object units, a place for each vertex; a place without numbers gives no birth.
-    /// \param seconds      > 0; 0: it has jumped there, and `before` does not count.
+    /// Sets the vertices now, and `seconds` ago.
+    /// \param before, now  object units, one position per vertex; triangles with a non-finite corner do not emit.
+    /// \param seconds      > 0; 0 after a jump: `before` is ignored.
     virtual void move(std::span<const glm::vec3> before, std::span<const glm::vec3> now, double seconds) = 0;
-    /// Σ area · weight, now; 0: it cannot give birth.
+    /// Returns the current Σ area · weight; 0: the surface cannot emit.
     [[nodiscard]] virtual double area() const = 0;
-    /// Of all its vertices now.
+    /// Returns the bounds of all current vertices.
     [[nodiscard]] virtual Bounds bounds() const = 0;
 
     struct Place {
         glm::vec3 position{0.0F};
-        glm::vec3 normal{0.0F};    ///< of its triangle, outwards, of length 1
-        glm::vec3 velocity{0.0F};  ///< its own, object units a second
+        glm::vec3 normal{0.0F};    ///< of the triangle, outwards, unit length
+        glm::vec3 velocity{0.0F};  ///< of the surface at this point, object units/s
     };
-    /// A place by area and weight. It needs an area(). Draws as many numbers each time.
-    /// \param age  seconds ago, ≥ 0; what is beyond `seconds` counts as that.
+    /// Samples a point by area and weight. Requires area() > 0. Always consumes the same number of random numbers.
+    /// \param age  seconds ago, ≥ 0; clamped to the `seconds` of move().
     [[nodiscard]] virtual Place draw(Pcg32& random, float age) const = 0;
 };
 
-/// A surface as a value: its copy moves for itself.
+/// A surface with value semantics: copies are deep.
 class BirthSurfaceValue {
   public:
     BirthSurfaceValue() = default;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The deaths to come: a calendar queue (Brown 1988) of fixed days, so that no step pays for more than its own
-// deaths and a sixty-fourth of a second's share of the rest. A heap costs log n cache misses a death, and a
-// hierarchy of wheels stalls whenever a coarse slot is poured out.
+// Pending deaths: a calendar queue (Brown 1988) with fixed days. A step pays only for its own deaths, and for one day's
+// share of the others. A heap costs log n cache misses per death; a hierarchical timing wheel stalls whenever a coarse
+// slot is redistributed.
 #pragma once
 
 #include <cstdint>
@@ -9,20 +9,20 @@
 
 namespace relief {
 
-/// The calendar has kDays days of 1 / 64 s, used in turn: a death beyond the last waits on its day for the turn that is its own.
+/// The calendar has kDays days of 1/64 s, used cyclically: a death beyond the last day waits on its day for its own
+/// turn.
 class DeathQueue {
   public:
     DeathQueue() : days_(kDays) {}
 
-    /// \param time  seconds, any float: one that has passed is due at once, NaN and infinity never are.
+    /// Adds a death. \param time  seconds; past times are due at once, NaN and infinity never.
     void push(float time, std::uint32_t index);
 
-    /// Takes out every death whose time is at or before `now`, which never goes back but by rebase().
-    /// \param dead  the indices are added at its end, in an order that depends on nothing but the calls so
-    /// far.
+    /// Removes all deaths with a time at or before `now`. `now` must not decrease except through rebase().
+    /// \param dead  receives the indices at its end, in an order that depends only on previous calls.
     void popUntil(float now, std::vector<std::uint32_t>& dead);
 
-    /// Sets the clock back: every time becomes time − shift, in float. Sorts all that wait anew.
+    /// Moves the clock back: every time becomes time − shift, as a float. Re-sorts all pending deaths.
     void rebase(float shift);
 
     [[nodiscard]] std::uint32_t size() const { return size_; }
@@ -35,14 +35,14 @@ class DeathQueue {
     };
     struct Day {
         std::vector<Death> deaths;
-        float earliest = 0.0F;  // of them
+        float earliest = 0.0F;  // of the deaths
     };
 
     void file(const Death& death);
     void openDay(std::uint32_t day, float now, std::vector<std::uint32_t>& dead);
 
     std::vector<Day> days_;
-    std::uint32_t today_ = 0;  // since time 0: the first that may hold deaths that are due
+    std::uint32_t today_ = 0;  // day number since time 0; no earlier day has due deaths
     std::uint32_t size_ = 0;
 };
 

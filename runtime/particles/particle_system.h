@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// The particle simulation: state in float textures, moved by fragment shaders (paper, section 3). Nothing is
-// read back and nothing waits for the GPU but in readState().
+// The particle simulation: state in float textures, advanced by fragment or compute shaders (paper, section 3). Only
+// readState() and readRaw() read back data or wait for the GPU.
 //
-//     bytes on the GPU = 80 · texels, texels = capacity rounded up to whole rows of kStateWidth:
+//     bytes on the GPU = 80 · texels; texels = capacity rounded up to whole rows of kStateWidth:
 //         position  2 × RGBA32F (double-buffered)      xyz, collisions (−1: dead)
 //         velocity  2 × RGBA32F (double-buffered)      xyz, contact of the last step
 //         birth     1 × RGBA32F                        time of birth, time of death, type, id mod 2^24
-//     (96 · texels once the clock has been set back for the first time; 16 · texels more for each output of a feature)
+//     (96 · texels after the clock has been set back for the first time; 16 · texels more for each feature output)
 //
-// A step, in this order: births are written into the textures (birth_pass.h); one pass over the occupied rows
-// decides deaths, moves and collides (shaders/particles/step.glsl); the CPU frees the indices of the dead.
+// Order of a step: births are written into the textures (birth_pass.h); one pass over the occupied rows determines
+// deaths, moves and collides (shaders/particles/step.glsl); the CPU frees the indices of dead particles.
 //
-// Time. The CPU counts in double. The GPU sees floats relative to an epoch that is set forward whenever
-// epoch_seconds have passed, so that a float resolves half a millisecond even after days. A particle dies at
-// the first step whose end is at or after its time of death; that time is one float, made by the CPU, and
-// both sides compare the same two floats, so they agree on the step.
+// Time: the CPU counts in double. The GPU uses floats relative to an epoch, which advances every epoch_seconds, so that
+// a float resolves half a millisecond even after days. A particle dies in the first step that ends at or after its time
+// of death. CPU and GPU agree on this step because both compare the same two floats, computed by the CPU.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +37,7 @@
 
 namespace relief {
 
-/// The integration of velocities; both are of first order, and alike but for rounding.
+/// Velocity integration; both methods are first-order and differ only by rounding.
 enum class Integrator : std::uint8_t {
     kEuler,  ///< semi-implicit: v' = v + dt a, P' = P + dt v'
     kVerlet,  ///< P' = P + dt/dt_before (P − P_before) + dt² a: the velocity is the last step's displacement
@@ -47,11 +46,11 @@ template <>
 inline constexpr std::array<std::string_view, 2> kWordsOf<Integrator>{"euler", "verlet"};
 
 struct ParticleSystemOptions {
-    std::uint32_t capacity = 65536;  ///< particles that may live at once, 1…kCapacityMax
+    std::uint32_t capacity = 65536;  ///< maximum live particles, 1…kCapacityMax
     Integrator integrator = Integrator::kEuler;
-    double epoch_seconds = 4096.0;  ///< how far the GPU's clock runs before it is set back
+    double epoch_seconds = 4096.0;  ///< seconds until the GPU's clock is set back
     StepPath path = StepPath::kAuto;
-    double start_time = 0.0;  ///< what time() is at first, seconds; also below 0, where a run is warmed up
+    double start_time = 0.0;  ///< initial time(), seconds; negative for a warm-up
 };
 
 struct ParticleCounts {
@@ -59,28 +58,28 @@ struct ParticleCounts {
     std::uint64_t died = 0;
     std::uint64_t refused = 0;  ///< births without a free index
     std::uint32_t alive = 0;
-    std::uint32_t extent = 0;  ///< the largest live index + 1
+    std::uint32_t extent = 0;  ///< largest live index + 1
 };
 
-/// One live particle, read back.
+/// A live particle, read back.
 struct ParticleState {
-    std::uint32_t id = 0;     ///< births before its own, modulo 2^32
-    std::uint32_t index = 0;  ///< its texel
+    std::uint32_t id = 0;     ///< number of earlier births, modulo 2^32
+    std::uint32_t index = 0;  ///< index of its texel
     glm::vec3 position{0.0F};
     glm::vec3 velocity{0.0F};
     float age = 0.0F;       ///< seconds
     float lifetime = 0.0F;  ///< seconds
     std::uint32_t type = 0;
     std::uint32_t collisions = 0;      ///< steps in contact so far
-    Contact contact = Contact::kNone;  ///< of the last step
+    Contact contact = Contact::kNone;  ///< in the last step
 };
 
-/// True for a particle that floats no longer hold: a position or velocity that is no number or infinite, or a speed above
-/// 10¹⁵ world units a second. Extreme forces send particles there.
+/// Returns true if a particle exceeds the range of floats: a position or velocity that is NaN or infinite, or a speed
+/// above 10¹⁵ world units/s. Extreme forces can cause this.
 [[nodiscard]] bool isLost(const ParticleState& particle);
 
-/// The state textures as they are, four floats a texel, index after index
-/// up to the extent. (Texels beyond it hold leftovers, which no renderer may draw.)
+/// The raw state textures, four floats per texel, in order of index up to the extent. (Texels beyond it contain stale
+/// data, which renderers must not draw.)
 struct RawState {
     std::vector<float> position;
     std::vector<float> velocity;
@@ -89,37 +88,39 @@ struct RawState {
 
 class ParticleSystem {
   public:
-    static constexpr std::uint32_t kStateWidth = 1024;  ///< texels in a row, fewer if the capacity is
+    static constexpr std::uint32_t kStateWidth = 1024;  ///< texels per row; fewer if the capacity is smaller
     static constexpr std::uint32_t kCapacityMax = 1U << 24;
 
-    /// Needs a current context, as every call does that is not const.
-    /// Errors: kUsage (capacity, epoch), kLimit (above what this GL takes), kUnsupported (also StepPath::kCompute without
-    /// compute shaders), kFailure.
+    /// Every call that is not const needs a current context.
+    /// Errors: kUsage (capacity, epoch), kLimit (more than this GL supports), kUnsupported (also StepPath::kCompute
+    /// without compute shaders), kFailure.
     [[nodiscard]] static Result<ParticleSystem> create(const ParticleSystemOptions& options = {});
 
-    /// The colliders from the next step on; compiles the step for it. The particles live in
-    /// the object space of a single collider, or in the world of several bodies.
-    /// \param collider  must outlive its use by the system; null: nothing.
-    /// Errors: kFailure (the driver's compiler).
+    /// Sets the colliders for subsequent steps and compiles the step for them. Particles are in the object space of a
+    /// single collider, or in the world space of several bodies.
+    /// \param collider  must outlive its use by the system; null: none.
+    /// Errors: kFailure (shader compilation).
     [[nodiscard]] Result<void> setCollider(const ShaderCollider* collider);
-    /// Errors: kUsage (a number that is not finite, a drag or viscosity below 0); the forces then stay as they were.
+    /// Sets the forces. Errors: kUsage (a number that is not finite, a negative drag or viscosity); the forces are then
+    /// unchanged.
     [[nodiscard]] Result<void> setForces(const Forces& forces);
-    /// The types of particles: Birth::type is an index here, and the last one for what lies beyond. Compiles
-    /// the step where their number changes, or the first gets a radius or collides with less than all.
-    /// Errors: kUsage (none or more than kParticleTypesMax; a number that is not finite, a mass below kParticleMassMin, a
-    /// negative radius, a share outside 0…1, unknown bits), kFailure (the driver's compiler).
+    /// Sets the particle types. Birth::type is an index into them; larger values use the last one. Recompiles the step
+    /// if the number of types changes, or if radii or collision masks are used for the first time.
+    /// Errors: kUsage (none or more than kParticleTypesMax, a number that is not finite, a mass below kParticleMassMin,
+    /// a negative radius, a factor outside 0…1, unknown bits), kFailure (shader compilation).
     [[nodiscard]] Result<void> setTypes(std::span<const ParticleType> types);
     [[nodiscard]] Result<void> setType(const ParticleType& type) { return setTypes({&type, 1}); }
-    /// Above 0 a step tests its way in pieces no longer than this, world units, and never ends inside what it
-    /// did not begin in: nothing crosses a body at rest that is thicker than this. What moves farther than
-    /// StepPass::kSweepPieces of them in a step is slowed down. 0: only both ends are tested, as in the paper.
-    /// Errors: kUsage, kFailure (the driver's compiler).
+    /// Sets the sweep length, world units. If above 0, a step tests its path in pieces of at most this length and never
+    /// ends inside a solid in which it did not start: particles cannot cross static bodies thicker than this. Particles
+    /// that move more than StepPass::kSweepPieces pieces in a step are slowed down. 0: tests only both ends, as in the
+    /// paper.
+    /// Errors: kUsage, kFailure (shader compilation).
     [[nodiscard]] Result<void> setSweep(float length);
-    /// A floor: everything below this height is solid, in union with the collider. nullopt: none.
+    /// Sets a floor: everything below this height is solid, in addition to the collider. nullopt: none.
     /// Errors: kUsage (a height that is not finite).
     [[nodiscard]] Result<void> setGround(std::optional<float> height);
 
-    /// The feature of a class; null: none.
+    /// Returns the feature of a class, or null.
     template <class Feature>
     [[nodiscard]] Feature* feature() const {
         for (const std::shared_ptr<StepFeature>& one : features_) {
@@ -129,77 +130,79 @@ class ParticleSystem {
         }
         return nullptr;
     }
-    /// Puts a feature in the place of another, and compiles the step for it. \param old  null: adds it.
-    /// \param now  null: removes the old one. Errors: kUsage or kLimit (StepFeature::check), kUnsupported (a GL that draws to
-    /// fewer textures), kFailure (the driver's compiler). The system then keeps the features that it had.
+    /// Replaces a feature and compiles the step for it.
+    /// \param old  null: adds `now`.
+    /// \param now  null: removes `old`.
+    /// Errors: kUsage or kLimit (StepFeature::check), kUnsupported (too few draw buffers), kFailure (shader
+    /// compilation). The features are then unchanged.
     [[nodiscard]] Result<void> replaceFeature(const StepFeature* old, std::shared_ptr<StepFeature> now);
 
-    /// Gives birth at the start of the next step; what has an age then has moved freely, under the forces,
-    /// since its own birth. Texels without a particle are taken in ascending order.
-    /// \return how many found a place; the rest are refused and counted.
-    /// Errors: kUsage (a birth that is not isValid(), by its number; none is made then).
+    /// Adds births for the start of the next step. A birth with an age is first advanced by it, under the forces and
+    /// without collisions. Free texels are used in ascending order.
+    /// \return the number of births added; the others are refused and counted.
+    /// Errors: kUsage (a birth that is not isValid(), named by its index; none is added then).
     Result<std::size_t> spawn(std::span<const Birth> births);
 
-    /// Moves everything by `dt` seconds, > 0. Restores the GL state that it touches (runtime/INTEGRATE.md).
-    /// Errors: kUsage (another `dt`; nothing has moved then). checkGpu() reports failures of the GPU (gl_fault.h).
+    /// Advances the simulation by `dt` seconds, > 0. Restores the GL state that it changes (runtime/INTEGRATE.md).
+    /// Errors: kUsage (an invalid `dt`; nothing moves then). checkGpu() reports GPU failures (gl_fault.h).
     Result<void> step(float dt);
 
-    /// kFragment or kCompute.
+    /// Returns kFragment or kCompute.
     [[nodiscard]] StepPath path() const { return path_; }
     [[nodiscard]] std::uint32_t capacity() const { return allocator_.capacity(); }
-    /// Places left for spawn().
+    /// Returns the free capacity for spawn().
     [[nodiscard]] std::uint32_t room() const { return allocator_.capacity() - allocator_.liveCount(); }
     [[nodiscard]] ParticleCounts counts() const;
     [[nodiscard]] double time() const { return time_; }  ///< seconds since time 0
     [[nodiscard]] bool isLive(std::uint32_t index) const { return allocator_.isLive(index); }
-    /// ParticleState::id of the last particle that had this index.
+    /// Returns the ParticleState::id of the last particle with this index.
     [[nodiscard]] std::uint32_t idOf(std::uint32_t index) const { return ids_[index]; }
     [[nodiscard]] std::span<const ParticleType> types() const { return types_; }
-    /// An empty texture of the state's size, RGBA32F, for an output of a feature.
+    /// Returns an empty RGBA32F texture of the state's size, for the output of a feature.
     [[nodiscard]] GlTexture makeStateTexture() const;
 
-    // For renderers: particle i < extent() lies at texel (i mod width, i / width). Births since the last step
-    // are not in the textures yet.
+    // For renderers: particle i < extent() is at texel (i mod width, i / width). Births since the last step are not in
+    // the textures yet.
     [[nodiscard]] const GlTexture& positions() const { return position_[current_]; }
     [[nodiscard]] const GlTexture& velocities() const { return velocity_[current_]; }
     [[nodiscard]] const GlTexture& births() const { return birth_; }
-    /// As they were before the last step.
+    /// The positions before the last step.
     [[nodiscard]] const GlTexture& positionsBefore() const { return position_[1 - current_]; }
     [[nodiscard]] std::uint32_t textureWidth() const { return width_; }
     [[nodiscard]] std::uint32_t extent() const { return drawn_extent_; }
-    [[nodiscard]] float clock() const;  ///< the time that births() counts in
+    [[nodiscard]] float clock() const;  ///< the time in the units of births()
 
-    /// The live particles in ascending order of index, without those born since the last step. Waits for the
-    /// GPU: for dumps and tests.
+    /// Reads the live particles in ascending order of index, without births since the last step. Waits for the GPU; for
+    /// dumps and tests.
     /// Errors: kFailure.
     [[nodiscard]] Result<std::vector<ParticleState>> readState() const;
-    /// Errors: kFailure.
+    /// Reads the raw state textures. Waits for the GPU. Errors: kFailure.
     [[nodiscard]] Result<RawState> readRaw() const;
 
   private:
     explicit ParticleSystem(std::uint32_t capacity) : allocator_(capacity) {}
     [[nodiscard]] Result<void> createTextures();
     [[nodiscard]] Result<void> createPrograms();
-    /// The wind that a feature adds; nullopt: none does, and Forces::wind acts.
+    /// Returns the wind that a feature adds; nullopt if there is none and Forces::wind applies.
     [[nodiscard]] std::optional<glm::vec3> featureWind() const;
     [[nodiscard]] StepVariant variantFor(const ShaderCollider* collider) const;
     [[nodiscard]] Result<void> remakeStep(const ShaderCollider* collider);
-    /// After a change of anything but the collider, which may be another one at the same place.
+    /// Call after a change of anything but the collider, because a new collider may have the address of the old one.
     [[nodiscard]] Result<void> remakeStepIfNeeded();
     [[nodiscard]] float clockOf(double time) const { return static_cast<float>(time - epoch_); }
     void setEpochForward();
     void runBirths(float dt);
     void runStep(float dt, float now);
     void freeDead(float now);
-    /// Of the state and the features' outputs.
+    /// Creates framebuffers with the state and the features' outputs.
     [[nodiscard]] Result<void> makeStepTargets();
 
     IndexAllocator allocator_;
     DeathQueue deaths_;
-    std::vector<std::uint32_t> dead_;          // of the last step, kept for its memory
-    std::vector<std::uint32_t> ids_;           // of each index
+    std::vector<std::uint32_t> dead_;          // in the last step; kept to avoid reallocation
+    std::vector<std::uint32_t> ids_;           // indexed by texel
     std::vector<BirthPass::Newborn> newborn_;  // since the last step
-    std::uint32_t stepped_extent_ = 0;         // of the last step: those that died in it included
+    std::uint32_t stepped_extent_ = 0;         // in the last step, including particles that died in it
     std::uint64_t born_ = 0;
     std::uint64_t died_ = 0;
     std::uint64_t refused_ = 0;
@@ -217,13 +220,13 @@ class ParticleSystem {
 
     std::uint32_t width_ = 0;
     std::uint32_t height_ = 0;
-    std::uint32_t drawn_extent_ = 0;  // the extent after the last step
-    int current_ = 0;                 // which of the buffers holds the state
+    std::uint32_t drawn_extent_ = 0;  // extent after the last step
+    int current_ = 0;                 // buffer that holds the state
     GlTexture position_[2];
     GlTexture velocity_[2];
     GlTexture birth_;
-    GlTexture birth_spare_;          // made when the clock is first set back
-    GlFramebuffer step_target_[2];   // position, velocity and the features' outputs
+    GlTexture birth_spare_;          // created when the clock is first set back
+    GlFramebuffer step_target_[2];   // position, velocity and feature outputs
     GlFramebuffer birth_target_[2];  // position, velocity, birth
     GlFramebuffer rebase_target_;    // birth_spare_
     BirthPass birth_pass_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Types of particles: how each moves and collides.
+// Particle types: motion and collision parameters.
 #pragma once
 
 #include <cstddef>
@@ -10,25 +10,25 @@
 
 namespace relief {
 
-/// Bits of ParticleType::collides: group g of the bodies (ColliderBody::group), of which a single collider is 0, has bit g.
+/// Bits of ParticleType::collides: body group g (ColliderBody::group) has bit g. A single collider is in group 0.
 inline constexpr std::uint32_t kCollidesWithGround = 1U << kGroundBit;
 inline constexpr std::uint32_t kCollidesWithAll = 2 * kCollidesWithGround - 1;
 
 struct ParticleType {
-    float gravity = 1.0F;  ///< factor of Forces::gravity, finite; below 0 it rises
+    float gravity = 1.0F;  ///< multiplies Forces::gravity, finite; negative: rises
     float mass = 1.0F;     ///< divides the drag; at least kParticleMassMin
-    float radius = 0.0F;   ///< of collision, world units, ≥ 0
-    /// ε, 0…1: how much comes back of the normal speed at the beginning of the step.
+    float radius = 0.0F;   ///< collision radius, world units, ≥ 0
+    /// ε, 0…1: fraction of the normal speed at the start of the step that is restored.
     float restitution = 0.0F;
-    float friction = 0.0F;            ///< ν, 0…1: how much of the tangential speed is lost
-    float friction_threshold = 0.0F;  ///< no friction below this speed, world units a second
+    float friction = 0.0F;            ///< ν, 0…1: fraction of the tangential speed that is lost
+    float friction_threshold = 0.0F;  ///< no friction below this speed, world units/s
     OnCollision on_collision = OnCollision::kBounce;
-    float lifetime_loss = 0.0F;                 ///< seconds of life that each step in contact costs, ≥ 0
-    std::uint32_t collides = kCollidesWithAll;  ///< what it does not go through: a sum of bits
+    float lifetime_loss = 0.0F;                 ///< seconds of life lost in each step in contact, ≥ 0
+    std::uint32_t collides = kCollidesWithAll;  ///< bit mask of what it collides with
 };
 
 inline constexpr std::size_t kParticleTypesMax = 16;
-/// With less, drag over mass times wind is no float any more.
+/// Below this, drag / mass · wind overflows a float.
 inline constexpr float kParticleMassMin = 1e-15F;
 
 template <>

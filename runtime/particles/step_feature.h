@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a layer adds to the step of a particle system: lines and inputs of its program, outputs beside the state.
-// runtime/air moves particles by wind and fields; runtime/events records hits and deaths.
+// The interface of layers that extend the step of a particle system: defines and inputs of its program, and outputs in
+// addition to the state. runtime/air adds wind and force fields; runtime/events records hits and deaths.
 #pragma once
 
 #include <cstdint>
@@ -22,25 +22,27 @@ class StepFeature {
     StepFeature& operator=(const StepFeature&) = delete;
     virtual ~StepFeature() = default;
 
-    /// Lines for makeProgram, for which shaders/particles/step.frag includes the layer's own file.
+    /// Returns lines for makeProgram; they make shaders/particles/step.frag include the layer's own file.
     [[nodiscard]] virtual std::string defines() const = 0;
-    /// Whether a step reads the materials of its collider for this.
+    /// Returns whether the step reads the collider's materials for this feature.
     [[nodiscard]] virtual bool readsMaterials() const { return false; }
-    /// Fails where this feature does not go with such a collider, null: none.
+    /// Fails if the feature does not support this collider; null: none.
     [[nodiscard]] virtual Result<void> check(const ShaderCollider* /*collider*/) const { return {}; }
 
-    /// Connects the program, once after linking; it is current.
+    /// Connects the program. Called once after linking; the program is current.
     virtual void attach(const GlProgram& /*program*/) const {}
-    /// Binds what the step that ends at `time`, seconds, reads; the program is current.
+    /// Binds the inputs of a step that ends at `time`, seconds; the program is current.
     virtual void bind(const GlProgram& /*program*/, double /*time*/) const {}
-    /// The textures that the step writes beside the state, in the order of the program's outputs, which begin at 2.
+    /// Returns the textures that the step writes in addition to the state, in the order of the program's outputs from 2
+    /// on.
     [[nodiscard]] virtual std::span<const GlTexture> outputs() const { return {}; }
-    /// The velocity of the air where this adds it, which then replaces Forces::wind.
+    /// Returns the air velocity that the feature applies in place of Forces::wind, if any.
     [[nodiscard]] virtual std::optional<glm::vec3> wind() const { return std::nullopt; }
 
-    /// A birth takes the place of the particle `id`, between two steps.
+    /// Called between two steps if a birth replaces the particle `id`.
     virtual void replaced(std::uint32_t /*index*/, std::uint32_t /*id*/) {}
-    /// Before a step from `begin` to `end`, seconds, of the first `extent` particles among `collider`, null: none.
+    /// Called before a step from `begin` to `end`, seconds, of the first `extent` particles; `collider` is null if
+    /// there is none.
     virtual void beforeStep(double /*begin*/, double /*end*/, std::uint32_t /*extent*/,
                             const ShaderCollider* /*collider*/) {}
 };

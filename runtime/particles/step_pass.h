@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program of one simulation step, compiled for what a scene uses and no more (shaders/particles/step.glsl).
+// The program of a simulation step, compiled only for the features that a scene uses (shaders/particles/step.glsl).
 #pragma once
 
 #include <cstdint>
@@ -16,34 +16,34 @@
 namespace relief {
 
 struct Forces {
-    glm::vec3 gravity{0.0F};  ///< world units a second squared
-    glm::vec3 wind{0.0F};     ///< velocity of the air, world units a second
+    glm::vec3 gravity{0.0F};  ///< world units/s²
+    glm::vec3 wind{0.0F};     ///< velocity of the air, world units/s
     float drag = 0.0F;        ///< a = drag / mass · (wind − v); mass/s, ≥ 0
-    float viscosity = 0.0F;   ///< above 0: Stokes drag 6π · viscosity · radius instead of `drag`
+    float viscosity = 0.0F;   ///< if above 0, Stokes drag 6π · viscosity · radius replaces `drag`
 };
 
-/// The rate at which a type takes on the velocity of the air, 1/s.
+/// Returns the rate at which a type adopts the velocity of the air, 1/s.
 [[nodiscard]] float dragRate(const Forces& forces, const ParticleType& type);
 
-/// k = 6π · viscosity · radius / mass, 1/s: the rate of Stokes drag, for
-/// v' = (v + dt (a + k air)) / (1 + dt k).
+/// Returns the rate of Stokes drag, k = 6π · viscosity · radius / mass, 1/s, for v' = (v + dt (a + k air)) / (1 + dt
+/// k).
 /// \param mass  > 0
 [[nodiscard]] float stokesRate(float viscosity, float radius, float mass);
 
-/// What the program is compiled for. A change of any of these needs another program.
+/// Parameters of compilation. A change of any member requires another program.
 struct StepVariant {
-    const ShaderCollider* collider = nullptr;       ///< null: nothing solid but the floor
-    std::vector<const StepFeature*> features = {};  ///< those with outputs in their order
+    const ShaderCollider* collider = nullptr;       ///< null: only the floor is solid
+    std::vector<const StepFeature*> features = {};  ///< features with outputs, in order
     bool verlet = false;
     bool sweep = false;
-    bool radius = false;   ///< some type has a radius
-    bool compute = false;  ///< the program is a compute shader: dispatch()
-    bool masks = false;    ///< some type does not collide with all
+    bool radius = false;   ///< a type has a radius
+    bool compute = false;  ///< compile a compute shader, for dispatch()
+    bool masks = false;    ///< a type does not collide with everything
     int types = 1;
     friend bool operator==(const StepVariant&, const StepVariant&) = default;
 };
 
-/// A file of shaders/ with the program of a step, and lines for it.
+/// A file in shaders/ with the program of a step, and its defines.
 struct StepShader {
     const char* file = "particles/step.frag";
     std::string defines;
@@ -51,10 +51,10 @@ struct StepShader {
 
 class StepPass {
   public:
-    /// The pieces of way that a swept step is tested at, at most.
+    /// Maximum pieces of a path that a swept step tests.
     static constexpr int kSweepPieces = 32;
 
-    // Texture units of the inputs; the collider's follow.
+    // Texture units of the inputs; the collider's units follow.
     static constexpr int kPositionUnit = 0;
     static constexpr int kVelocityUnit = 1;
     static constexpr int kBirthUnit = 2;
@@ -65,24 +65,24 @@ class StepPass {
         float dt = 0.0F;
         float ground = 0.0F;
         float sweep = 0.0F;
-        double time = 0.0;  ///< the same moment, seconds since time 0
+        double time = 0.0;  ///< the same instant, in seconds since time 0
         Forces forces;
         std::span<const ParticleType> types;
     };
 
     StepPass() = default;
     /// \param variant  points to its collider and features, which must outlive the pass.
-    /// \param shader  with solids of its own it includes particles/step.glsl, and `variant` has no collider.
-    /// Errors: kFailure (the driver's compiler).
+    /// \param shader  includes particles/step.glsl. If it defines its own solids, `variant` has no collider.
+    /// Errors: kFailure (shader compilation).
     [[nodiscard]] static Result<StepPass> create(StepVariant variant, const StepShader& shader = {});
 
-    /// Makes the program current and sets its uniforms; binds the collider's textures, and where usesStorage() shader storage
-    /// binding kTourStorage.
+    /// Makes the program current, sets its uniforms, and binds the collider's textures. If usesStorage(), also binds
+    /// shader storage binding kTourStorage.
     void use(const Values& values) const;
-    /// After use(): steps the particles of the first `rows` rows of `width` texels into a framebuffer's textures.
+    /// Steps the particles in the first `rows` rows of `width` texels into a framebuffer's textures. Call use() first.
     void draw(GLuint framebuffer, std::uint32_t width, std::uint32_t rows) const;
-    /// The same with StepVariant::compute: steps the particles of the first `rows` rows of `width` texels into image
-    /// units 0 (positions) and 1 (velocities), and the features' outputs into the next ones.
+    /// Likewise with StepVariant::compute: writes to image units 0 (positions) and 1 (velocities), and the features'
+    /// outputs to the next ones.
     void dispatch(std::uint32_t width, std::uint32_t rows) const;
     [[nodiscard]] const StepVariant& variant() const { return variant_; }
     [[nodiscard]] const GlProgram& program() const { return program_; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The GPU path of the work on particles: steps, births, the depth sort, their pictures.
+// The GPU path of particle work: steps, births, depth sort and rendering.
 #pragma once
 
 #include <cstdint>
@@ -8,15 +8,15 @@
 
 namespace relief {
 
-/// Every path runs the same GLSL, and gives the same particles but for rounding.
+/// All paths run the same GLSL; results differ only by rounding.
 enum class StepPath : std::uint8_t {
-    kAuto,      ///< kCompute where the context has compute shaders and a GPU draws, else kFragment
-    kFragment,  ///< a fragment a particle, as in the paper: OpenGL 3.3, OpenGL ES 3.0, WebGL2
-    kCompute,   ///< an invocation a particle: OpenGL 4.3, OpenGL ES 3.1
+    kAuto,      ///< kCompute if the context has compute shaders and renders on a GPU, else kFragment
+    kFragment,  ///< one fragment per particle, as in the paper: OpenGL 3.3, OpenGL ES 3.0, WebGL2
+    kCompute,   ///< one invocation per particle: OpenGL 4.3, OpenGL ES 3.1
 };
 
-/// kFragment or kCompute, in the current context.
-/// Errors: kUnsupported (kCompute is wanted and the context has no compute shaders).
+/// Returns kFragment or kCompute for the current context.
+/// Errors: kUnsupported (kCompute requested without compute shaders).
 [[nodiscard]] Result<StepPath> chosenPath(StepPath wanted);
 
 }  // namespace relief

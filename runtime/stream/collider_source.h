@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colliders of a world from elsewhere: files that a thread reads, or whatever a program has.
+// Sources of a world's colliders: files that a thread reads, or a source that the program provides.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace relief {
 
-/// Brings colliders in the order of the requests. All calls come from one thread.
+/// Provides colliders in the order of the requests. All calls come from one thread.
 class ColliderSource {
   public:
     struct Arrival {
@@ -25,19 +25,20 @@ class ColliderSource {
     ColliderSource& operator=(const ColliderSource&) = delete;
     virtual ~ColliderSource() = default;
 
-    /// Asks for one of world.colliders, in full detail. None is asked for again before it has come.
+    /// Requests one of world.colliders in full detail. Never called again for a collider that has not arrived.
     virtual void request(std::size_t collider) = 0;
-    /// The next one that has come; nullopt: none yet. Never waits.
+    /// Returns the next collider that has arrived, or nullopt. Never waits.
     [[nodiscard]] virtual std::optional<Arrival> take() = 0;
-    /// The same, but waits while any is under way. A source that cannot wait gives what take() gives.
+    /// Likewise, but waits while requests are pending. Sources that cannot wait return take().
     [[nodiscard]] virtual std::optional<Arrival> wait() { return take(); }
-    /// Takes back what has been used, to free it where that holds up nobody: megabytes take a part of a millisecond.
+    /// Takes back a collider to free it without blocking the caller: freeing megabytes takes a fraction of a
+    /// millisecond.
     virtual void release(Collider /*used*/) {}
 };
 
-/// Reads a world's containers, and compares them with its hashes, sizes and boxes, in a thread of its own, which ends with
-/// the object.
-/// \param folder  of the world. Errors: kLimit: the system has no thread left.
+/// Reads a world's containers in a thread that ends with the object, and checks them against the world's hashes, sizes
+/// and boxes.
+/// \param folder  of the world. Errors: kLimit (no thread could be created).
 [[nodiscard]] Result<std::unique_ptr<ColliderSource>> makeFileSource(World world,
                                                                      std::filesystem::path folder,
                                                                      const ContainerLimits& limits = {});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which colliders of a world are wanted on the GPU, from the places that matter. Plain arithmetic, no GL.
+// Determines which colliders of a world are needed on the GPU, from points of interest. Independent of GL.
 #pragma once
 
 #include <cstddef>
@@ -14,14 +14,14 @@
 
 namespace relief {
 
-/// A camera, an emitter, a place where particles are: colliders that reach into its ball are wanted.
+/// A camera, an emitter, or a location of particles. Colliders that intersect its ball are needed.
 struct PointOfInterest {
     glm::vec3 position{0.0F};  ///< world units
     float radius = 0.0F;       ///< world units, > 0
     friend bool operator==(const PointOfInterest&, const PointOfInterest&) = default;
 };
 
-/// A body that is placed from a collider that comes and goes.
+/// A body whose collider is streamed.
 struct StreamBody {
     std::uint32_t collider = 0;
     Bounds box;  ///< of its collider, object space
@@ -34,17 +34,18 @@ class StreamPlan {
 
     void setPose(std::size_t body, const Pose& pose) { bodies_[body].pose = pose; }
 
-    /// Measures the distances of some of the bodies. After the last of them wanted() is new, and the next call begins again with the
-    /// first, from the points as they are then.
-    /// \param pairs  of a body and a point that one call may measure, about.
-    /// \return whether wanted() is new.
+    /// Measures the distances of some of the bodies. Once all are measured, wanted() is updated, and the next call
+    /// starts over with the points passed to it.
+    /// \param pairs  approximate number of body-point pairs to measure in this call.
+    /// \return whether wanted() was updated.
     bool look(std::span<const PointOfInterest> points, std::size_t pairs);
-    /// All bodies at once, from these points.
+    /// Measures all bodies at once.
     void lookAtAll(std::span<const PointOfInterest> points);
 
-    /// Colliders in the order in which they are wanted: by the distance to the nearest of their bodies, in radii of the point.
+    /// Returns the colliders in order of priority: by the distance of their nearest body, in radii of the point of
+    /// interest.
     [[nodiscard]] std::span<const std::uint32_t> wanted() const { return wanted_; }
-    /// That distance of a wanted one, until the next look().
+    /// Returns that distance for a wanted collider; valid until the next look().
     [[nodiscard]] float nearest(std::uint32_t collider) const { return nearest_[collider]; }
 
   private:
@@ -54,7 +55,7 @@ class StreamPlan {
     std::vector<StreamBody> bodies_;
     std::vector<PointOfInterest> points_;
     std::size_t next_ = 0;
-    std::vector<float> nearest_;  // of each collider so far, in radii
+    std::vector<float> nearest_;  // for each collider so far, in radii
     std::vector<std::uint32_t> wanted_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Room for the texels of colliders that come and go: ranges of one row of texels, the first that fits.
+// Allocates ranges of a row of texels for streamed colliders, first fit.
 #pragma once
 
 #include <cstddef>
@@ -12,15 +12,15 @@ class TexelRanges {
   public:
     TexelRanges(std::size_t first, std::size_t count);
 
-    /// Takes so many texels, at least one; nullopt: no range is long enough.
+    /// Allocates a range of at least one texel; nullopt if no free range is long enough.
     [[nodiscard]] std::optional<std::size_t> take(std::size_t count);
-    /// Gives back what take() has given, all of it.
+    /// Frees a whole range returned by take().
     void give(std::size_t first, std::size_t count);
 
     [[nodiscard]] std::size_t free() const { return free_; }
 
   private:
-    std::map<std::size_t, std::size_t> gaps_;  // first texels and ends, none beside another
+    std::map<std::size_t, std::size_t> gaps_;  // begin and end of free ranges, coalesced
     std::size_t free_;
 };
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Constants of the air that C++ and GLSL share (shaders/embed.cmake).
+// Constants of the air shared by C++ and GLSL (shaders/embed.cmake).
 #pragma once
 
 namespace relief {
 
-/// The most attractors, and the most vortices, in the block of air.glsl.
+/// Maximum attractors, and maximum vortices, in the block of air.glsl.
 inline constexpr int kAirFieldsMax = 8;
-/// Beyond so many units of the lattice from the origin floats no longer resolve a cell of curl noise.
+/// Maximum distance from the origin in lattice units: beyond it, floats do not resolve a cell of curl noise.
 inline constexpr float kCurlCellMax = 1048576.0F;
-/// Patterns of curl noise, of the first octave, before they repeat.
+/// Period of curl noise, in patterns of the first octave.
 inline constexpr int kCurlPatterns = 128;
 
 }  // namespace relief

@@ -1,31 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
-// Constants of pictures that C++ and GLSL share (shaders/embed.cmake).
+// Constants of pictures shared by C++ and GLSL (shaders/embed.cmake).
 #pragma once
 
 namespace relief {
 
-/// Values of a digit of the radix sort, and invocations of its work groups.
+/// Digit values of the radix sort, and invocations per work group.
 inline constexpr int kRadixDigits = 256;
-/// Pixels of a side of a tile (tile.glsl).
+/// Side of a tile in pixels (tile.glsl).
 inline constexpr int kTileSide = 16;
 /// Words of b_work.
 inline constexpr int kTileWords = 7;
-/// The most entries of one tile, painted in a millisecond.
+/// Maximum entries per tile; they are painted in a millisecond.
 inline constexpr int kTileEntriesMax = 1 << 16;
 
-/// Texels before the keys in a row of looks, and texels of a key.
+/// Texels before the keys in a row of looks, and texels per key.
 inline constexpr int kLookHeadTexels = 3;
 inline constexpr int kLookKeyTexels = 2;
 
-/// Radius of the sun's disc at distance 1, and the reach of shade of the sky, in longest sides of the collider.
+/// Radius of the sun's disc at distance 1, and the range of sky occlusion in longest sides of the collider.
 inline constexpr float kSunWidth = 0.1F;
 inline constexpr float kSkyReach = 0.45F;
-/// Texels of the sun's map that a particle looks up.
+/// Texels of the sun map that a particle samples.
 inline constexpr int kSunSamples = 6;
-/// In the sun's map, where nothing shades; object units.
+/// Value of the sun map where nothing casts a shadow; object units.
 inline constexpr float kNoShade = 1e30F;
 
-/// Vertices of a sprite that is a quad.
+/// Vertices of a sprite drawn as a quad.
 inline constexpr int kQuadVertices = 6;
 
 }  // namespace relief
