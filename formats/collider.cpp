@@ -12,7 +12,7 @@
 namespace relief {
 namespace {
 
-/// The box about a map's volume, in object space.
+/// Returns the bounding box of a map's volume in object space.
 Bounds volumeBox(const DepthMap& map) {
     const float low = map.projection() == Projection::kCube ? -1.0F : 0.0F;
     const glm::vec3 high =
@@ -126,7 +126,7 @@ float finestTexel(const Collider& collider) {
         if (map.projection() == Projection::kLocal) {
             finest = std::min(finest, static_cast<float>(patchSpacing(map.texels)) * unit.x);
         } else if (map.projection() == Projection::kCube) {
-            // A face spans the volume, of half sides `unit`, at its far end.
+            // A cube face spans the volume, whose half sides are `unit`, at its far end.
             finest =
                 std::min(finest, 2.0F * std::min({unit.x, unit.y, unit.z}) / static_cast<float>(map.width));
         } else {

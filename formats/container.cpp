@@ -23,14 +23,14 @@ namespace {
 
 constexpr int kZstdLevelMax = 19;
 
-/// A map's payload as the file stores it: `packed`, or the map's own texels if that is empty.
+/// A map's payload in file form: `packed`, or the map's own texels if that is empty.
 struct PackedPayload {
     Packing packing = Packing::kNone;
     std::vector<std::byte> packed;
     std::span<const std::byte> stored;
 };
 
-/// Bytes in a zstd frame where that is shorter.
+/// Compresses bytes with zstd if that makes them shorter.
 Result<PackedPayload> packBytes(std::span<const std::byte> raw, int level) {
     PackedPayload packed;
     packed.stored = raw;
@@ -64,7 +64,7 @@ flatbuffers::Offset<fb::Map> addMap(flatbuffers::FlatBufferBuilder& builder, con
                          static_cast<fb::Decode>(map.decode));
 }
 
-/// \param nodes  of them, as they lie in the file.
+/// \param nodes  the nodes in file form.
 flatbuffers::Offset<fb::Materials> addMaterials(flatbuffers::FlatBufferBuilder& builder,
                                                 const Materials& materials, const PackedPayload& nodes) {
     if (materials.empty()) {
@@ -94,7 +94,7 @@ flatbuffers::Offset<fb::Materials> addMaterials(flatbuffers::FlatBufferBuilder& 
                                static_cast<std::uint32_t>(materials.nodes.size() * sizeof(MaterialNode)));
 }
 
-/// \param payloads  one a map. Their offsets do not change the size of the answer.
+/// \param payloads  one for each map. Their offsets do not affect the size of the result.
 std::vector<std::byte> writeMetadata(const Collider& collider, std::span<const fb::Payload> payloads,
                                      std::span<const PackedPayload> packed,
                                      const PackedPayload& material_nodes) {
@@ -104,8 +104,8 @@ std::vector<std::byte> writeMetadata(const Collider& collider, std::span<const f
         maps.push_back(addMap(builder, collider.maps[i], payloads[i], packed[i].packing));
     }
     const Provenance& from = collider.provenance;
-    // One by one: a compiler chooses in which order it evaluates the arguments of a call, and each string is
-    // written as it is made.
+    // Build them one by one: the evaluation order of function arguments is unspecified, and each string is written on
+    // creation.
     std::vector<flatbuffers::Offset<fb::Option>> options;
     for (const RecordedOption& option : from.options) {
         const auto value = builder.CreateString(option.value);
@@ -169,7 +169,7 @@ Result<std::vector<std::byte>> writeChecked(const Collider& collider, const Cont
     const PackedPayload material_nodes =
         RELIEF_TRY(packBytes(std::as_bytes(std::span(collider.materials.nodes)), options.compression_level));
 
-    // Payloads lie behind the metadata, which says where they lie: its size first, then its values.
+    // Payloads follow the metadata, which stores their offsets: first determine its size, then its values.
     std::vector<fb::Payload> payloads;
     for (std::size_t i = 0; i < packed.size(); ++i) {
         payloads.emplace_back(0, packed[i].stored.size(), collider.maps[i].texels.size(),
@@ -196,7 +196,7 @@ Result<std::vector<std::byte>> writeChecked(const Collider& collider, const Cont
     header.metadata_hash = xxh3_64(metadata);
     header.header_hash = header.computeHash();
 
-    std::vector<std::byte> bytes(static_cast<std::size_t>(end));  // zero: the padding
+    std::vector<std::byte> bytes(static_cast<std::size_t>(end));  // zero-initialized: padding
     std::memcpy(bytes.data(), &header, sizeof(header));
     std::copy(metadata.begin(), metadata.end(),
               bytes.begin() + static_cast<std::ptrdiff_t>(header.metadata_offset));
@@ -207,12 +207,12 @@ Result<std::vector<std::byte>> writeChecked(const Collider& collider, const Cont
     return bytes;
 }
 
-/// Common formats of `relief bake`; those that cannot be wrong for a collider are left out.
+/// Common extensions of `relief bake` inputs, except those that a collider might have.
 constexpr std::array<std::string_view, 16> kMeshExtensions = {
     ".ac",   ".acc", ".3ds", ".b3d", ".blend", ".dae", ".fbx", ".glb",
     ".gltf", ".lwo", ".obj", ".off", ".ms3d",  ".ply", ".stl", ".x"};
 
-/// No letter, and not the beginning of any mesh above.
+/// Not a letter, and not the first byte of any mesh format above.
 constexpr std::byte kContainerBegins{ContainerHeader::kSignature[0]};
 
 }  // namespace

@@ -17,7 +17,7 @@
 namespace relief {
 namespace {
 
-/// zstd packs at most a block of 128 KiB into four bytes, so a payload that claims more is invalid.
+/// zstd compresses at most a 128 KiB block into four bytes, so a payload that claims more is invalid.
 constexpr std::uint64_t kZstdRatioMax = 32768;
 constexpr flatbuffers::uoffset_t kMetadataDepthMax = 4;  // collider, map or provenance
 
@@ -29,7 +29,7 @@ glm::vec4 fromFb(const fb::Row& r) {
     return {r.x(), r.y(), r.z(), r.w()};
 }
 
-/// A map without its texels.
+/// Returns a map without its texels.
 DepthMap readFrame(const fb::Map& map) {
     DepthMap frame;
     frame.format = static_cast<MapFormat>(map.format());
@@ -47,7 +47,7 @@ DepthMap readFrame(const fb::Map& map) {
     return frame;
 }
 
-/// The fault of texels of so many bytes in a file of so many; none: they may be unpacked.
+/// Returns the reason why texels exceed the limits for a file, or nullopt if they may be unpacked.
 std::optional<std::string> texelsBeyond(const ContainerLimits& limits, std::uint64_t texel_bytes,
                                         std::uint64_t file_size) {
     if (texel_bytes > limits.texel_bytes) {
@@ -63,7 +63,7 @@ std::optional<std::string> texelsBeyond(const ContainerLimits& limits, std::uint
     return std::nullopt;
 }
 
-/// Checks that a payload's sizes go with its frame, which must be valid. Its place is not looked at.
+/// Checks that a payload's sizes match its frame, which must be valid. Does not check its offset.
 Result<void> validatePayloadSizes(const StoredMap& map) {
     const PayloadInfo& info = map.payload;
     if (info.packing > Packing::kZstd) {
@@ -88,7 +88,7 @@ Result<void> validatePayloadSizes(const StoredMap& map) {
     return {};
 }
 
-/// The texels of a payload: payload.raw_size bytes, once the sizes have been checked.
+/// Decompresses the texels of a payload, whose sizes must have been checked.
 Result<std::vector<std::byte>> unpackPayload(std::span<const std::byte> stored, const PayloadInfo& payload) {
     if (payload.packing == Packing::kZstd) {
         return decompress(stored, payload.raw_size);
@@ -96,7 +96,7 @@ Result<std::vector<std::byte>> unpackPayload(std::span<const std::byte> stored, 
     return std::vector<std::byte>(stored.begin(), stored.end());
 }
 
-/// The materials, unchecked but for the size of their nodes.
+/// Reads the materials; checks only the size of their nodes.
 Result<Materials> readMaterials(const fb::Materials& stored) {
     Materials materials;
     const auto is_long = [](const fb::Material* one) { return one->name()->size() > kMaterialNameMax; };
@@ -180,8 +180,8 @@ void ContainerReader::readDescription() {
     }
 }
 
-/// Checks the signature, the version and the checksum, and the fields that version 2 fixes.
-/// \return whether the rest of the header can be understood.
+/// Checks the signature, the version, the checksum, and the fields with fixed values in version 2.
+/// \return whether the rest of the header can be interpreted.
 bool ContainerReader::readHeader() {
     if (bytes_.size() < sizeof(header)) {
         add(IssueCode::kTooShort, std::to_string(bytes_.size()) + " bytes, where the header alone has " +
@@ -196,7 +196,7 @@ bool ContainerReader::readHeader() {
     }
     header = read;
     const ContainerHeader expected;
-    // Another major version may have another layout, and another checksum.
+    // Another major version may have a different layout and checksum.
     if (header.major != expected.major) {
         add(IssueCode::kMajorVersion, "container version " + std::to_string(header.major) + "." +
                                           std::to_string(header.minor) + ", this program reads version " +
@@ -216,8 +216,8 @@ bool ContainerReader::readHeader() {
     return true;
 }
 
-/// Checks what the header has of the sizes of the file and of the metadata.
-/// \return whether the metadata can be looked at.
+/// Checks the sizes of the file and of the metadata in the header.
+/// \return whether the metadata can be read.
 bool ContainerReader::checkSizes() {
     if (header.file_size > bytes_.size()) {
         add(IssueCode::kTruncated,
@@ -250,16 +250,16 @@ bool ContainerReader::checkSizes() {
     return true;
 }
 
-/// \return whether there are maps to look at.
+/// \return whether there are maps to read.
 bool ContainerReader::readMetadata() {
     const auto bytes = part(header.metadata_offset, header.metadata_size);
-    // A right checksum vouches for the metadata, whatever else is wrong with the header.
+    // A valid checksum confirms the metadata even if the header is damaged.
     metadata_intact = header.metadata_hash == xxh3_64(bytes);
     if (!metadata_intact) {
         add(IssueCode::kMetadataChecksum, "the checksum of the metadata is wrong", 48);
     }
     const std::size_t before = issues.size();
-    // Accessors need the alignment that the file has, and that `bytes_` need not have.
+    // Accessors require an alignment that the file has but `bytes_` may lack.
     const auto aligned = std::make_unique<std::uint64_t[]>(bytes.size() / sizeof(std::uint64_t) + 1);
     std::memcpy(aligned.get(), bytes.data(), bytes.size());
     const auto* data = reinterpret_cast<const std::uint8_t*>(aligned.get());
@@ -286,7 +286,7 @@ bool ContainerReader::readMetadata() {
     collider.provenance = {
         from.mesh_name()->str(), from.mesh_hash()->str(), from.triangles(), from.tool_version()->str(), {}};
     if (from.options() != nullptr) {
-        // Many options may share one text.
+        // Many options may share one text, so the total can exceed the file.
         std::uint64_t text_bytes = 0;
         for (const fb::Option* option : *from.options()) {
             text_bytes += std::uint64_t{option->name()->size()} + option->value()->size();
@@ -361,8 +361,8 @@ void ContainerReader::checkMaps() {
         const bool placed = checkPlace(payload, index, end);
         all_placed = all_placed && placed;
         if (placed || payload.offset == alignPayload(end)) {
-            // The next payload has its place even in a file that was cut off.
-            constexpr std::uint64_t kFar = std::uint64_t{1} << 60;  // their sum does not wrap
+            // Later payloads keep their expected offsets even in a truncated file.
+            constexpr std::uint64_t kFar = std::uint64_t{1} << 60;  // large, but sums do not overflow
             end = std::min(payload.offset, kFar) + std::min(payload.stored_size, kFar);
         }
         texel_bytes += sized ? payload.raw_size : 0;
@@ -372,14 +372,14 @@ void ContainerReader::checkMaps() {
         }
         map.readable = sized && placed && !limit_passed;
     }
-    // A size that is not the header's has been reported already.
+    // A size that differs from the header's has been reported already.
     if (all_placed && header.file_size == bytes_.size() && end < bytes_.size()) {
         add(IssueCode::kBytesBehind, std::to_string(bytes_.size() - end) + " bytes follow the last payload",
             end);
     }
 }
 
-/// \return whether its payload's sizes are valid too.
+/// \return whether its payload's sizes are valid as well.
 bool ContainerReader::checkFrame(StoredMap& map, int index) {
     if (const Result<void> ok = validateFrame(map.frame); !ok) {
         const bool limit = ok.error().code == ErrorCode::kLimit;
@@ -394,8 +394,8 @@ bool ContainerReader::checkFrame(StoredMap& map, int index) {
     return true;
 }
 
-/// Payloads lie one after the other, each at the next multiple of 64, zeros between.
-/// \param end  of what lies before the payload. \return whether the payload lies within the file.
+/// Checks that payloads are contiguous: each at the next multiple of 64, with zeros between.
+/// \param end  end of the data before the payload. \return whether the payload lies within the file.
 bool ContainerReader::checkPlace(const PayloadInfo& payload, int index, std::uint64_t end) {
     const std::uint64_t expected = alignPayload(end);
     if (payload.offset != expected) {

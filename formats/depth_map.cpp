@@ -18,8 +18,8 @@ float dot(const glm::vec3& a, const glm::vec3& b) {
     return a.x * b.x + (a.y * b.y + a.z * b.z);
 }
 
-/// Directions from map space to object space. As T's rows are orthogonal, the columns of its inverse are the
-/// rows times object_per_map squared; by one factor after the other, so that no frame overflows.
+/// Transforms directions from map space to object space. T's rows are orthogonal, so the columns of its inverse are its
+/// rows times object_per_map squared; the two factors are applied separately to avoid overflow.
 glm::vec3 fromMap(const DepthMap& map, const glm::vec3& q) {
     const auto column = [&](int k) {
         return glm::vec3(map.object_to_map.row[k]) * map.object_per_map[k] * map.object_per_map[k];
@@ -27,9 +27,9 @@ glm::vec3 fromMap(const DepthMap& map, const glm::vec3& q) {
     return column(0) * q.x + (column(1) * q.y + column(2) * q.z);
 }
 
-/// The vote of a plane, in object space.
-/// \param from  P − O, with O where the ray of the texel's centre has depth 0
-/// \param ray   that ray's direction, for a unit of depth
+/// Returns the vote of a plane, in object space.
+/// \param from  P − O, where O is the point at depth 0 on the ray of the texel's centre
+/// \param ray   direction of that ray, per unit of depth
 float planeVote(const Surface& surface, const glm::vec3& from, const glm::vec3& ray) {
     return dot(surface.normal, from) - surface.depth * dot(surface.normal, ray);
 }
@@ -37,7 +37,7 @@ float planeVote(const Surface& surface, const glm::vec3& from, const glm::vec3& 
 const Vote kFarOutsideVote{kFarOutside, glm::vec3(0.0F)};
 
 std::optional<Vote> voteOrthographic(const DepthMap& map, const glm::vec3& p) {
-    // Compared as floats first: the cast of a coordinate far outside an int's range is undefined.
+    // Compare as floats first: casting a coordinate outside the range of int is undefined.
     const float x = p.x * static_cast<float>(map.width);
     const float y = p.y * static_cast<float>(map.height);
     const bool in_window = x >= 1.0F && y >= 1.0F && x < static_cast<float>(map.width - 1) &&
@@ -56,7 +56,7 @@ std::optional<Vote> voteOrthographic(const DepthMap& map, const glm::vec3& p) {
         return map.empty_is_outside ? std::optional(kFarOutsideVote) : std::nullopt;
     }
 
-    // From the texel's centre.
+    // Offset from the texel's centre.
     const float across_x = (x - (static_cast<float>(column) + 0.5F)) * (1.0F / static_cast<float>(map.width));
     const float across_y = (y - (static_cast<float>(row) + 0.5F)) * (1.0F / static_cast<float>(map.height));
     const bool planes = map.decode == Decode::kPlane;
@@ -75,7 +75,7 @@ std::optional<Vote> voteOrthographic(const DepthMap& map, const glm::vec3& p) {
     if (texel.back) {
         add(voteOf(*texel.back, false));
     }
-    // Past the far end of the volume nothing of the collider remains.
+    // The collider does not extend past the far end of the volume.
     if (!in_depth && best.distance < 0.0F) {
         return kFarOutsideVote;
     }
@@ -83,7 +83,7 @@ std::optional<Vote> voteOrthographic(const DepthMap& map, const glm::vec3& p) {
 }
 
 std::optional<Vote> voteCube(const DepthMap& map, const glm::vec3& p) {
-    // Component by component, because std::max may lose the NaN that an overflow in the transform leaves.
+    // Compare each component because std::max may drop a NaN from an overflow in the transform.
     const auto withinCube = [&](float half) {
         return std::abs(p.x) <= half && std::abs(p.y) <= half && std::abs(p.z) <= half;
     };
@@ -95,7 +95,7 @@ std::optional<Vote> voteCube(const DepthMap& map, const glm::vec3& p) {
         return kFarOutsideVote;
     }
     const float radius = length(p);
-    // At the very centre every direction is as good as another.
+    // At the exact centre, any direction is valid.
     const glm::vec3 direction = radius > 0.0F ? p / radius : glm::vec3(1.0F, 0.0F, 0.0F);
     const CubeCoordinates at = cubeCoordinates(direction);
     const auto size = static_cast<float>(map.width);
@@ -128,7 +128,7 @@ std::optional<Vote> voteLocal(const DepthMap& map, const glm::vec3& p) {
     if (!said) {
         return map.encloses ? std::optional(kFarOutsideVote) : std::nullopt;
     }
-    const float root = map.object_per_map.x;  // T turns, and scales all axes alike
+    const float root = map.object_per_map.x;  // T has a rotation and a uniform scale
     const auto row = [&](int i) { return glm::vec3(map.object_to_map.row[i]) * root; };
     return Vote{said->distance * root,
                 row(0) * said->normal.x + (row(1) * said->normal.y + row(2) * said->normal.z)};

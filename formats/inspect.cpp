@@ -8,10 +8,10 @@
 namespace relief {
 namespace {
 
-/// The share of texels that hold a surface, 0…1.
+/// Returns the fraction of texels with a surface, 0…1.
 double coverageOf(const DepthMap& map) {
     if (map.projection() == Projection::kLocal) {
-        return 1.0;  // patches are made where there is surface
+        return 1.0;  // patches exist only where there is surface
     }
     std::size_t texels = 0;
     std::size_t covered = 0;
@@ -42,7 +42,7 @@ class Inspector {
         for (std::size_t i = 0; i < reader_.maps.size(); ++i) {
             result_.maps.push_back(inspectMap(static_cast<int>(i)));
         }
-        // Map by map; those of the whole file, −1, last: they are of bytes behind the maps.
+        // Sort by map; issues of the whole file (−1) come last because they concern bytes after the maps.
         std::stable_sort(reader_.issues.begin() + static_cast<std::ptrdiff_t>(reader_.first_map_issue),
                          reader_.issues.end(), [](const Issue& a, const Issue& b) {
                              return static_cast<unsigned>(a.map) < static_cast<unsigned>(b.map);
@@ -66,7 +66,7 @@ class Inspector {
         state.state = PartState::kDamaged;
         if (reader_.readTexels(static_cast<std::size_t>(index))) {
             state.coverage = coverageOf(map.frame);
-            if (map.intact) {  // else anything suspicious comes from the damage
+            if (map.intact) {  // otherwise the damage would cause warnings
                 state.state = PartState::kSound;
                 if (state.coverage == 0.0) {
                     reader_.add(IssueCode::kNothingCovered, "no texel holds a surface; the map sees nothing",
@@ -74,11 +74,11 @@ class Inspector {
                 }
             }
         }
-        map.frame.texels = std::vector<std::byte>();  // = {} would keep the memory
+        map.frame.texels = std::vector<std::byte>();  // assigning {} would keep the allocation
         return state;
     }
 
-    /// A warning makes a sound part suspicious; a sound map under damaged metadata is not verified.
+    /// Downgrades sound parts with a warning to suspicious, and sound maps under damaged metadata to unverified.
     void settleStates() {
         for (const Issue& issue : reader_.issues) {
             if (issue.map >= 0) {

@@ -55,7 +55,7 @@ std::string faultOfSides(const Materials& materials) {
     return valid ? "" : "a pair of sides has no axis, or a material that does not exist";
 }
 
-/// The nodes follow each other as a walk level by level meets them, so that each has one parent, and there is no circle.
+/// Checks that the nodes are stored in breadth-first order, so that each has one parent and there are no cycles.
 std::string faultOfNodes(const Materials& materials) {
     const std::vector<MaterialNode>& nodes = materials.nodes;
     if (nodes.size() > kMaterialNodesMax) {
@@ -120,7 +120,7 @@ std::size_t materialAt(const Materials& materials, const glm::vec3& p, const glm
     float q[3];
     for (int i = 0; i < 3; ++i) {
         const float share = (p[i] - materials.origin[i]) * (1.0F / materials.size);
-        q[i] = share > 0.0F ? std::min(share, 1.0F) : 0.0F;  // NaN too
+        q[i] = share > 0.0F ? std::min(share, 1.0F) : 0.0F;  // also handles NaN
     }
     std::size_t node = 0;
     std::size_t leaf = 0;

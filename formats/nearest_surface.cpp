@@ -21,25 +21,27 @@ glm::vec3 cross(const glm::vec3& a, const glm::vec3& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// Of a vote, with P's side as its positive one: at + normal·y is the distance of P + y.
+/// The plane of a vote, oriented so that P is on its positive side: at + normal·y is the distance of P + y.
 struct Plane {
     glm::vec3 normal;
     float at;
 };
 
-/// Up to three planes, of which the other side is the common one behind all.
+/// Up to three planes; the other side is the region behind all of them.
 class Corner {
   public:
     explicit Corner(const Plane& plane) : planes_{plane}, foot_(-plane.at * plane.normal) {}
 
-    /// The point of the other side that is nearest to P, relative to P.
+    /// Returns the point of the other side nearest to P, relative to P.
     [[nodiscard]] const glm::vec3& foot() const { return foot_; }
-    [[nodiscard]] const glm::vec3& normal() const { return planes_[count_ - 1].normal; }  ///< of the newest
+    [[nodiscard]] const glm::vec3& normal() const {
+        return planes_[count_ - 1].normal;
+    }  ///< of the newest plane
     [[nodiscard]] bool isCutBy(const Plane& plane) const {
         return plane.at + dot(plane.normal, foot_) > 0.0F;
     }
 
-    /// Adds a plane that has the foot on P's side; of four the oldest is dropped. So the new foot lies on it.
+    /// Adds a plane for which the foot is on P's side; drops the oldest of four. The new foot lies on the added plane.
     void add(const Plane& plane) {
         if (count_ == 3) {
             planes_[0] = planes_[1];
@@ -65,7 +67,7 @@ class Corner {
         return true;
     }
 
-    /// The nearest point of two planes, in front of both of which P lies.
+    /// Finds the nearest point on the intersection of two planes that P is in front of.
     [[nodiscard]] bool takeEdge(const Plane& a, const Plane& b) {
         const float cosine = dot(a.normal, b.normal);
         const float sine2 = 1.0F - cosine * cosine;
@@ -75,7 +77,7 @@ class Corner {
                take((along_a / sine2) * a.normal + (along_b / sine2) * b.normal);
     }
 
-    /// Fails where the planes have no common point, or none that floats can find.
+    /// Intersects three planes. Returns false if they have no common point that floats can represent.
     [[nodiscard]] bool meet() {
         const Plane& a = planes_[count_ - 1];
         if (take(-a.at * a.normal) || count_ == 1) {
@@ -122,12 +124,12 @@ class Search {
 
     [[nodiscard]] bool found() const { return best_.distance < kFarOutside; }
     [[nodiscard]] float sign() const { return sign_; }
-    [[nodiscard]] const SurfaceSample& best() const { return best_; }  ///< its distance is not signed
+    [[nodiscard]] const SurfaceSample& best() const { return best_; }  ///< its distance is unsigned
 
   private:
-    // ---- the query
+    // ---- point evaluation
 
-    /// Nothing outside of the bounds is inside.
+    /// Clamps to the bounds: there is no solid outside them.
     [[nodiscard]] glm::vec3 clamped(const glm::vec3& q) const {
         if (sign_ < 0.0F) {
             return q;
@@ -142,7 +144,7 @@ class Search {
         return sample.map >= 0 && (sample.distance < 0.0F) != (sign_ < 0.0F);
     }
 
-    /// The plane of a sample at P + y. `at` is not above 0 where there is none, or none that P is in front of.
+    /// Returns the plane of a sample at P + y. `at` is not above 0 if there is no plane, or if P is not in front of it.
     [[nodiscard]] Plane planeOf(const FieldSample& sample, const glm::vec3& y) const {
         if (sample.map < 0 || sample.distance >= kFarOutside) {
             return {glm::vec3(0.0F), 0.0F};
@@ -156,7 +158,7 @@ class Search {
         return evaluate(collider_, q);
     }
 
-    /// A surface is at P + y. Whether that is the nearest so far.
+    /// Proposes a surface point at P + y. Returns whether it is the nearest so far.
     bool offer(const glm::vec3& y, const FieldSample& sample) {
         const float distance = length(y);
         if (!(distance < best_.distance)) {
@@ -168,19 +170,19 @@ class Search {
         return true;
     }
 
-    // ---- how
+    // ---- search steps
 
-    /// From a plane to the surface.
-    /// \param known  a point of the other side, relative to P; null if there is none.
+    /// Searches from a plane towards the surface.
+    /// \param known  a point on the other side, relative to P; null if there is none.
     void follow(const Plane& plane, const glm::vec3* known, int steps) {
         Corner corner(plane);
         bool has_other = known != nullptr;
         glm::vec3 other = has_other ? *known : glm::vec3(0.0F);
         glm::vec3 failed(0.0F);
-        bool halving = false;  // between the other side and a foot that no surface is at
+        bool halving = false;  // bisecting between the other side and a foot without a surface
         for (int step = 0; step < steps && left_ > 0; ++step) {
             glm::vec3 y = 0.5F * (other + failed);
-            float to_foot = 1.0F;  // share of y
+            float to_foot = 1.0F;  // fraction of y
             if (!halving) {
                 const glm::vec3& foot = corner.foot();
                 const float way = length(foot);
@@ -197,7 +199,8 @@ class Search {
             const FieldSample sample = ask(p_ + y);
             const Plane met = planeOf(sample, y);
             if (isOther(sample)) {
-                // The plane says where between the foot and y the surface is; not before, where it may not hold.
+                // The plane predicts where the surface lies between the foot and y. It is not used before the foot,
+                // where it may not hold.
                 const float share = met.at > 0.0F ? met.at / (met.at - sign_ * sample.distance) : 1.0F;
                 const bool nearest = offer(std::max(share, to_foot) * y, sample);
                 has_other = true;
@@ -221,7 +224,7 @@ class Search {
         }
     }
 
-    /// The point of the other side between P and P + y, which is one, after some halvings.
+    /// Bisects between P and P + y, which is on the other side, and returns a nearer point on the other side.
     [[nodiscard]] glm::vec3 nearerOther(glm::vec3 y, Plane& plane) {
         glm::vec3 own(0.0F);
         for (int i = 0; i < NearestSearch::kHalvings && left_ > 0; ++i) {
@@ -238,14 +241,14 @@ class Search {
         return y;
     }
 
-    /// Asks at q for the other side; with `whole` it follows a plane of P's own side, too.
+    /// Tests whether q is on the other side; with `whole`, also follows planes on P's own side.
     void probe(const glm::vec3& q, bool whole) {
         glm::vec3 y = q - p_;
         const float way = length(y);
         if (left_ == 0 || !(way > 0.0F && way < best_.distance)) {
             return;
         }
-        if (sign_ > 0.0F && !whole && !evaluateInside(collider_, q).inside) {  // most often one vote
+        if (sign_ > 0.0F && !whole && !evaluateInside(collider_, q).inside) {  // usually costs one vote
             --left_;
             return;
         }
@@ -275,8 +278,8 @@ class Search {
         return {(i & 1) != 0 ? kUnit : -kUnit, (i & 2) != 0 ? kUnit : -kUnit, (i & 4) != 0 ? kUnit : -kUnit};
     }
 
-    /// Where the vote at P led to nothing: rings around P, or around the point of the bounds nearest to it, until
-    /// something is found.
+    /// If the vote at P led nowhere, probes rings around P, or around the nearest point of the bounds, until something
+    /// is found.
     void findAny() {
         const glm::vec3 center = clamped(p_);
         if (center != p_) {
@@ -295,7 +298,7 @@ class Search {
         }
     }
 
-    /// Whether something else is nearer.
+    /// Checks whether another surface is nearer.
     void lookAround() {
         float before = kFarOutside;
         for (int round = 0; round < NearestSearch::kRounds && best_.distance < before; ++round) {
@@ -308,8 +311,8 @@ class Search {
         }
     }
 
-    /// Where no plane has said that the point found is the nearest of its surface: turns the way there to all sides,
-    /// while that makes it shorter.
+    /// If no plane confirmed that the point found is the nearest of its surface, tilts the direction to it to all sides
+    /// while that shortens the distance.
     void turn() {
         float tilt = NearestSearch::kTilt;
         for (int k = 0; k < NearestSearch::kTurns && tilt >= NearestSearch::kTiltMin && found() && !settled_;
@@ -337,16 +340,16 @@ class Search {
     float sign_;
     int left_ = NearestSearch::kEvaluationsMax - 1;
     SurfaceSample best_;
-    bool settled_ = false;  // a plane said that no point of its surface is nearer
+    bool settled_ = false;  // a plane confirmed that no point of its surface is nearer
 };
 
-/// A float map's normals may be a little longer or shorter.
+/// Renormalizes: normals of float maps may deviate slightly from unit length.
 glm::vec3 unit(const glm::vec3& normal) {
     const float size = length(normal);
     return size > 0.0F ? normal / size : normal;
 }
 
-/// All that the vote at P knows.
+/// Returns the result that follows from the vote at P.
 SurfaceSample fromVote(const glm::vec3& p, const FieldSample& sample) {
     SurfaceSample plane{std::clamp(sample.distance, -kFarOutside, kFarOutside), p, sample.normal, sample.map};
     const glm::vec3 foot = p - plane.distance * unit(plane.normal);
@@ -378,7 +381,7 @@ SurfaceSample nearestSurface(const Collider& collider, const glm::vec3& p) {
         const Search search(collider, p, sample);
         if (search.found()) {
             nearest = search.best();
-            // No distance of 0 says inside.
+            // A distance of 0 has no sign.
             nearest.distance = search.sign() * std::max(nearest.distance, NearestSearch::kDistanceMin);
         }
     }

@@ -11,7 +11,7 @@ namespace {
 constexpr auto kHalfRange = static_cast<float>(kNormalHalfRange);
 constexpr int kLast = 2 * kNormalHalfRange;
 
-/// The fold of equation 3: swaps the corners of the square (lower octants) with the inner diamond's outside.
+/// The fold of equation 3 swaps the corners of the square (lower octants) with the outside of the inner diamond.
 float signNotZero(float value) {
     return value < 0.0F ? -1.0F : 1.0F;
 }
@@ -41,7 +41,7 @@ const std::array<glm::vec3, 65536>& decodedNormals() {
 }
 
 NormalIndex lowestAround(const glm::vec3& normal) {
-    // Double throughout: tiny or huge vectors must not lose their direction on the way to the octahedron.
+    // Use double throughout: tiny or huge vectors must keep their direction on the octahedron.
     const double x = normal.x;
     const double y = normal.y;
     const double z = normal.z;
@@ -76,7 +76,7 @@ NormalIndex encodeNormal(const glm::vec3& normal) {
                                         static_cast<std::uint8_t>(low.t + dt)};
             const glm::vec3& decoded = decoded_normals[packNormal(candidate)];
             const double cosine = x * decoded.x + y * decoded.y + z * decoded.z;
-            // A clear improvement is needed, so that ties go to the lower index on every machine.
+            // Require a clear improvement, so that ties go to the lower index on every machine.
             if (cosine > best_cosine + 1e-9 * norm) {
                 best = candidate;
                 best_cosine = cosine;

@@ -15,8 +15,7 @@ namespace {
 
 constexpr std::size_t kTexel = 8;
 constexpr int kBaseZero = 2048;
-constexpr int kOffsetZero =
-    128;  // the code of a coarse plane through the cell's middle, and a cell in its steps
+constexpr int kOffsetZero = 128;  // code of a coarse plane through the cell's centre; also the steps per cell
 constexpr int kCoarseHalfRange = 63;
 
 std::uint32_t bitsOf(float value) {
@@ -39,7 +38,7 @@ glm::vec3 unit(const glm::vec3& v) {
     return v / std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
 }
 
-/// Equation 3 of the paper for indices of any number of steps; exact but for the unit length.
+/// Decodes equation 3 of the paper for any number of steps; exact except for the unit length.
 glm::vec3 octahedron(std::uint32_t s, std::uint32_t t, int half_range) {
     const auto half = static_cast<float>(half_range);
     const float x = static_cast<float>(s) - half;
@@ -49,7 +48,7 @@ glm::vec3 octahedron(std::uint32_t s, std::uint32_t t, int half_range) {
     return unit({x - std::copysign(beyond, x), y - std::copysign(beyond, y), z});
 }
 
-/// The coarse index whose vector is nearest by the rounded place in the square.
+/// Returns the coarse index of a normal by rounding in the square.
 std::array<std::uint32_t, 2> coarseIndex(const glm::vec3& normal) {
     const NormalIndex fine = encodeNormal(normal);
     const auto coarse = [](int index) {
@@ -59,12 +58,12 @@ std::array<std::uint32_t, 2> coarseIndex(const glm::vec3& normal) {
     return {coarse(fine.s), coarse(fine.t)};
 }
 
-/// A distance of the given side of the surface, no nearer than that is known.
+/// Returns a distance on the given side of the surface, with at least the magnitude `nearest`.
 float onSide(bool inside, float distance, float nearest) {
     return inside ? std::min(distance, -nearest) : std::max(distance, nearest);
 }
 
-/// Cells without a patch are at least so far from the surface, in cells: what is left after rounding.
+/// Minimum distance between the surface and cells without a patch, in cells, after rounding.
 constexpr float kNearest = 1.0F / 1024.0F;
 
 PatchVote votePatch(PatchTexels texels, const PatchRecord& patch, const glm::vec3& in_cell) {
@@ -106,7 +105,7 @@ PatchVote votePatch(PatchTexels texels, const PatchRecord& patch, const glm::vec
     return {sign * ((at.z - height) * per_length), (sign * per_length) * gradient};
 }
 
-/// Of a code, by PatchHeights::scale; they grow.
+/// Returns the height of a code step for each PatchHeights::scale, in ascending order.
 const std::array<float, 256>& stepsOfScales() {
     static const auto kSteps = [] {
         std::array<float, 256> steps;
@@ -157,7 +156,7 @@ glm::dvec3 PatchFrame::across(const glm::dvec3& in_cell) const {
 }
 
 glm::vec3 PatchFrame::gradient(float by_u, float by_v) const {
-    glm::vec3 by(1.0F, -by_u, -by_v);  // by a, b and c of across()
+    glm::vec3 by(1.0F, -by_u, -by_v);  // derivatives with respect to a, b and c of across()
     if (diagonal == 1) {
         by = {1.0F - 0.5F * by_u, 1.0F + 0.5F * by_u, -by_v};
     } else if (diagonal == 2) {
@@ -331,7 +330,7 @@ PatchLeaf patchLeafAt(PatchTexels texels, const glm::vec3& p) {
 
 std::optional<PatchVote> votePatches(PatchTexels texels, const glm::vec3& p) {
     const glm::vec3 size(patchTreeSize(texels).roots);
-    // Written so that NaN is outside.
+    // This form treats NaN as outside.
     if (!(p.x >= 0.0F && p.y >= 0.0F && p.z >= 0.0F && p.x < size.x && p.y < size.y && p.z < size.z)) {
         return std::nullopt;
     }
@@ -367,7 +366,7 @@ Result<void> validatePatches(PatchTexels texels) {
     if (root_count == 0 || levels > kPatchLevelsMax || 1 + root_count > count) {
         return invalid(0, "of its tree of patches has no valid size");
     }
-    // Level by level: [at, end) are the records of one level, and the next begins at `end`.
+    // Check level by level: [at, end) are the records of one level, and the next level begins at `end`.
     std::uint64_t at = 1;
     std::uint64_t end = 1 + root_count;
     std::vector<std::uint32_t> leaves;

@@ -20,7 +20,7 @@ TexelRay rayThrough(const DepthMap& map, std::uint32_t face, double x, double y)
         shift[k] = r.w;
     }
     const glm::dmat3 object_from_map = glm::inverse(glm::transpose(rows));
-    const glm::dvec3 start = -(object_from_map * shift);  // the origin of map space
+    const glm::dvec3 start = -(object_from_map * shift);  // origin of map space
     const double s = x / map.width;
     const double t = y / map.height;
     if (map.projection() == Projection::kOrthographic) {

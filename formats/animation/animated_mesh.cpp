@@ -42,7 +42,8 @@ bool isName(std::string_view name) {
     return name.size() <= kAnimatedNameMax && cleanUtf8(name) == name;
 }
 
-/// Starts of one more list than there are vertices, from 0 to `count`.
+/// Returns whether `begin` is a list of offsets with one more entry than there are vertices, ascending from 0 to
+/// `count`.
 bool areStarts(const std::vector<std::uint32_t>& begin, std::size_t vertices, std::size_t count) {
     return begin.size() == vertices + 1 && begin.front() == 0 && begin.back() == count &&
            std::is_sorted(begin.begin(), begin.end());
@@ -170,7 +171,7 @@ Result<void> checkJoints(const AnimatedMesh& mesh) {
     return {};
 }
 
-/// \return what is wrong with a channel, or "".
+/// \return the problem of a channel, or "".
 std::string faultOf(const AnimatedMesh& mesh, const MeshClip& clip, const ClipChannel& channel) {
     if (channel.node >= mesh.nodes.size() || channel.member > NodeMember::kWeights ||
         channel.curve > KeyCurve::kCubic) {

@@ -19,7 +19,7 @@ using flatbuffers::Offset;
 constexpr flatbuffers::uoffset_t kDepthMax = 4;  // mesh, clip, channel
 constexpr flatbuffers::uoffset_t kTablesMax = 4'000'000;
 
-// Structs of the file that lie in memory as those of the mesh do are copied as they are.
+// Structs with the same layout in file and memory are copied as they are.
 template <class Stored, class T>
 Offset<flatbuffers::Vector<const Stored*>> addAll(FlatBufferBuilder& builder, const std::vector<T>& values) {
     static_assert(sizeof(Stored) == sizeof(T) && std::endian::native == std::endian::little);
@@ -113,7 +113,7 @@ MeshClip readClip(const fb::Clip& from) {
     return clip;
 }
 
-/// Tables of a file may lie in the same bytes: whether all that would be copied of them takes no more than the file.
+/// Returns whether the copied data is no larger than the file: tables of a malicious file may overlap.
 bool fits(const fb::AnimatedMesh& from, std::size_t file_bytes) {
     if (from.nodes()->size() > kMeshNodesMax || from.clips()->size() > kMeshClipsMax ||
         (from.materials() != nullptr && from.materials()->size() > kMeshMaterialsMax)) {
@@ -135,9 +135,9 @@ bool fits(const fb::AnimatedMesh& from, std::size_t file_bytes) {
     return bytes <= file_bytes;
 }
 
-/// Not checked but for its structure.
+/// Checks only the structure.
 Result<AnimatedMesh> unpack(std::span<const std::byte> bytes) {
-    // Accessors need an alignment that `bytes` need not have.
+    // Accessors require an alignment that `bytes` may lack.
     const auto aligned = std::make_unique<std::uint64_t[]>(bytes.size() / sizeof(std::uint64_t) + 1);
     std::memcpy(aligned.get(), bytes.data(), bytes.size());
     const auto* data = reinterpret_cast<const std::uint8_t*>(aligned.get());
@@ -182,7 +182,7 @@ Result<AnimatedMesh> unpack(std::span<const std::byte> bytes) {
 
 std::vector<std::byte> writeAnimatedMesh(const AnimatedMesh& mesh) {
     FlatBufferBuilder builder;
-    // One by one: a compiler chooses in which order it evaluates the arguments of a call.
+    // Build them one by one: the evaluation order of function arguments is unspecified.
     std::vector<Offset<fb::Node>> nodes;
     for (const MeshNode& node : mesh.nodes) {
         nodes.push_back(addNode(builder, node));
@@ -207,7 +207,7 @@ std::vector<std::byte> writeAnimatedMesh(const AnimatedMesh& mesh) {
     const auto clip_list = builder.CreateVector(clips);
     flatbuffers::Offset<flatbuffers::Vector<Offset<flatbuffers::String>>> material_list;
     flatbuffers::Offset<flatbuffers::Vector<std::uint16_t>> triangle_materials;
-    if (!mesh.materials.empty()) {  // without, the bytes are those from before there were any
+    if (!mesh.materials.empty()) {  // omitted if empty, to keep the bytes of files without materials
         material_list = builder.CreateVectorOfStrings(mesh.materials);
         triangle_materials = builder.CreateVector(mesh.triangle_materials);
     }

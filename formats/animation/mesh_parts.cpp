@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kListedMax = 20;
 
-/// For each joint 1 if it moves a vertex.
+/// Returns 1 for each joint that moves a vertex.
 std::vector<char> movers(const AnimatedMesh& mesh) {
     std::vector<char> moves(mesh.joints.size(), 0);
     for (const VertexInfluence& by : mesh.influences) {

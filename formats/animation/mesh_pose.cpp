@@ -14,15 +14,15 @@
 namespace relief {
 namespace {
 
-/// Above this cosine of two rotations' half angle, a straight line is as good as an arc.
+/// If the cosine of two rotations' half angle exceeds this, linear interpolation is as accurate as slerp.
 constexpr double kStraightCosine = 0.9999999;
-/// What turns ten times a second turns by 15 degrees in that time, and its box grows by less than kRoom in between.
+/// At ten turns per second, this is 15 degrees; bounding boxes grow by less than kRoom in between.
 constexpr double kPoseSeconds = 1.0 / 240.0;
-/// Of all times together: nodes and joints.
+/// Limit of all sampled times together, in nodes and joints.
 constexpr double kPoseWork = 2e7;
-/// Of the longest side.
+/// Tolerance relative to the longest side.
 constexpr float kSeam = 0.02F;
-/// Between those times.
+/// Margin for motion between the sampled times.
 constexpr float kRoom = 0.02F;
 
 struct Motion {
@@ -54,7 +54,7 @@ Affine affineOf(const Motion& motion) {
     return affine;
 }
 
-/// The members of a node, as a clip moves them.
+/// A node's transform, as animated by a clip.
 struct NodeState {
     glm::dvec3 translation;
     glm::dvec4 rotation;
@@ -70,7 +70,7 @@ Motion motionOf(const NodeState& state) {
     return motion;
 }
 
-/// The shorter way from a to b, unit quaternions.
+/// Interpolates unit quaternions along the shorter arc.
 void turn(std::span<const float> a, std::span<const float> b, double t, double* out) {
     double cosine = 0.0;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -91,11 +91,11 @@ void turn(std::span<const float> a, std::span<const float> b, double t, double* 
     }
 }
 
-/// The value of a channel, of `numbers` numbers.
+/// Evaluates a channel with `numbers` values per key.
 void valueAt(const ClipChannel& channel, std::size_t numbers, double seconds, double* out) {
     const bool cubic = channel.curve == KeyCurve::kCubic;
     const std::size_t stride = cubic ? 3 * numbers : numbers;
-    // 0: the tangent that arrives; 1: the value; 2: the tangent that leaves.
+    // 0: in-tangent; 1: value; 2: out-tangent.
     const auto part = [&](std::size_t key, std::size_t which) {
         return std::span(channel.values).subspan(key * stride + (cubic ? which * numbers : 0), numbers);
     };
@@ -143,7 +143,7 @@ MeshPose poseOf(const AnimatedMesh& mesh, const std::vector<NodeState>& states, 
     return pose;
 }
 
-/// `apart` or less, rising: with all keys, unless these are more.
+/// Returns ascending times at most `apart` seconds apart, including all keys unless there are more keys than times.
 std::vector<double> timesOf(const MeshClip& clip, double apart) {
     std::vector<double> times{double{clip.seconds}};
     for (double t = 0.0; t < double{clip.seconds}; t += apart) {
@@ -193,7 +193,7 @@ MeshPose poseAt(const AnimatedMesh& mesh, const MeshClip& clip, double seconds) 
                 break;
             case NodeMember::kRotation: {
                 const glm::dvec4 rotation(value[0], value[1], value[2], value[3]);
-                // A curve may pass through 0, where no rotation is.
+                // A curve may pass through 0, which is not a rotation.
                 state.rotation = glm::dot(rotation, rotation) > 0.0 ? rotation : state.rotation;
                 break;
             }
@@ -260,7 +260,7 @@ Bounds PoseBounds::of(const MeshPose& pose) const {
     Bounds all;
     for (std::size_t i = 0; i < boxes_.size(); ++i) {
         if (!(boxes_[i].min.x <= boxes_[i].max.x)) {
-            continue;  // moves nothing
+            continue;  // moves no vertex
         }
         const glm::vec3 half = 0.5F * boxes_[i].size() + morphed;
         const glm::vec3 middle = pose.joints[i].apply(boxes_[i].center());

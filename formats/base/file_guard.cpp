@@ -22,7 +22,7 @@ std::string shown(const fs::path& path, const char* standard) {
     return path == "-" ? standard : quotedPath(path);
 }
 
-/// A link's own place; nullopt: no symbolic link.
+/// Returns the location of a symbolic link; nullopt for other files.
 std::optional<std::string> placeOfLink(const fs::path& path) {
     std::error_code error;
     if (!fs::is_symlink(fs::symlink_status(path, error))) {
@@ -33,14 +33,14 @@ std::optional<std::string> placeOfLink(const fs::path& path) {
     return error ? std::nullopt : std::optional((real / path.filename()).native());
 }
 
-/// \param folder  may be empty, which is within none.
+/// \param folder  may be empty, which is within no folder.
 bool isWithin(const fs::path& folder, const fs::path& outer) {
     std::error_code error;
     return !folder.empty() &&
            (destination(folder, error) / "").native().starts_with((destination(outer, error) / "").native());
 }
 
-/// A run that fills a folder writes nothing outside it.
+/// Rejects links that leave the folder: a run that fills a folder must not write outside it.
 Result<void> checkLink(const fs::path& path, const fs::path& folder, std::string_view option) {
     std::error_code error;
     return fs::is_symlink(fs::symlink_status(path, error)) && !isWithin(path, folder)
@@ -151,7 +151,7 @@ std::optional<FileGuard::File> FileGuard::claim(const fs::path& path, std::strin
     if (auto other = find(keys); other || keys.empty()) {
         return other;
     }
-    // A folder of outputs, or one that it lies in, which is not made yet.
+    // An output folder, or a parent of one, that does not exist yet.
     const std::string inside = keys.back() + "/";
     for (const auto& series : {series_.find(keys.back()), series_.lower_bound(inside)}) {
         if (series != series_.end() && (series->first + "/").starts_with(inside)) {
@@ -198,7 +198,7 @@ Result<void> FileGuard::writesSeries(const fs::path& folder, const HoldsName& ho
             return refusal(self, files_[known->second]);
         }
     }
-    // Files that are not there yet are known by their names only.
+    // Files that do not exist yet can only be matched by name.
     const std::string inside = (real / "").native();
     for (auto known = by_key_.lower_bound(inside); known != by_key_.end() && known->first.starts_with(inside);
          ++known) {
@@ -216,7 +216,7 @@ Result<void> FileGuard::writesSeries(const fs::path& folder, const HoldsName& ho
         const auto& [keys, file] = found.emplace_back(keysOf(entry->path(), STDOUT_FILENO),
                                                       File{folder / name, self.option, self.use});
         const auto other = find(keys);
-        // Of many files each is replaced: a hard link leaves the other name as it is.
+        // Files of a series are replaced, not rewritten, so a hard link keeps its other name's contents.
         if (other && (other->use != Use::kOneOfMany || find({keys.back()}))) {
             return refusal(file, *other);
         }

@@ -24,10 +24,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kChunk = std::size_t{1} << 20;  // bytes a system call, for streams
-constexpr int kLinksMax = 40;                         // as Linux follows
+constexpr std::size_t kChunk = std::size_t{1} << 20;  // bytes per system call, for streams
+constexpr int kLinksMax = 40;                         // limit of Linux
 
-/// What a person can do about an errno.
+/// Returns the advice for an errno.
 const char* cure(int code, bool reads) {
     switch (code) {
         case ENOENT:
@@ -59,7 +59,7 @@ tl::unexpected<Error> ioError(const char* action, const std::string& name, int c
                                     std::system_category().message(code) + "; " + cure(code, reads));
 }
 
-/// A path that the system would cut short or take for something else.
+/// Checks for paths that the system would truncate or misinterpret.
 /// \return 0 or an errno.
 int checkPath(const fs::path& path) {
     if (path.empty()) {
@@ -68,13 +68,13 @@ int checkPath(const fs::path& path) {
     return path.native().find('\0') == std::string::npos ? 0 : EINVAL;
 }
 
-/// Reads until the end.
-/// \param expected  bytes that are probably there, at most size_max.
+/// Reads to the end.
+/// \param expected  estimated number of bytes, at most size_max.
 Result<std::vector<std::byte>> readAll(int fd, const std::string& name, std::uint64_t expected,
                                        std::uint64_t size_max) {
     std::vector<std::byte> bytes;
     std::size_t used = 0;
-    // One byte more than expected or allowed, so that the end is seen without growing.
+    // One byte more than expected or allowed, to detect the end without reallocation.
     std::uint64_t room = expected + 1;
     while (true) {
         if (used == bytes.size()) {
@@ -106,10 +106,10 @@ Result<std::vector<std::byte>> readAll(int fd, const std::string& name, std::uin
     }
 }
 
-/// weakly_canonical takes a dangling link for a file that does not exist yet, and leaves it as it is.
+/// weakly_canonical treats a dangling link as a file that does not exist and does not resolve it.
 fs::path settled(const fs::path& path, std::error_code& error) {
     fs::path result = fs::weakly_canonical(fs::absolute(path, error), error);
-    // A folder that does not exist keeps the slash at its end, which would count as a part.
+    // A missing folder keeps its trailing slash, which would count as a component.
     return result.has_filename() ? result : result.parent_path();
 }
 
@@ -137,7 +137,7 @@ Result<void> writeInPlace(const fs::path& path, std::span<const std::byte> bytes
     return {};
 }
 
-/// Removes the temporary files of killed processes, once for each folder.
+/// Removes the temporary files of killed processes, once per folder.
 void removeLeftoversOnce(const fs::path& folder) {
     static std::mutex mutex;
     static std::set<fs::path> done;
@@ -148,11 +148,11 @@ void removeLeftoversOnce(const fs::path& folder) {
     }
 }
 
-/// \param older_mode  permission bits of the file that is replaced, if there is one.
+/// \param older_mode  permission bits of the replaced file, if it exists.
 Result<void> replaceFile(const fs::path& target, const std::string& name, std::span<const std::byte> bytes,
                          std::optional<mode_t> older_mode) {
     const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-    // Private until it has the older file's permissions, so that no other user can read it early.
+    // The file stays private until it has the old file's permissions, so that other users cannot read it early.
     const mode_t first_mode = older_mode ? 0600 : 0666;
     TemporaryFile temporary;
     int code = temporary.create(folder, first_mode);
@@ -166,7 +166,7 @@ Result<void> replaceFile(const fs::path& target, const std::string& name, std::s
         return ioError("write", name, code);
     }
     removeLeftoversOnce(folder);
-    // A folder that may be written but not read cannot be synced: the file is whole all the same.
+    // A folder that is writable but not readable cannot be synced; the file is complete nevertheless.
     if (const Descriptor opened(openRetry(folder.c_str(), O_RDONLY | O_DIRECTORY)); opened) {
         if (const int sync_code = syncToDisk(opened.get())) {
             return ioError("make sure that the disk holds (though it is in place)", name, sync_code);
@@ -306,7 +306,7 @@ Result<void> preflightFile(const fs::path& path, std::string_view option) {
     if (!fs::is_directory(folder, error)) {
         return refuse("its folder does not exist; make the folder first");
     }
-    // A file is replaced by renaming, so it is the folder that must be writable.
+    // Files are replaced by renaming, so the folder must be writable.
     if (!fs::is_symlink(path, error) && ::access(folder.c_str(), W_OK | X_OK) != 0) {
         return refuse("its folder cannot be written; change its permissions or choose another");
     }

@@ -13,11 +13,11 @@
 namespace relief {
 namespace {
 
-/// Further steps of the heap: few, as assimp allocates much in little pieces.
+/// Size of later heap extensions; large because assimp makes many small allocations.
 constexpr int kStepBytes = 16 << 20;
-/// The most that glibc takes from its heaps instead of a mapping of its own.
+/// Largest block that glibc may take from the heap instead of mmap.
 constexpr int kLargestBlock = 32 << 20;
-/// Less than any first step, and more than the heap begins with.
+/// Smaller than any first extension and larger than the initial heap.
 constexpr std::size_t kFirstBlock = std::size_t{1} << 20;
 
 std::uintptr_t heapEnd() {
@@ -29,10 +29,10 @@ std::uintptr_t heapEnd() {
 void prepareHeap(std::size_t bytes) {
     ::mallopt(M_TRIM_THRESHOLD, INT_MAX);
     ::mallopt(M_MMAP_THRESHOLD, kLargestBlock);
-    // One large step now: madvise() does not cover the pages of a later one.
+    // Extend once, by a large step: madvise() does not cover pages that are added later.
     const std::uintptr_t before = heapEnd();
     ::mallopt(M_TOP_PAD, static_cast<int>(std::min<std::size_t>(bytes, INT_MAX)));
-    void* volatile first = std::malloc(kFirstBlock);  // volatile: an unused block need not be allocated
+    void* volatile first = std::malloc(kFirstBlock);  // volatile: an unused allocation may be optimized away
     std::free(first);
     ::mallopt(M_TOP_PAD, kStepBytes);
     const auto page = static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE));

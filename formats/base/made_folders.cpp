@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 MadeFolders::~MadeFolders() {
     for (; !made_.empty(); made_.pop_back()) {
-        ::rmdir(made_.back().c_str());  // not one that holds something
+        ::rmdir(made_.back().c_str());  // fails if not empty
     }
 }
 

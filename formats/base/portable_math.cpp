@@ -10,8 +10,7 @@
 namespace relief::portable {
 namespace {
 
-// Numbers in parts, of which the first have so few bits that their products with a small whole number are
-// exact.
+// Constants split into parts. The first parts have so few bits that their products with a small integer are exact.
 constexpr double kLog2High = 0x1.62e42fee00000p-1;
 constexpr double kLog2Low = 0x1.a39ef35793c76p-33;
 constexpr double kHalfPi1 = 0x1.921fb54400000p+0;
@@ -19,7 +18,7 @@ constexpr double kHalfPi2 = 0x1.0b4611a600000p-34;
 constexpr double kHalfPi3 = 0x1.3198a2e037073p-69;
 constexpr double kPi = 0x1.921fb54442d18p+1;
 
-/// A whole number of quarter turns, and the rest in [−π/4, π/4].
+/// Splits an angle into quarter turns and a remainder in [−π/4, π/4].
 std::pair<std::int64_t, double> quarterTurns(double radians) {
     if (!(std::abs(radians) <= 1e15)) {
         return {0, std::numeric_limits<double>::quiet_NaN()};
@@ -29,8 +28,8 @@ std::pair<std::int64_t, double> quarterTurns(double radians) {
             ((radians - turns * kHalfPi1) - turns * kHalfPi2) - turns * kHalfPi3};
 }
 
-/// Taylor's series from the term of x^first on, each term −x²/((n + 1)(n + 2)) times the one before; by
-/// Horner.
+/// Evaluates the Taylor series from the term of x^first on by Horner's scheme; each term is −x²/((n + 1)(n + 2)) times
+/// the previous one.
 double alternating(double x_squared, int first) {
     double sum = 0.0;
     for (int n = first + 18; n > first; n -= 2) {
@@ -49,7 +48,7 @@ double cosNearZero(double x) {
 
 /// \param t  in [0, 1]
 double atanOfShare(double t) {
-    // Half the angle twice: tan(a/2) = tan a / (1 + √(1 + tan² a)).
+    // Halve the angle twice: tan(a/2) = tan a / (1 + √(1 + tan² a)).
     double tangent = t;
     for (int i = 0; i < 2; ++i) {
         tangent /= 1.0 + std::sqrt(1.0 + tangent * tangent);

@@ -26,12 +26,12 @@ int Process::start(const ProcessStart& start) {
     ::posix_spawnattr_init(&attributes);
     const int count = static_cast<int>(start.files.size());
     const Descriptor nothing(openRetry("/dev/null", O_RDWR));
-    std::vector<Descriptor> copies;  // out of the way of the numbers, each of which may be another's
+    std::vector<Descriptor> copies;  // avoids overwriting a descriptor that is still needed
     int code = 0;
     for (int number = 0; number < count && code == 0; ++number) {
         const int file = start.files[static_cast<std::size_t>(number)];
         copies.emplace_back(::fcntl(file >= 0 ? file : nothing.get(), F_DUPFD_CLOEXEC, count));
-        // A number beyond the limit of open files is "invalid" to the kernel.
+        // The kernel reports a number beyond the limit of open files as invalid.
         code = copies.back() ? ::posix_spawn_file_actions_adddup2(&actions, copies.back().get(), number)
                              : (errno == EINVAL || errno == EBADF ? EMFILE : errno);
     }
@@ -73,7 +73,7 @@ ProcessEnd Process::wait() {
     if (got > 0 && WIFSIGNALED(status)) {
         return {0, WTERMSIG(status)};
     }
-    // Nothing is known where this process ignores SIGCHLD: callers look at what the program has left.
+    // No status is available if this process ignores SIGCHLD: callers check the program's output.
     return {got > 0 ? WEXITSTATUS(status) : 0, 0};
 }
 

@@ -28,7 +28,7 @@ struct TemporaryFile::Slot {
     std::atomic<bool> live = false;  ///< the file may exist
     std::array<char, PATH_MAX> name{};
 
-    static std::array<Slot, 32> all;  ///< where a signal handler finds them
+    static std::array<Slot, 32> all;  ///< lets a signal handler find them
 };
 std::array<TemporaryFile::Slot, 32> TemporaryFile::Slot::all;
 
@@ -36,7 +36,7 @@ namespace {
 
 constexpr int kAttempts = 8;
 
-/// Takes a decimal number without zeros in front, and the character behind it, from the front.
+/// Removes a decimal number without leading zeros, followed by the character `behind`, from the front.
 std::optional<std::uint64_t> takeNumber(std::string_view& text, char behind) {
     std::uint64_t number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -48,7 +48,7 @@ std::optional<std::uint64_t> takeNumber(std::string_view& text, char behind) {
     return number;
 }
 
-/// The process in a name that create() makes; nullopt for any other name.
+/// Returns the process id in a name made by create(); nullopt for other names.
 std::optional<pid_t> processOf(std::string_view name) {
     constexpr std::string_view kStart = ".relief-";
     constexpr std::string_view kEnd = ".tmp";
@@ -82,7 +82,7 @@ int TemporaryFile::create(const fs::path& folder, mode_t mode) {
         return EMFILE;
     }
     slot_ = &*slot;
-    // Another machine or container takes a file that it sees before the lock for a leftover: then the next name.
+    // If another machine or container removed the file as a leftover before it was locked, try the next name.
     int code = EAGAIN;
     for (int attempt = 0; code == EAGAIN && attempt < kAttempts; ++attempt) {
         code = createOnce(folder, mode);
@@ -92,7 +92,7 @@ int TemporaryFile::create(const fs::path& folder, mode_t mode) {
 
 int TemporaryFile::createOnce(const fs::path& folder, mode_t mode) {
     static std::atomic<unsigned> counter = 0;
-    unsigned random = 0;  // stays 0 where the system has none to give: O_EXCL keeps this safe
+    unsigned random = 0;  // stays 0 if the system has no random numbers; O_EXCL keeps this safe
     [[maybe_unused]] const ssize_t got = ::getrandom(&random, sizeof(random), GRND_NONBLOCK);
     const int length =
         std::snprintf(slot_->name.data(), slot_->name.size(), "%s/.relief-%ld-%u-%08x.tmp", folder.c_str(),
@@ -100,7 +100,7 @@ int TemporaryFile::createOnce(const fs::path& folder, mode_t mode) {
     if (length < 0 || static_cast<std::size_t>(length) >= slot_->name.size()) {
         return ENAMETOOLONG;
     }
-    // Before the file exists, so that a signal at any time finds it.
+    // Set before the file exists, so that a signal handler always finds it.
     slot_->live = true;
     file_ = Descriptor(openRetry(slot_->name.data(), O_WRONLY | O_CREAT | O_EXCL, mode));
     if (!file_) {
@@ -108,7 +108,7 @@ int TemporaryFile::createOnce(const fs::path& folder, mode_t mode) {
         slot_->live = false;
         return code;
     }
-    // Not every file system has locks, which is another error.
+    // Other errors mean that the file system does not support locks.
     const bool held = ::flock(file_.get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
     struct stat status {};
     return held && (::fstat(file_.get(), &status) != 0 || status.st_nlink > 0) ? 0 : EAGAIN;
@@ -173,7 +173,7 @@ void endCleanlyOnSignals() {
             struct sigaction action {};
             action.sa_handler = [](int ending) {
                 TemporaryFile::removeAll();
-                // SA_RESETHAND has restored the default action, and SA_NODEFER lets the signal through.
+                // SA_RESETHAND has restored the default action, and SA_NODEFER unblocked the signal.
                 ::raise(ending);
             };
             action.sa_flags = static_cast<int>(SA_RESETHAND | SA_NODEFER);

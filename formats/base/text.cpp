@@ -16,7 +16,7 @@
 namespace relief {
 namespace {
 
-/// Edits (insert, delete, change, swap neighbours) that turn one word into the other.
+/// Returns the number of edits (insert, delete, change, swap neighbours) that turn one word into the other.
 std::size_t editDistance(std::string_view a, std::string_view b) {
     std::vector<std::size_t> before_previous(b.size() + 1);
     std::vector<std::size_t> previous(b.size() + 1);
@@ -47,7 +47,7 @@ std::optional<T> parseNumber(std::string_view text) {
     if (end != text.data() + text.size()) {
         return std::nullopt;
     }
-    // std::from_chars takes what rounds to 0 for as much of an error as what is too large.
+    // std::from_chars reports underflow to 0 as the same error as overflow.
     if (error == std::errc::result_out_of_range &&
         std::abs(std::strtod(std::string(text).c_str(), nullptr)) < 1.0) {
         return text.starts_with('-') ? -T{} : T{};
@@ -55,7 +55,7 @@ std::optional<T> parseNumber(std::string_view text) {
     return error == std::errc{} ? std::optional(value) : std::nullopt;
 }
 
-/// Length of the well-formed UTF-8 sequence at the start of `bytes`, 0 if there is none.
+/// Returns the length of the well-formed UTF-8 sequence at the start of `bytes`, or 0.
 std::size_t utf8Length(std::string_view bytes) {
     const auto at = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
     const unsigned first = at(0);
@@ -72,7 +72,7 @@ std::size_t utf8Length(std::string_view bytes) {
             return 0;
         }
     }
-    // Overlong forms, surrogates, and what lies above U+10FFFF.
+    // Overlong forms, surrogates, and code points above U+10FFFF.
     if ((first == 0xe0 && at(1) < 0xa0) || (first == 0xed && at(1) >= 0xa0) ||
         (first == 0xf0 && at(1) < 0x90) || (first == 0xf4 && at(1) >= 0x90)) {
         return 0;
@@ -86,13 +86,13 @@ bool changesOrder(std::string_view character) {
            (character >= "\xe2\x81\xa6" && character <= "\xe2\x81\xa9");
 }
 
-/// A character of UTF-8, or one byte that is part of none.
+/// A UTF-8 character, or a byte of an invalid sequence.
 struct Character {
     std::string_view bytes;
-    bool clean = false;  ///< can be shown as it is
+    bool clean = false;  ///< can be displayed unchanged
 };
 
-/// Cuts it off the start of `text`, which is not empty.
+/// Removes the first character from `text`, which must not be empty.
 Character takeCharacter(std::string_view& text, Bidi bidi) {
     const std::size_t length = utf8Length(text);
     const std::string_view bytes = text.substr(0, std::max(length, std::size_t{1}));
@@ -226,7 +226,7 @@ std::string_view nearest(std::string_view word, std::span<const std::string_view
         return {};
     }
     for (const std::string_view candidate : known) {
-        // A whole word that was only cut short counts as near.
+        // A truncated word counts as near.
         const bool prefix = word.size() >= 2 && candidate.starts_with(word);
         const std::size_t distance = prefix ? 1 : editDistance(word, candidate);
         if (distance < best_distance) {
@@ -307,7 +307,7 @@ std::optional<std::uint64_t> parseByteCount(std::string_view text) {
     for (const auto& [name, factor] : kUnits) {
         if (unit == name) {
             const double bytes = number * factor;
-            // Written so that NaN fails too.
+            // This form also rejects NaN.
             return bytes >= 1.0 && bytes <= 0x1p53 ? std::optional(static_cast<std::uint64_t>(bytes))
                                                    : std::nullopt;
         }

@@ -102,7 +102,7 @@ std::string_view TextScanner::restOfLine() {
 }
 
 bool TextScanner::nextLine() {
-    // A backslash at the end of a comment joins no line.
+    // A backslash at the end of a comment does not continue the line.
     for (bool in_comment = false; at_ != end_ && lineEnd(at_) == 0;) {
         in_comment = in_comment || (rules_.comment != '\0' && *at_ == rules_.comment);
         const std::size_t joined = in_comment ? 0 : joint(at_);

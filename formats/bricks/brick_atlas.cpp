@@ -17,7 +17,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the file is written as memory has it");
 
 constexpr std::array<char, 8> kMagic{'B', 'R', 'I', 'C', 'K', 'S', '0', '1'};
-constexpr std::uint32_t kSideMax = 65536;  // cubes along an axis, and voxels of a brick
+constexpr std::uint32_t kSideMax = 65536;  // cubes along an axis, and voxels per brick
 
 struct Header {
     std::array<char, 8> magic = kMagic;
@@ -42,7 +42,7 @@ Header headerOf(const BrickAtlas& atlas) {
     return header;
 }
 
-/// False for numbers that no writer has.
+/// Returns false for values that no writer produces.
 bool takeHeader(const Header& header, BrickAtlas& atlas) {
     std::array<glm::vec3, 4> vectors;
     for (std::size_t i = 0; i < 12; ++i) {
@@ -89,7 +89,7 @@ Result<BrickAtlas> loadBrickAtlas(const std::filesystem::path& path) {
     if (!takeHeader(header, atlas)) {
         return wrong();
     }
-    // Sides of 2^16 multiply to 2^48, which 64 bits hold.
+    // Sides of up to 2^16 multiply to at most 2^48, which fits into 64 bits.
     const std::uint64_t cubes = std::uint64_t{atlas.cubes.x} * atlas.cubes.y * atlas.cubes.z;
     const std::uint64_t left = bytes.size() - sizeof header;
     if (cubes > left / 4 || header.codes != (left - 4 * cubes) / 2 || left % 2 != 0 ||

@@ -47,7 +47,7 @@ Result<fs::path> resolveInside(const fs::path& folder, std::string_view text, st
                       (root.empty() ? "" : " and of --root " + quotedPath(root)) +
                       "; put the file there, or the " + whose + " beside the file");
     }
-    // Alone, "-" would be standard input.
+    // "-" by itself would mean standard input.
     return text == "-" ? folder / "./-" : folder / path;
 }
 

@@ -21,7 +21,7 @@ std::string rangeText(const FieldRange& range) {
                                      : "choose " + low + " or more";
 }
 
-/// The tables of an array, or a table by itself; 0 for anything else.
+/// Returns the number of tables in an array, 1 for a single table, otherwise 0.
 std::size_t tableCount(const toml::node* node) {
     const toml::array* array = node == nullptr ? nullptr : node->as_array();
     return array != nullptr ? array->size() : (node != nullptr && node->is_table() ? 1 : 0);
@@ -35,7 +35,7 @@ std::string placeIn(const TomlFile& file, const toml::source_region& region) {
                         : file.name;
 }
 
-/// Its errors as errors.
+/// Converts exceptions into errors.
 Result<void> caught(const TomlFile& file, const std::function<void()>& read) {
     try {
         read();
@@ -242,19 +242,19 @@ std::vector<TomlValue> TomlValue::tables(const FieldInfo& info) const {
 
 namespace {
 
-/// The fields of a struct: what a table may hold.
+/// The fields of a struct: the keys that its table may contain.
 class TableRules : public FieldVisitor {
   public:
     void operator()(std::string_view name, FieldRef /*value*/, const FieldInfo& info) override {
         fields_.push_back({name, info});
     }
 
-    /// Fails at the first key of the file that is no field.
+    /// Fails at the first key of the file that is not a field.
     void refuseUnknown(const TomlValue& table) const;
-    /// The word that the keys of a table without the selecting field choose; empty: none.
+    /// Returns the value that the present keys imply for the missing selecting field; empty: none.
     [[nodiscard]] std::string_view chosen(const TomlValue& table) const;
-    /// Fails where a key is missing, or has no effect beside the others or without them.
-    /// \param selected  word of the selecting field; empty if there is no such field.
+    /// Fails if a key is missing, or has no effect with or without the others.
+    /// \param selected  value of the selecting field; empty if there is none.
     void checkTable(const TomlValue& table, std::string_view selected) const;
 
   private:
@@ -352,7 +352,7 @@ void TableRules::checkUse(const TomlValue& table, const Field& field, std::strin
     }
 }
 
-/// Reads the fields that a table gives.
+/// Reads the fields that are present in a table.
 class TableReader : public FieldVisitor {
   public:
     TableReader(const TomlValue& table, std::string_view chosen) : table_(table), selected_(chosen) {}
@@ -380,7 +380,7 @@ bool isWhole(const FieldType& type) {
     return type.form == FieldForm::kUnsigned || type.form == FieldForm::kSigned;
 }
 
-/// The least and the largest value of a type of whole numbers.
+/// Returns the limits of an integer type.
 FieldRange rangeOf(const FieldType& type) {
     const int bits = static_cast<int>(8 * type.size);
     return type.form == FieldForm::kUnsigned
@@ -388,7 +388,7 @@ FieldRange rangeOf(const FieldType& type) {
                : FieldRange{-std::ldexp(1.0, bits - 1), std::ldexp(1.0, bits - 1) - 1.0};
 }
 
-/// Above zero in the file, above zero in the struct.
+/// Converts a number; values above zero stay above zero.
 template <class T>
 T narrowed(double value, const FieldRange& range) {
     const T result = static_cast<T>(value);
@@ -413,7 +413,7 @@ void readNumber(const TomlValue& from, FieldRef value, const FieldInfo& info) {
     }
 }
 
-/// A vector or an array.
+/// Reads a vector or an array.
 void readNumbers(const TomlValue& from, FieldRef value, const FieldInfo& info) {
     const bool is_vector = value.form() == FieldForm::kVector;
     static_cast<void>(from.list(value.count(), isWhole(*value.type().held),
@@ -426,7 +426,7 @@ void readNumbers(const TomlValue& from, FieldRef value, const FieldInfo& info) {
     if (!is_vector) {
         return;
     }
-    // Scaled first: the square of a short vector would vanish.
+    // Scale first: the square of a short vector would underflow.
     auto& vector = value.as<glm::vec3>();
     const float longest = std::max({std::abs(vector.x), std::abs(vector.y), std::abs(vector.z)});
     if ((info.rules.not_zero || info.rules.unit_length) && !(longest >= 1e-30F)) {
@@ -437,7 +437,7 @@ void readNumbers(const TomlValue& from, FieldRef value, const FieldInfo& info) {
     }
 }
 
-/// A number of the type of a part of a FieldSpan or FieldPair, before it becomes that part.
+/// A number with the type of one part of a FieldSpan or FieldPair, before it is stored.
 class PartNumber {
   public:
     explicit PartNumber(FieldRef part)

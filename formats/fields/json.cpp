@@ -26,7 +26,7 @@ std::string jsonLine(const Json& json) {
 
 namespace {
 
-/// Without a value, an empty text or list, or a number out of its range.
+/// Returns whether a field is unset, empty, or out of range.
 bool isNone(FieldRef value, const FieldInfo& info) {
     switch (value.form()) {
         case FieldForm::kOptional:
@@ -80,7 +80,7 @@ class JsonWriter : public FieldVisitor {
   private:
     Json json_ = Json::object();
     std::string_view selected_;
-    /// Keys, and those without any of which they go.
+    /// Keys with the keys in FieldRules::needs.
     std::vector<std::pair<std::string, std::string_view>> needs_;
 };
 
@@ -282,7 +282,7 @@ Json schemaOf(FieldRef value) {
 }
 
 Json schemaOf(FieldRef value, const FieldInfo& info) {
-    FieldInfo inner = info;  // of the elements of a list
+    FieldInfo inner = info;  // for the elements of a list
     inner.items = kFromZero;
     inner.left_out = false;
     const FieldType& type = value.type();

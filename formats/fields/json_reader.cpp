@@ -30,12 +30,12 @@ std::string rangeText(const FieldRange& range) {
                                      : "choose " + low + " or more";
 }
 
-/// Thrown by everything below where a value is wrong; readJson() turns it into an Error.
+/// Thrown by the functions below if a value is invalid; readJson() converts it into an Error.
 struct JsonError {
     std::string message;
 };
 
-/// A value of a document with its place: "bodies[3].rotation"; empty for the document itself.
+/// A value of a document with its path: "bodies[3].rotation"; empty for the document itself.
 class JsonValue {
   public:
     JsonValue(const nlohmann::json& json, std::string place) : json_(&json), place_(std::move(place)) {}
@@ -51,12 +51,12 @@ class JsonValue {
     [[nodiscard]] bool boolean() const;
     [[nodiscard]] std::string text() const;
     void needObject() const;
-    /// \param count  of elements.
+    /// \param count  valid number of elements.
     void needArray(const FieldRange& count) const;
 
-    /// "PLACE WHAT", with a cure if that has none.
+    /// Fails with "PATH WHAT", and appends a fix if `what` has none.
     [[noreturn]] void fail(const std::string& what) const;
-    /// Fails at the first key that none of the fields has.
+    /// Fails at the first key that is not a field.
     void refuseUnknown(const std::vector<std::string_view>& fields) const;
 
   private:

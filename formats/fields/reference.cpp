@@ -19,7 +19,7 @@ std::string superscript(int exponent) {
     return text;
 }
 
-/// 10⁶ and 2²⁴ instead of their digits.
+/// Formats powers such as 10⁶ and 2²⁴ as such.
 std::string prettyNumber(double value) {
     for (int exponent = -15; exponent <= 15; ++exponent) {
         if ((exponent >= 4 || exponent <= -3) && value == parseDouble("1e" + std::to_string(exponent))) {
@@ -33,7 +33,7 @@ std::string prettyNumber(double value) {
     return shortest(static_cast<float>(value));
 }
 
-/// Whole numbers of a few values: "0 … 2" would stand for 0.5 too.
+/// Lists the values of small integer ranges: "0 … 2" would suggest that 0.5 is valid.
 std::string listOfWhole(const FieldReference& field) {
     constexpr double kMost = 4.0;
     const FieldRange& range = field.info.range;
@@ -82,7 +82,7 @@ std::string meaning(const FieldReference& field) {
     return text;
 }
 
-/// "[0.5, 1]" of JSON's "[0.5,1.0]".
+/// Reformats JSON's "[0.5,1.0]" as "[0.5, 1]".
 std::string prettyDefault(const std::string& json) {
     std::string text;
     for (std::size_t i = 0; i < json.size(); ++i) {
@@ -118,7 +118,7 @@ void addWords(const std::vector<FieldReference>& fields, std::set<std::string>& 
 
 namespace {
 
-/// A list of so many numbers.
+/// Returns the schema of an array of `count` numbers.
 Json numbersSchema(std::size_t count, bool whole, const FieldInfo& info) {
     return {{"type", "array"},
             {"items", numberSchema(whole, false, info)},

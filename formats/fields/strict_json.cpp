@@ -14,10 +14,10 @@ namespace {
 
 using PlainJson = nlohmann::json;
 
-constexpr std::size_t kMessageBytesMax = 200;  // bytes of the file or of the parser's message that are shown
+constexpr std::size_t kMessageBytesMax = 200;  // maximum bytes of the file or the parser's message to show
 
-/// Looks through a text before it is parsed: nlohmann's parser takes time by the square of an array's length if a callback
-/// listens to it.
+/// Checks a text before it is parsed: with a callback, nlohmann's parser takes time quadratic in the length of an
+/// array.
 class Strictness : public nlohmann::detail::json_sax_acceptor<PlainJson> {
   public:
     explicit Strictness(const JsonLimits& limits) : limits_(limits) {}
@@ -66,7 +66,7 @@ class Strictness : public nlohmann::detail::json_sax_acceptor<PlainJson> {
 
     JsonLimits limits_;
     std::size_t values_ = 0;
-    std::vector<std::set<std::string>> keys_;  // of the open objects
+    std::vector<std::set<std::string>> keys_;  // of open objects
 };
 
 }  // namespace
@@ -82,7 +82,7 @@ Result<PlainJson> parseStrictJson(std::string_view text, const JsonLimits& limit
     }
     try {
         return PlainJson::parse(text.begin(), text.end());
-    } catch (const PlainJson::exception& error) {  // also a number out of range
+    } catch (const PlainJson::exception& error) {  // also thrown for a number out of range
         const std::string_view words(error.what());
         return invalidInput("it is no valid JSON: " +
                             cleanUtf8(words.substr(words.find("] ") + 2), kMessageBytesMax));

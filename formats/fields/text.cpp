@@ -18,7 +18,7 @@ bool isBytes(const FieldInfo& info) {
     return info.unit == "bytes";
 }
 
-/// The largest whole number that the range allows.
+/// Returns the largest integer that the range allows.
 std::uint64_t mostOf(const FieldRange& range, std::uint64_t most) {
     return range.high < static_cast<double>(most) ? static_cast<std::uint64_t>(range.high) : most;
 }
@@ -82,7 +82,7 @@ std::string readUnsigned(std::string_view word, const FieldInfo& info, std::uint
     return {};
 }
 
-/// Of a length whose unit is behind it: of metres, which is what object units are where a file says so.
+/// Removes the unit of a length and returns its factor to metres, the object unit of files that specify one.
 double takeUnit(std::string_view& word) {
     static constexpr std::array<std::pair<std::string_view, double>, 4> kUnits{
         {{"mm", 1e-3}, {"cm", 1e-2}, {"km", 1e3}, {"m", 1.0}}};

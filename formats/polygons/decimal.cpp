@@ -17,7 +17,7 @@ bool isDigit(char c) {
     return c >= '0' && c <= '9';
 }
 
-/// Cuts digits off the front.
+/// Removes leading digits.
 std::string_view takeDigits(std::string_view& text) {
     std::size_t length = 0;
     while (length < text.size() && isDigit(text[length])) {
@@ -33,7 +33,7 @@ struct Decimal {
     std::string_view whole;
     std::string_view fraction;
     std::string_view exponent;  // digits
-    bool shrinks = false;       // the exponent is negative
+    bool shrinks = false;       // negative exponent
 };
 
 std::optional<Decimal> partsOfDecimal(std::string_view text) {
@@ -65,7 +65,7 @@ std::uint64_t integer(std::string_view digits) {
     return value;
 }
 
-/// 10 to the power of an exponent of few digits.
+/// Returns 10 to the power of an exponent with few digits.
 float powerOfTen(const Decimal& parts) {
     std::array<char, 8> text{'1', 'e', parts.shrinks ? '-' : '+'};
     parts.exponent.copy(text.data() + 3, 4);
@@ -104,7 +104,7 @@ std::optional<float> readDecimal(std::string_view word) {
         const bool plain = parts->exponent.empty() && parts->whole.size() <= kWholeMax;
         const bool summed = parts->whole.size() <= kWholeMax && parts->exponent.size() <= kExponentMax;
         value = summed ? sumOfParts(*parts) : 0.0F;
-        // Powers of ten beyond the floats' spoil the product, and large numbers the integer.
+        // Powers of ten beyond the range of floats break the product, and large numbers overflow the integer.
         if (!plain) {
             const float nearest = nearestTo(number, *parts);
             value = summed && std::abs(value - nearest) <= kRounding * std::abs(nearest) ? value : nearest;

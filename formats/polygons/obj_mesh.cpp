@@ -75,7 +75,7 @@ class ObjReader {
         return {};
     }
 
-    /// Names are kept for each change of group or material.
+    /// Limits names because they are kept for each change of group or material.
     [[nodiscard]] Result<void> checkName(std::string_view name) const {
         return name.size() <= kNameMax
                    ? Result<void>()
@@ -130,7 +130,7 @@ class ObjReader {
         return checkVertexCount(mesh_.positions.size());
     }
 
-    /// The vertex that a corner names; it may come later in the file.
+    /// Returns the vertex of a corner; it may be defined later in the file.
     Result<std::uint32_t> vertexOf(std::string_view corner) {
         const std::size_t line = text_.line();
         std::string_view digits = corner.substr(0, corner.find('/'));
@@ -196,7 +196,7 @@ class ObjReader {
         mesh_.groups.push_back(std::move(group));
     }
 
-    /// A line strip, or points.
+    /// Reads a line strip, or points.
     Result<void> readOther(bool line) {
         std::uint64_t count = 0;
         for (std::string_view word = text_.word(); !word.empty(); word = text_.word()) {
@@ -208,7 +208,7 @@ class ObjReader {
         return {};
     }
 
-    /// Vertices that no face uses may be anywhere.
+    /// Checks coordinates of vertices in use; the others may have any value.
     Result<void> checkFinite() const {
         const bool used = nowhere_line_ != 0 &&
                           std::any_of(mesh_.corners.begin(), mesh_.corners.end(), [&](std::uint32_t corner) {
@@ -225,17 +225,17 @@ class ObjReader {
     TextScanner text_;
     ObjMesh obj_;
     PolygonMesh& mesh_ = obj_.polygons;
-    std::string name_;  // of the group or object that was begun last
+    std::string name_;  // current group or object
     std::string group_;
     std::string material_;
-    bool has_faces_ = false;    // name_ has
-    bool by_material_ = false;  // and a material after them
+    bool has_faces_ = false;    // faces have used name_
+    bool by_material_ = false;  // a material followed those faces
     bool renamed_ = false;      // since the last face
     std::vector<std::uint32_t> in_others_;
     std::uint64_t triangles_ = 0;
-    std::uint64_t furthest_ = 0;  // index that a face names
+    std::uint64_t furthest_ = 0;  // largest vertex index of a face
     std::size_t furthest_line_ = 0;
-    std::size_t nowhere_ = 0;  // the first vertex that is not finite
+    std::size_t nowhere_ = 0;  // first vertex that is not finite
     std::size_t nowhere_line_ = 0;
 };
 

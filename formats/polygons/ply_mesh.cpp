@@ -27,7 +27,8 @@ bool isSurface(const PlyElement& element) {
            std::any_of(element.properties.begin(), element.properties.end(), isVertexList);
 }
 
-/// An element that is not read may hold faces. Range grids hold points in rows and columns, no faces.
+/// Returns whether a skipped element probably contains faces. Range grids contain points in rows and columns, not
+/// faces.
 bool looksLikeFaces(const PlyElement& element) {
     const bool other = element.name == "vertex" || element.name == "range_grid" ||
                        element.name.find("texture") != std::string_view::npos;
@@ -85,7 +86,7 @@ class PlyImport {
         return checkVertexCount(vertices_);
     }
 
-    /// In text, each element has a line: one of more or fewer numbers would shift all behind it.
+    /// Checks that a text element ends with its line: extra or missing numbers would shift all following ones.
     static Result<void> endLine(const PlyElement& element, std::uint64_t index, PlyNumbers& numbers) {
         return !numbers.isText() || numbers.atLineEnd()
                    ? Result<void>()
@@ -145,7 +146,7 @@ class PlyImport {
         return {};
     }
 
-    /// Of red, green, blue and alpha: from numbers of the file to 0…255.
+    /// Returns factors from the file's numbers to 0…255, for red, green, blue and alpha.
     static std::array<double, 4> colorScales(const PlyElement& element) {
         std::array<double, 4> scales{1.0, 1.0, 1.0, 1.0};
         for (const PlyProperty& property : element.properties) {
@@ -182,7 +183,7 @@ class PlyImport {
     }
 
     Result<void> readStrips(const PlyProperty& property, std::uint64_t index, PlyNumbers& numbers) {
-        // The largest number of 32 bits is -1 to who wrote it as a signed one.
+        // Writers that use a signed type store -1 as the largest 32-bit number.
         const double other_end = property.type == PlyType::kUint32 ? 4294967295.0 : -1.0;
         const std::uint64_t length = RELIEF_TRY(takePlyLength(numbers, *property.length_type));
         std::uint32_t before_last = 0;
@@ -201,7 +202,7 @@ class PlyImport {
                 return noVertex("tristrips", index, *value, numbers);
             }
             const auto corner = static_cast<std::uint32_t>(*value);
-            // Repeated corners only lead the strip to its next part.
+            // Repeated corners only connect parts of a strip.
             if (in_strip >= 2 && before_last != last && last != corner && corner != before_last) {
                 const bool turned = in_strip % 2 == 1;
                 mesh_.corners.insert(mesh_.corners.end(),
@@ -265,9 +266,9 @@ class PlyImport {
 
     PolygonColors colors_;
     PolygonMesh mesh_;
-    std::uint64_t vertices_ = 0;  // the header's count: faces may come first
+    std::uint64_t vertices_ = 0;  // the header's count: faces may precede the vertices
     std::uint64_t triangles_ = 0;
-    std::vector<PlyElement> unread_;  // that look like faces
+    std::vector<PlyElement> unread_;  // elements that look like faces
 };
 
 }  // namespace

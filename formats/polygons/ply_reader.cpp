@@ -40,7 +40,7 @@ std::size_t sizeOf(PlyType type) {
     return kSizes[static_cast<std::size_t>(type)];
 }
 
-/// \param words  of its line.
+/// \param words  of the element's line.
 Result<void> addElement(std::span<const std::string_view> words, PlyHeader& header) {
     const std::optional<std::uint64_t> count = words.size() == 3 ? parseUnsigned(words[2]) : std::nullopt;
     if (!count || header.elements.size() == kPlyElementsMax) {
@@ -50,7 +50,7 @@ Result<void> addElement(std::span<const std::string_view> words, PlyHeader& head
     return {};
 }
 
-/// \param words  of its line.
+/// \param words  of the property's line.
 Result<void> addProperty(std::span<const std::string_view> words, PlyHeader& header) {
     if (header.elements.empty() || header.elements.back().properties.size() == kPlyPropertiesMax) {
         return invalidInput("a property of its header belongs to no element, or to a crowded one");
@@ -73,7 +73,7 @@ Result<void> addProperty(std::span<const std::string_view> words, PlyHeader& hea
 Result<PlyHeader> takePlyHeader(std::string_view& data) {
     PlyHeader header;
     std::optional<PlyEncoding> encoding;
-    // Behind a header whose lines end with a carriage return alone, a line feed belongs to the numbers.
+    // After a header with carriage returns as line ends, a line feed belongs to the numbers.
     bool returns = false;
     for (;;) {
         const std::string_view before = data;
