@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint16_t kHalfSmallest = 0x0400;  // 2^-14
 constexpr std::uint16_t kHalfOne = 0x3c00;
 
-/// Nine significant digits: enough to tell any two floats apart.
+/// Nine significant digits distinguish any two floats.
 std::string number(double value) {
     char text[32];
     std::snprintf(text, sizeof(text), "%.9g", value);
@@ -30,7 +30,7 @@ std::string words(const glm::vec3& v) {
     return "(" + number(v.x) + ", " + number(v.y) + ", " + number(v.z) + ")";
 }
 
-/// The fault of a text of the metadata, or "".
+/// Returns the problem of a metadata text, or "".
 std::string faultOfText(const char* field, std::string_view text, std::size_t size_max) {
     if (text.size() > size_max) {
         return std::string(field) + " has " + std::to_string(text.size()) + " bytes, " +
@@ -88,10 +88,11 @@ Result<void> validateSize(const DepthMap& map) {
     return {};
 }
 
-/// T's rows must be orthogonal: the vote of a plane inverts T by that. object_per_map must agree with T:
-/// its entries are the lengths of the columns of T's inverse, here one over those of T's rows.
+/// Checks that T's rows are orthogonal, because the vote of a plane inverts T under that assumption. Also checks
+/// object_per_map against T: its entries are the lengths of the columns of T's inverse, here the reciprocals of the
+/// lengths of T's rows.
 Result<void> validateTransform(const DepthMap& map) {
-    std::array<glm::dvec3, 3> row;  // of unit length
+    std::array<glm::dvec3, 3> row;  // unit length
     std::array<double, 3> length{};
     for (std::size_t i = 0; i < 3; ++i) {
         const glm::vec4& r = map.object_to_map.row[i];
@@ -99,7 +100,7 @@ Result<void> validateTransform(const DepthMap& map) {
             return invalidInput("object_to_map row " + std::to_string(i) + " is not finite");
         }
         const glm::dvec3 wide(r.x, r.y, r.z);
-        length[i] = glm::length(wide);  // of floats in double: neither overflows nor vanishes
+        length[i] = glm::length(wide);  // floats in double: neither overflows nor underflows
         if (!(length[i] > 0.0)) {
             return invalidInput("object_to_map row " + std::to_string(i) + " is zero");
         }
@@ -128,7 +129,7 @@ Result<void> validateTransform(const DepthMap& map) {
     return {};
 }
 
-/// What is wrong with one texel; nullptr if nothing is.
+/// Returns the problem of a texel, or nullptr.
 const char* faultOfFloat(std::span<const std::byte> texel) {
     float channels[4];
     std::memcpy(channels, texel.data(), sizeof(channels));
@@ -223,7 +224,7 @@ Result<void> validateTexels(const DepthMap& map) {
         return validatePatches(map.texels);
     }
     if (map.format != MapFormat::kFloat32 && map.format != MapFormat::kFrontBackHalf) {
-        return {};  // every code has a meaning
+        return {};  // every code is valid
     }
     for (std::uint32_t y = 0; y < map.height; ++y) {
         for (std::uint32_t x = 0; x < map.width; ++x) {

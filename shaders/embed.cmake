@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-# relief_embed_shaders(OUTPUT): makes OUTPUT, a C++ file with the text of every shader and with the constants that C++ shares
-# with them (shader_sources.h).
+# relief_embed_shaders(OUTPUT): generates OUTPUT, a C++ file with the text of all shaders and the constants that C++
+# shares with them (shader_sources.h).
 #
-# Constants are written once, in C++, in the headers below. `inline constexpr int kTileSide = 16;` is RELIEF_TILE_SIDE in
-# GLSL; members of a struct and of an enum class have its name in front: RELIEF_CONTACT_STOPPED.
+# Constants are only defined in C++, in the headers below. `inline constexpr int kTileSide = 16;` becomes
+# RELIEF_TILE_SIDE in GLSL; members of a struct or enum class are prefixed with its name: RELIEF_CONTACT_STOPPED.
 if(NOT CMAKE_SCRIPT_MODE_FILE)
     function(relief_embed_shaders output)
         set(folder ${CMAKE_CURRENT_FUNCTION_LIST_DIR})
         file(GLOB_RECURSE files CONFIGURE_DEPENDS ${folder}/*.comp ${folder}/*.frag ${folder}/*.glsl ${folder}/*.vert)
-        # The folders of layers that are left out. (The web build has all.)
+        # Exclude the folders of disabled layers. (The web build has all layers.)
         foreach(layer air bodies events live picture)
             string(TOUPPER ${layer} upper)
             if(NOT RELIEF_LAYER_${upper})
@@ -51,7 +51,7 @@ foreach(header IN LISTS HEADERS)
             string(REGEX MATCH "k[A-Za-z0-9]+ =[ \n]+(.*)" _ "${token}")
             string(REGEX REPLACE "([0-9.])F" "\\1" value "${CMAKE_MATCH_1}")
             string(STRIP "${value}" value)
-            # One word stays as it is: GLSL ES has no expressions in layout(…).
+            # Single words stay without parentheses: GLSL ES does not allow expressions in layout(…).
             if(value MATCHES "^-| ")
                 set(value "(${value})")
             endif()

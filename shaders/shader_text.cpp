@@ -10,7 +10,8 @@
 namespace relief {
 namespace {
 
-/// Replaces every line `//!include NAME` by the file's text, once a file, and `//!layer NAME` in builds that have that layer.
+/// Replaces lines `//!include NAME` by the file's text, once per file, and `//!layer NAME` likewise in builds with that
+/// layer.
 Result<std::string> resolveIncludes(std::string_view name, std::vector<std::string>& included) {
     const std::string_view source = shaderSource(name);
     if (source.empty()) {
@@ -53,7 +54,7 @@ void addNames(std::string_view text, std::set<std::string_view>& names) {
     }
 }
 
-/// Those of shaderConstants() that a shader uses. Each may use earlier ones.
+/// Returns the definitions in shaderConstants() that a shader uses. A definition may use earlier ones.
 std::string constantsOf(std::string_view shader) {
     constexpr std::string_view kDefine = "#define ";
     std::set<std::string_view> used;

@@ -21,10 +21,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A body has 15 values, a collider 17.
+/// A body has 15 values, a collider has 17.
 constexpr std::size_t kValuesMax = 20 * (kWorldBodiesMax + kWorldCollidersMax) + 100;
 constexpr std::size_t kDepthMax = 8;
-/// Deviation of a rotation's length from 1 that decimals of a few digits have.
+/// Tolerance for the length of a rotation, which decimals with few digits exceed by rounding.
 constexpr double kUnitTolerance = 1e-3;
 constexpr const char* kBakeAgain = "; bake the level again";
 
@@ -36,7 +36,7 @@ bool isHash(const std::string& text) {
     return text.size() == 32 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
 
-/// \param files  of the colliders before.
+/// \param files  files of the preceding colliders.
 Result<void> checkFile(const WorldFile& file, const std::string& place, std::set<std::string>& files) {
     if (!isHash(file.hash)) {
         return invalidInput(place + ".hash must be 32 digits of 0 to 9 and a to f" + kBakeAgain);
@@ -99,7 +99,7 @@ Result<void> checkBodies(World& world) {
     return {};
 }
 
-/// Before the fields, as another version has others.
+/// Call it before reading the fields, which differ between versions.
 Result<void> checkVersion(const nlohmann::json& json) {
     if (!json.is_object() || !json.contains("format") || json["format"] != kWorldFormat) {
         return invalidInput("it is no world: its format is not \"" + std::string(kWorldFormat) +
@@ -120,7 +120,7 @@ std::string placeOf(const World& world, std::size_t collider, WorldDetail detail
     return placeOf("colliders", collider) + (coarse ? ".coarse" : "");
 }
 
-/// A container ready to be opened; links may not lead out of the world's folder.
+/// Returns the path of a container; links may not leave the world's folder.
 Result<fs::path> pathOf(const World& world, std::size_t collider, WorldDetail detail,
                         const fs::path& folder) {
     return withPrefix(placeOf(world, collider, detail) + ".file",

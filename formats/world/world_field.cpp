@@ -7,8 +7,8 @@
 namespace relief {
 namespace {
 
-/// Room round the box of a body, as maps reach a little beyond that of their mesh: in units of its longest side, and for
-/// roundings of its largest coordinate.
+/// Margin around the box of a body, relative to its longest side, because maps extend slightly beyond the box of their
+/// mesh. Also covers rounding of its largest coordinate.
 constexpr float kRoom = 0.01F;
 constexpr float kRounding = 1e-5F;
 

@@ -11,14 +11,15 @@
 namespace relief {
 namespace {
 
-// 1 / root mean square of the curl of one octave, all over space. Corners' numbers, ±1, ±3 … ±15, are independent, of variance 85; and there are two corners in each unit of space. So the mean square is
-// twice the integral of one corner's, 85 t⁴ (2r² + 3u² + 2u r² + r⁴) with t = 1/2 - r² and u = 4t/3 - 1/2, over
-// the ball t > 0: 85 · 8√2 π / 6435 = 0.469488795.
+// Reciprocal of the RMS of the curl of one octave, over all space. The random numbers of a corner, ±1, ±3 … ±15, are
+// independent with variance 85, and there are two corners per unit of volume. The mean square is therefore twice the
+// integral over the ball t > 0 of one corner's, 85 t⁴ (2r² + 3u² + 2u r² + r⁴) with t = 1/2 - r² and u = 4t/3 - 1/2,
+// which is 85 · 8√2 π / 6435 = 0.469488795.
 constexpr float kUnitRms = 1.45944383F;
 
-// Units of the lattice in a `scale`. With so many, the mean square of the velocity's nine derivatives, over that
-// of the velocity, is 29.1052974 / scale²: what noise of three gradients a corner has on a cubic lattice of side
-// `scale`, with a quintic fade. In units of the lattice it is 330/7, by integrals as above.
+// Lattice units per `scale`. With this value, the mean square of the velocity's nine derivatives, divided by that of
+// the velocity, is 29.1052974 / scale². This equals noise with three gradients per corner and a quintic fade on a cubic
+// lattice of side `scale`. In lattice units the ratio is 330/7, by integrals as above.
 constexpr float kUnitsPerScale = 0.785738567F;
 
 bool positive(float x) {
@@ -48,7 +49,7 @@ Result<void> checkNoise(const CurlNoise& noise) {
 }  // namespace
 
 std::optional<FieldFault> check(CurlNoise& noise, const GivenFields& /*given*/) {
-    noise.scale = std::max(noise.scale, 1e-9F);  // its reciprocal stays a float
+    noise.scale = std::max(noise.scale, 1e-9F);  // keeps its reciprocal in the range of floats
     if (noise.drift / noise.scale > CurlNoise::kRateMax) {
         return FieldFault{"drift", "is more than 1000 times curl_noise.scale a second; lower it"};
     }

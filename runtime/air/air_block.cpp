@@ -24,7 +24,7 @@ struct Block {
 };
 static_assert(sizeof(Block) == (6 + 16 + 24) * 16);
 
-// Kinds that a program may be compiled without.
+// Kinds of forces that a program may be compiled without.
 enum Kind : unsigned { kAir = 1, kFlow = 2, kCurl = 4, kAttractors = 8, kVortices = 16 };
 constexpr const char* kKindNames[] = {"AIR", "FLOW", "CURL", "ATTRACTORS", "VORTICES"};
 
@@ -119,7 +119,7 @@ Result<void> AirBlock::update(const AirSettings& air) {
     const PassState state;
     const Block block = blockOf(changed, flow_block_);
     glBindBuffer(GL_UNIFORM_BUFFER, block_.name());
-    // All of it anew: a driver then needs not wait for draws that still read the old contents.
+    // Replace the whole buffer: the driver then need not wait for draws that still read the old contents.
     glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_DYNAMIC_DRAW);
     return {};
 }

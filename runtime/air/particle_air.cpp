@@ -9,7 +9,7 @@
 namespace relief {
 namespace {
 
-constexpr AirBlock::Binding kBinding{6, 1};  // behind the step's own
+constexpr AirBlock::Binding kBinding{6, 1};  // after the step's own bindings
 
 class ParticleAir : public StepFeature {
   public:
@@ -35,7 +35,7 @@ class ParticleAir : public StepFeature {
 Result<void> setAir(ParticleSystem& particles, const AirSettings& air) {
     const auto* const old = particles.feature<ParticleAir>();
     if (air == (old == nullptr ? AirSettings{} : old->settings())) {
-        return {};  // a new step is compiled otherwise
+        return {};  // the change does not require another program
     }
     auto block = RELIEF_TRY(AirBlock::create(air));
     if (block.defines().empty()) {

@@ -17,13 +17,14 @@
 namespace relief {
 namespace {
 
-/// Halvings of an edge, to 1/65536 of it: closer than the maps are.
+/// Bisections of an edge, to 1/65536 of its length: finer than the maps.
 constexpr int kHalvings = 16;
-/// Weight of the mean of the crossings against their planes: enough that planes which are nearly parallel do not throw the vertex far.
+/// Weight of the mean crossing relative to the planes: large enough that nearly parallel planes do not move the vertex
+/// far away.
 constexpr double kMeanWeight = 0.01;
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-/// The sums over the planes of the crossings of a cell.
+/// Sums over the planes at the crossings of a cell.
 struct Planes {
     glm::dmat3 squares{0.0};  // Σ n nᵀ
     glm::dvec3 right{0.0};    // Σ n (n · p)
@@ -36,7 +37,7 @@ struct Planes {
         sum += p;
         count += 1.0;
     }
-    /// The point that is nearest to all planes, and as near to the mean as that leaves open.
+    /// Returns the point that fits all planes best and, within the remaining freedom, is nearest to the mean.
     [[nodiscard]] glm::dvec3 meeting() const {
         const glm::dvec3 mean = sum / count;
         const glm::dmat3 system = squares + kMeanWeight * glm::dmat3(1.0);
@@ -49,7 +50,7 @@ class Contour {
     Contour(const Collider& collider, std::uint32_t cells) : collider_(collider) {
         const glm::dvec3 size(collider.bounds.size());
         cell_ = std::max({size.x, size.y, size.z}) / cells;
-        // A cell beyond the bounds on each side: what ends there has its other side outside.
+        // One extra cell beyond the bounds on each side: parts that end at the bounds get their other side outside.
         for (int k = 0; k < 3; ++k) {
             count_[k] = std::max(1, static_cast<int>(std::ceil(size[k] / cell_ - 1e-6))) + 2;
         }
@@ -74,7 +75,7 @@ class Contour {
 
   private:
     [[nodiscard]] std::size_t corners() const { return corner(count_) + 1; }
-    /// Of a cell its lowest corner.
+    /// Returns the lowest corner of a cell.
     [[nodiscard]] std::size_t corner(const glm::ivec3& at) const {
         const auto wide = static_cast<std::size_t>(count_.x) + 1;
         const auto high = static_cast<std::size_t>(count_.y) + 1;
@@ -86,7 +87,8 @@ class Contour {
         return evaluateInside(collider_, glm::vec3(p)).inside;
     }
 
-    /// Edges of the grid, from a corner along an axis, whose ends are on different sides, in the order of the corners.
+    /// Calls f for grid edges, from a corner along an axis, whose ends are on different sides, in the order of the
+    /// corners.
     template <class F>
     void eachCrossing(const F& f) const {
         for (int z = 0; z <= count_.z; ++z) {
@@ -105,7 +107,7 @@ class Contour {
         }
     }
 
-    /// The four cells around an edge, anticlockwise seen along its axis; where the grid ends, false.
+    /// Returns the four cells around an edge, counter-clockwise seen along its axis; false at the boundary of the grid.
     [[nodiscard]] bool cellsAround(const glm::ivec3& at, int axis, std::array<glm::ivec3, 4>& cells) const {
         const int u = (axis + 1) % 3;
         const int v = (axis + 2) % 3;
@@ -151,7 +153,7 @@ class Contour {
 
     void place() {
         for (std::size_t i = 0; i < list_.size(); ++i) {
-            // Planes of different parts may meet outside of the cell: none of its surface is there.
+            // Planes of different parts may intersect outside the cell, where it has no surface.
             const glm::dvec3 low = cornerAt(cells_[i]);
             out_.positions.emplace_back(glm::clamp(list_[i].meeting(), low, low + cell_));
         }
@@ -167,9 +169,9 @@ class Contour {
             v.at(i) = planes_[corner(cells.at(i))];
         }
         if (inside_[corner(at)] == 0) {
-            std::swap(v[1], v[3]);  // the outside lies back along the axis
+            std::swap(v[1], v[3]);  // the outside lies in the negative direction of the axis
         }
-        // Cut along the shorter diagonal, so that an edge of the surface is not bridged.
+        // Split along the shorter diagonal, so that edges of the surface are not bridged.
         const auto& p = out_.positions;
         const auto long_by = [&](std::uint32_t a, std::uint32_t b) {
             return glm::dot(p[a] - p[b], p[a] - p[b]);
@@ -187,8 +189,8 @@ class Contour {
     double cell_ = 0.0;
     glm::ivec3 count_{0};  // cells
     glm::dvec3 low_{0.0};
-    std::vector<char> inside_;           // of the corners
-    std::vector<std::uint32_t> planes_;  // of each cell, by its lowest corner: its index in the next two
+    std::vector<char> inside_;           // for each corner
+    std::vector<std::uint32_t> planes_;  // for each cell, by its lowest corner: index into the next two
     std::vector<Planes> list_;
     std::vector<glm::ivec3> cells_;
     ColliderSurface out_;

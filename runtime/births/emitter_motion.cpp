@@ -9,8 +9,8 @@
 namespace relief {
 namespace {
 
-/// From the space that moves along a trajectory to the space of its poses.
-/// \param moved  how the place moves; `inherit` of it is taken on in the end.
+/// Transforms a birth from the moving space of a trajectory into the space of its poses.
+/// \param moved  accumulates the motion of the emitting point; births finally inherit a fraction of it.
 void carryAlong(std::span<const PoseKey> keys, double time, Birth& birth, glm::vec3& moved) {
     if (keys.empty()) {
         return;
@@ -42,7 +42,7 @@ void carry(const EmitterMotion& motion, double time, std::span<Birth> births, st
         if (velocities != nullptr) {
             (*velocities)[i] = moved;
         }
-        // A step of no length at all may make what is no number of a motion.
+        // A step of zero length may produce a motion that is not finite.
         const glm::vec3 velocity = birth.velocity + motion.inherit * moved;
         birth.velocity = isFinite(velocity) ? velocity : birth.velocity;
     }
@@ -50,8 +50,8 @@ void carry(const EmitterMotion& motion, double time, std::span<Birth> births, st
 
 namespace {
 
-/// Carries the births of an emitter from `first` on, and drops what its filter drops, and what is above the room.
-/// \return how many were above it.
+/// Transforms an emitter's births from `first` on, and removes those rejected by its filter and those above the room.
+/// \return the number removed because of the room.
 std::uint64_t carryFiltered(const EmitterMotion& motion, double time, const Emitter& emitter,
                             std::uint64_t room, std::size_t first, std::vector<Birth>& births) {
     const std::span<Birth> made = std::span(births).subspan(first);

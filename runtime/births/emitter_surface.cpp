@@ -12,13 +12,13 @@
 namespace relief {
 namespace {
 
-/// Twice the area, along the normal. In doubles: squares of large and small floats stay numbers.
+/// Returns twice the area, along the normal. Uses doubles to avoid overflow and underflow of squares.
 glm::dvec3 crossOf(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
     const glm::dvec3 p(a);
     return glm::cross(glm::dvec3(b) - p, glm::dvec3(c) - p);
 }
 
-/// Uniform in [0, 1): a multiple of 2^-53.
+/// Returns a uniform number in [0, 1): a multiple of 2^-53.
 double fineUniform(Pcg32& random) {
     const std::uint64_t high = random.next() >> 5;
     const std::uint64_t low = random.next() >> 6;
@@ -91,8 +91,9 @@ Bounds EmitterSurface::bounds() const {
     return box;
 }
 
-/// Spacings of sorted uniform numbers are uniform on a simplex. On a triangle whose density is linear, one of the corners' own densities, each
-/// of which grows with the share of its corner, is drawn first: that share is then the sum of two spacings of three numbers.
+/// Samples barycentric coordinates. Spacings of sorted uniform numbers are uniform on a simplex. A linear density on a
+/// triangle is a mixture of three densities, each proportional to the coordinate of one corner; first draws a corner.
+/// Its coordinate is then the sum of two spacings of three numbers.
 glm::vec3 EmitterSurface::cornersShare(Pcg32& random, const glm::uvec3& triangle) const {
     float cuts[3]{};
     if (weights_.empty()) {
@@ -109,7 +110,7 @@ glm::vec3 EmitterSurface::cornersShare(Pcg32& random, const glm::uvec3& triangle
         cut = random.uniform();
     }
     std::sort(cuts, cuts + 3);
-    const float most = cuts[1];  // of the corner that was drawn
+    const float most = cuts[1];  // coordinate of the corner drawn
     const float second = cuts[2] - cuts[1];
     const float third = 1.0F - cuts[2];
     return at < a       ? glm::vec3(most, second, third)
@@ -118,7 +119,7 @@ glm::vec3 EmitterSurface::cornersShare(Pcg32& random, const glm::uvec3& triangle
 }
 
 EmitterSurface::Place EmitterSurface::draw(Pcg32& random, float age) const {
-    // The first whose sum is above it: never one without an area.
+    // Find the first sum above it: never a triangle without area.
     const double at = fineUniform(random) * area();
     const auto found = std::upper_bound(upto_.begin(), upto_.end(), at);
     const std::size_t i = std::min(static_cast<std::size_t>(found - upto_.begin()), triangles_.size() - 1);
@@ -144,7 +145,7 @@ EmitterSurface::Place EmitterSurface::draw(Pcg32& random, float age) const {
         }
     }
     glm::dvec3 across = crossOf(corners[0], corners[1], corners[2]);
-    if (!(glm::dot(across, across) > 0.0)) {  // flat on its way, or no numbers
+    if (!(glm::dot(across, across) > 0.0)) {  // degenerate during its motion, or not finite
         across = crossOf(end_[t.x], end_[t.y], end_[t.z]);
     }
     place.normal = glm::vec3(across / std::sqrt(glm::dot(across, across)));

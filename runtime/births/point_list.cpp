@@ -24,7 +24,7 @@ tl::unexpected<Error> wrong(const std::string& where, const std::string& what) {
     return fail(ErrorCode::kInvalidInput, where + ": " + what);
 }
 
-/// Checks and adds one point. \param where  of it, for messages.
+/// Checks and adds a point. \param where  its position in the file, for messages.
 Result<void> add(PointList& list, const Fields& fields, bool normals, const std::string& where) {
     for (std::size_t i = 0; i < 3; ++i) {
         if (!(std::abs(fields[i]) <= kPointCoordinateMax)) {
@@ -52,7 +52,7 @@ Result<void> add(PointList& list, const Fields& fields, bool normals, const std:
 
 // --- comma-separated text ---
 
-/// \return nullopt where a field is no number, or where there are too many.
+/// \return nullopt if a field is not a number or there are too many fields.
 std::optional<Fields> parseFields(std::span<const std::string_view> words) {
     Fields fields{};
     for (std::size_t i = 0; i < words.size(); ++i) {
@@ -91,7 +91,7 @@ Result<PointList> parseCsv(std::string_view text, const std::string& name) {
 
 // --- PLY ---
 
-/// Errors name no file.
+/// Errors do not name the file.
 Result<PlyHeader> takePointsHeader(std::string_view& text) {
     PlyHeader header = RELIEF_TRY(takePlyHeader(text));
     if (header.elements.empty() || header.elements.front().name != "vertex") {

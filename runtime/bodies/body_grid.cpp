@@ -11,15 +11,15 @@
 namespace relief {
 namespace {
 
-/// Cells of a level, at most, along each axis from the origin: what an int holds after rounding.
+/// Maximum cells of a level along each axis from the origin: fits into an int after rounding.
 constexpr float kCellsMax = 1e9F;
-/// Levels of fewer bodies than this share of all join the next coarser one.
+/// Levels with fewer than 1/kFew of all bodies are merged into the next coarser one.
 constexpr std::size_t kFew = 16;
-/// Lists of a level for each of its entries, at least.
+/// Minimum lists per entry of a level.
 constexpr std::size_t kListsPerEntry = 1;
 constexpr int kUnbounded = std::numeric_limits<int>::max();
 
-/// The exponent of 2 of the cells for a box.
+/// Returns the power of 2 of the cell size for a box.
 int exponentOf(const BodyBox& box, float cell_size) {
     if (box.unbounded) {
         return kUnbounded;
@@ -32,7 +32,7 @@ int exponentOf(const BodyBox& box, float cell_size) {
     return static_cast<int>(std::ceil(std::log2(least)));
 }
 
-/// The boxes of each level, by exponent; ascending.
+/// Returns the boxes of each level, by ascending exponent.
 std::map<int, std::vector<std::uint32_t>> levelsOf(std::span<const BodyBox> boxes, float cell_size) {
     std::map<int, std::vector<std::uint32_t>> levels;
     for (std::uint32_t i = 0; i < boxes.size(); ++i) {
@@ -59,7 +59,7 @@ std::map<int, std::vector<std::uint32_t>> levelsOf(std::span<const BodyBox> boxe
     return levels;
 }
 
-/// The cells of a level that a box meets, as it is turned.
+/// Enumerates the cells of a level that an oriented box intersects.
 class MetCells {
   public:
     MetCells(const BodyBox& box, float cell_size) : box_(box), cell_size_(cell_size) {
@@ -70,7 +70,7 @@ class MetCells {
             reach_[i] = length + box.margin + of_cell;
         }
     }
-    /// False where a side of the box parts it from the cell.
+    /// Returns false if a side of the box separates it from the cell.
     [[nodiscard]] bool has(const glm::ivec3& cell) const {
         const glm::vec3 from = (glm::vec3(cell) + 0.5F) * cell_size_ - box_.center;
         return std::abs(glm::dot(from, axis_[0])) <= reach_[0] &&
@@ -99,7 +99,7 @@ class MetCells {
     float reach_[3] = {};
 };
 
-/// Adds a level of these entries. \param lists  how many, a power of two.
+/// Adds a level with these entries. \param lists  number of lists, a power of two.
 void addLevel(BodyGrid& grid, float cells_per_unit, std::uint32_t lists,
               std::span<const BodyGrid::Entry> entries) {
     const BodyGrid::Level level{cells_per_unit, static_cast<std::uint32_t>(grid.lists.size()), lists - 1};

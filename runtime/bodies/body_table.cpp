@@ -15,17 +15,17 @@ static_assert(sizeof(BlockMap) == kWorldMapTexels * sizeof(glm::uvec4));
 static_assert(sizeof(BlockBody) == kWorldBodyTexels * sizeof(glm::uvec4));
 static_assert(2 * kGridLevelsMax <= kWorldLevels);
 
-/// How much larger boxes are than they should be, for the rounding of poses and rows: of their coordinates.
+/// Enlargement of boxes for the rounding of poses and rows, relative to their coordinates.
 constexpr float kSlack = 1e-5F;
-/// Cells of the grids (BodyGrid::of). Of many bodies they are larger, for the memory, and of those that move, since all are
+/// Cell sizes (BodyGrid::of). Larger for many bodies, to save memory, and for moving bodies, because their grid is
 /// uploaded at each step.
 constexpr float kCells = 0.25F;
 constexpr float kCellsOfMany = 0.5F;
 constexpr std::size_t kMany = 16'384;
 constexpr float kMovingCells = 1.4F;
-/// The body of a list without entries.
+/// Body index in a list without entries.
 constexpr std::uint32_t kNoBody = 0xffffffffU;
-/// Room for the grid of bodies that move, in shares of what it needs.
+/// Capacity reserved for the grid of moving bodies, relative to its size.
 constexpr std::size_t kRoom = 2;
 
 BodyBox boxOf(const TableBody& body, std::uint32_t index, float reach) {
@@ -53,19 +53,19 @@ Bounds unionOf(Bounds box, const Bounds& other) {
     return box;
 }
 
-/// The rows that take a point of the world to the body's object space.
+/// Computes the rows that transform a world point into the body's object space.
 void writeRows(const Pose& pose, glm::vec4 (&rows)[3]) {
     const glm::mat3 rotation = glm::mat3_cast(pose.rotation);
     for (int i = 0; i < 3; ++i) {
-        // Column i of the rotation is the body's axis i in the world.
+        // Column i of the rotation is the body's axis i in world space.
         const glm::vec3 row = rotation[i] / pose.scale;
         rows[i] = glm::vec4(row, -glm::dot(row, pose.position));
     }
 }
 
-/// The rows that take a point of a body from where it is in one pose to where it is in another.
+/// Computes the rows that move a point of a body from one pose to another.
 void writeMove(const Pose& from, const Pose& to, glm::vec4 (&rows)[3]) {
-    // In double: the two translations nearly cancel.
+    // In double, because the two translations nearly cancel.
     const double scale = double{to.scale} / double{from.scale};
     const glm::dmat3 turn =
         scale * glm::mat3_cast(glm::dquat(to.rotation) * glm::conjugate(glm::dquat(from.rotation)));
@@ -75,7 +75,8 @@ void writeMove(const Pose& from, const Pose& to, glm::vec4 (&rows)[3]) {
     }
 }
 
-/// A map of patches of a body in this pose: its object space is the world. (Other maps have normals of their own space.)
+/// Returns the map of patches of a body in this pose, with world space as its object space. (Other maps have normals in
+/// their own space.)
 BlockMap placedMap(const BlockMap& map, const Pose& pose) {
     const glm::dmat3 turn = glm::mat3_cast(glm::dquat(pose.rotation));
     const double scale = pose.scale;
@@ -148,7 +149,7 @@ std::size_t BodyTable::write(const BodyGrid& grid, std::size_t first, std::vecto
     }
     const std::size_t first_entry = first + grid.lists.size();
     for (std::size_t i = 0; i < grid.lists.size(); ++i) {
-        // The first one is beside the range of the others, which saves most points a look.
+        // The first entry is stored with the range of the others, which saves most points a fetch.
         const BodyGrid::List& list = grid.lists[i];
         const bool any = list.first < list.end;
         const BodyGrid::Entry entry = any ? grid.entries[list.first] : BodyGrid::Entry{kNoBody, 0};

@@ -11,7 +11,7 @@
 namespace relief {
 namespace {
 
-/// Of the top grid: no more cells than 32³, nor than so many for each node.
+/// Limits of the top grid: at most 32³ cells, and at most kTopEntries per node.
 constexpr int kTopLog2Max = 5;
 constexpr std::size_t kTopEntries = 64;
 
@@ -19,20 +19,20 @@ std::uint32_t bitsOf(float value) {
     return __builtin_bit_cast(std::uint32_t, value);
 }
 
-/// A cell of the tree: a node, or a leaf.
+/// A cell of the tree: a node or a leaf.
 struct TreeCell {
     std::uint32_t node = 0;
     std::uint8_t leaf = 0;
     bool is_leaf = false;
 };
 
-/// The tree of a collider as grids: materials.glsl.
+/// Converts the tree of a collider into grids; see materials.glsl.
 class GridBuilder {
   public:
     GridBuilder(const Materials& materials, std::vector<glm::uvec4>& texels)
         : materials_(materials), texels_(texels) {
         const std::vector<MaterialNode>& nodes = materials.nodes;
-        // A node lies behind its parent.
+        // Nodes follow their parents.
         std::vector<int> levels(nodes.size(), 1);
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             depth_ = std::max(depth_, levels[i]);
@@ -41,7 +41,7 @@ class GridBuilder {
                 levels[child++] = levels[i] + 1;
             }
         }
-        // Bricks have two levels each.
+        // Each brick covers two levels.
         const std::size_t most = kTopEntries * nodes.size();
         top_log2_ = depth_ % 2;
         while (top_log2_ + 2 <= std::min(depth_, kTopLog2Max) &&
@@ -93,7 +93,7 @@ class GridBuilder {
         texels_[grid.texel + i / 4][static_cast<int>(i % 4)] = entry;
     }
 
-    /// Sets the entries of a cell that is 2^log2 of them wide.
+    /// Sets the entries of a cell with a width of 2^log2 entries.
     void place(const TreeCell& cell, const Grid& grid, const glm::uvec3& corner, int log2) {
         if (log2 == 0) {
             std::uint32_t entry = 0;
@@ -121,14 +121,14 @@ class GridBuilder {
 
     const Materials& materials_;
     std::vector<glm::uvec4>& texels_;
-    int depth_ = 0;  ///< levels of the tree
+    int depth_ = 0;  ///< number of levels of the tree
     int top_log2_ = 0;
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> bricks_;  ///< first texel and node of each
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> bricks_;  ///< first texel and node of each brick
 };
 
-/// Adds the record of a collider: materials.glsl.
-/// \param numbers  of all names so far.
-/// \return  that of its bodies.
+/// Adds the record of a collider; see materials.glsl.
+/// \param numbers  numbers of all names so far.
+/// \return the head of its bodies.
 MaterialHead addRecord(const Materials& materials, std::map<std::string, std::uint32_t>& numbers,
                        MaterialTable& table) {
     const auto first = static_cast<std::uint32_t>(table.texels.size());
@@ -160,7 +160,7 @@ MaterialTable makeMaterialTable(std::span<const Materials* const> bodies) {
     std::map<const Materials*, MaterialHead> heads;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         if (bodies[i] == nullptr || bodies[i]->empty()) {
-            continue;  // materials lie behind the bodies: a first one at 0 is none
+            continue;  // materials follow the bodies, so a first texel of 0 means none
         }
         const auto [found, added] = heads.try_emplace(bodies[i]);
         if (added) {

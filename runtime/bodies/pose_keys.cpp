@@ -9,16 +9,16 @@
 namespace relief {
 namespace {
 
-/// Half a turn whose cosine of half the angle is rounded: 0.0002 degrees.
+/// Half-angle cosine below which a rotation counts as a half turn: a rounding error of 0.0002 degrees.
 constexpr float kHalfTurnCosine = 2e-6F;
 
-/// That of the two quaternions of a rotation which is nearer to `from`. Half a turn has no shorter way: it goes as the
-/// quaternions have it, from one angle about an axis to another angle about it.
+/// Returns the one of a rotation's two quaternions that is nearer to `from`. Half turns have no shorter way: they keep
+/// the sign of the quaternions.
 glm::quat nearTo(const glm::quat& from, const glm::quat& to) {
     return glm::dot(from, to) < -kHalfTurnCosine ? -to : to;
 }
 
-/// The first key after a time; its index is the number of keys if there is none.
+/// Returns the index of the first key after a time, or the number of keys.
 std::size_t after(std::span<const PoseKey> keys, double time) {
     const auto found = std::upper_bound(keys.begin(), keys.end(), time,
                                         [](double at, const PoseKey& key) { return at < key.time; });

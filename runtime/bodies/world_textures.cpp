@@ -20,7 +20,7 @@
 namespace relief {
 namespace {
 
-/// Each body has one map of patches, which BodyTable places in the world.
+/// Returns whether each body has exactly one map of patches, which BodyTable can place in world space.
 bool arePlaced(std::span<const PlacedMap> maps, std::span<const TableBody> bodies) {
     return std::all_of(bodies.begin(), bodies.end(), [&](const TableBody& body) {
         return body.maps == 1 && maps[body.first_map].map->format == MapFormat::kPatches;
@@ -53,7 +53,7 @@ Result<WorldTextures> WorldTextures::create(std::span<const ColliderBody> bodies
     std::vector<PlacedMap> maps;
     std::vector<TableBody> placed;
     std::vector<const Materials*> materials;
-    std::map<const Collider*, std::size_t> known;  // their first bodies
+    std::map<const Collider*, std::size_t> known;  // the first body of each
     for (const ColliderBody& body : bodies) {
         if (!(body.pose.scale > 0.0F)) {
             return fail(ErrorCode::kUsage, "the scale of a collider must be above 0");
@@ -77,7 +77,7 @@ Result<WorldTextures> WorldTextures::create(std::span<const ColliderBody> bodies
         added.live = body.live;
         added.group = group;
         materials.push_back(body.live ? nullptr : &body.collider->materials);
-        // A live one has texels of its own.
+        // Live bodies do not share texels.
         const auto same = body.live ? known.end() : known.find(body.collider);
         if (same == known.end()) {
             added.box = insideBox(*body.collider);
@@ -114,12 +114,12 @@ void WorldTextures::upload(std::size_t first, std::span<const std::byte> texels)
     const std::size_t texel_size = texelFormat(kFrontBackTexels).texel_size;
     const std::size_t width = rowTexels();
     const std::size_t end = first + texels.size() / texel_size;
-    const PassState state;  // row lengths and skips among it: texels are tightly packed
+    const PassState state;  // resets row lengths and skips, so that texels are tightly packed
     useTexture(0, maps_[kFrontBackTexels]);
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, world_->upload.name());
     glBufferData(GL_PIXEL_UNPACK_BUFFER, static_cast<GLsizeiptr>(texels.size()), texels.data(),
                  GL_STREAM_DRAW);
-    // The end of a row, whole rows, and the beginning of one.
+    // The end of a row, whole rows, and the start of a row.
     for (std::size_t at = first; at < end;) {
         const std::size_t x = at % width;
         const std::size_t rows = x == 0 ? std::max<std::size_t>((end - at) / width, 1) : 1;
@@ -164,7 +164,7 @@ void WorldTextures::updateWorld() const {
     if (changes.empty()) {
         return;
     }
-    const PassState state;  // row lengths and skips among it: texels are tightly packed
+    const PassState state;  // resets row lengths and skips, so that texels are tightly packed
     const std::span<const glm::uvec4> words = bodies.words();
     const std::size_t width = std::size_t{1} << bodies.log2Width();
     if (is_new) {
@@ -175,7 +175,7 @@ void WorldTextures::updateWorld() const {
         useTexture(0, world_->texture);
         glBindBuffer(GL_PIXEL_UNPACK_BUFFER, world_->upload.name());
         for (const auto& [first, end] : changes) {
-            // By way of a new buffer: the step before may still read the texture, and this must not wait for it.
+            // Upload through a new buffer: the previous step may still read the texture, and this must not wait for it.
             const std::span<const glm::uvec4> rows = words.subspan(first * width, (end - first) * width);
             glBufferData(GL_PIXEL_UNPACK_BUFFER, static_cast<GLsizeiptr>(rows.size_bytes()), rows.data(),
                          GL_STREAM_DRAW);
@@ -202,7 +202,7 @@ Result<WorldTextures> WorldTextures::upload(std::span<const PlacedMap> maps, std
     result.defines_ = "#define RELIEF_BODIES 1\n#define RELIEF_PLACED " + std::to_string(placed ? 1 : 0) +
                       "\n" + mapDefines(maps, layout);
 
-    const PassState state;  // row lengths and skips among it: texels are tightly packed
+    const PassState state;  // resets row lengths and skips, so that texels are tightly packed
     forgetGlErrors();
     result.maps_ = MapTextures(maps, layout);
     RELIEF_TRY(result.uploadMaterials(materials));

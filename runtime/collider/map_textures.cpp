@@ -22,7 +22,7 @@ MapTextures::MapTextures(std::span<const PlacedMap> maps, const MapLayout& layou
         textures_[kind] = makeTexture2D(format.internal_format, static_cast<GLsizei>(texture.width),
                                         static_cast<GLsizei>(texture.height), format.format, format.type,
                                         texture.texels.data());
-        // One texel stands for a texture that no map uses.
+        // Textures that no map uses have one texel, which is not counted.
         bytes_ += layout.textures[kind].height() == 0 ? 0 : texture.texels.size();
     }
 }

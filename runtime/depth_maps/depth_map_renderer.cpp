@@ -17,7 +17,7 @@ constexpr GLint kPlaneUnit = 1;
 constexpr GLint kCornerUnit = 2;
 constexpr GLint kPreviousUnit = 3;
 
-/// State that PassState leaves alone because no other pass depends on it: the depth range, and on desktop GL the
+/// Saves state that PassState does not, because no other pass depends on it: the depth range, and on desktop GL the
 /// provoking vertex and depth clamping.
 class DrawState {
   public:
@@ -80,8 +80,8 @@ Result<DepthMapRenderer> DepthMapRenderer::create(std::uint32_t width, std::uint
 }
 
 void DepthMapRenderer::setUniforms(const GpuMesh& mesh, const DepthMap& map) const {
-    // The rows are orthogonal, so that the columns of the inverse, object vectors of one unit along each map axis, are the
-    // rows over their squared lengths.
+    // The rows are orthogonal, so the columns of the inverse (one unit along each map axis in object space) are the
+    // rows divided by their squared lengths.
     glm::dvec3 axis[3];
     glm::dvec3 origin(0.0);
     for (int k = 0; k < 3; ++k) {
@@ -89,7 +89,7 @@ void DepthMapRenderer::setUniforms(const GpuMesh& mesh, const DepthMap& map) con
         axis[k] = glm::dvec3(row) / glm::dot(glm::dvec3(row), glm::dvec3(row));
         origin -= row.w * axis[k];
     }
-    // The middle of the volume as a float: points are relative to it exactly.
+    // The centre of the volume, rounded to a float, so that subtracting it from points is exact.
     const glm::vec3 center(origin + 0.5 * (axis[0] + axis[1] + axis[2]));
     const glm::dvec3 size(map.width, map.height, 1.0);
     std::array<glm::vec4, 3> rows;
@@ -129,13 +129,13 @@ void DepthMapRenderer::render(GpuMesh& mesh, const DepthMap& map) const {
     const GLuint nothing[4] = {};
     glClearBufferuiv(GL_COLOR, 0, nothing);
     glEnable(GL_DEPTH_TEST);
-    glScissor(1, 1, width - 2, height - 2);  // planes leave the border empty
+    glScissor(1, 1, width - 2, height - 2);  // plane maps have an empty border
     for (const bool far : {false, true}) {
         program_.set("u_far", far);
         const GLfloat farthest = far ? 0.0F : 1.0F;
         glClearBufferfv(GL_DEPTH, 0, &farthest);
         glDepthFunc(far ? GL_GREATER : GL_LESS);
-        // The front in the first and third channel, the back in the others.
+        // The front uses channels 1 and 3, the back channels 2 and 4.
         glColorMask(!far, far, !far, far);
         mesh.draw();
     }

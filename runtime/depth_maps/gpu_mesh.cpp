@@ -18,7 +18,7 @@ namespace {
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 constexpr GLuint kVertexAttribute = 0;
 
-/// The least power of two that makes a texture of so many texels no higher than wide.
+/// Returns log2 of the smallest power-of-two width for which the height does not exceed it.
 int shiftFor(std::uint32_t count) {
     int shift = 0;
     while ((std::uint64_t{1} << (2 * shift)) < count) {
@@ -44,12 +44,12 @@ Result<void> checkFinite(std::span<const glm::vec3> positions) {
 }
 
 struct Slots {
-    std::vector<std::uint32_t> vertex;   // of each slot
-    std::vector<glm::uvec3> corners;     // vertices of each triangle, its own last
-    std::vector<std::uint32_t> indices;  // slots, three a triangle
+    std::vector<std::uint32_t> vertex;   // for each slot
+    std::vector<glm::uvec3> corners;     // vertices of each triangle, its provoking corner last
+    std::vector<std::uint32_t> indices;  // slots, three per triangle
 };
 
-/// Gives each triangle a corner of its own, a vertex that no triangle had before it wherever it has one.
+/// Assigns each triangle a corner of its own: a vertex that no earlier triangle owns, if it has one.
 Slots assignSlots(std::uint32_t vertices, std::span<const glm::uvec3> triangles) {
     Slots slots;
     slots.corners.reserve(triangles.size());
@@ -91,15 +91,15 @@ tl::unexpected<Error> tooLarge(const std::string& what, std::uint64_t count, std
                                        "; simplify the mesh");
 }
 
-/// Checks that this GL's textures and draws have room for so many vertices and triangles.
+/// Checks that this GL's textures and draws support this many vertices and triangles.
 Result<void> checkSize(std::size_t vertices, std::size_t triangles) {
     GLint side = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side);
     GLint64 index_max = 0;
     glGetInteger64v(GL_MAX_ELEMENT_INDEX, &index_max);
-    // 3 indices of each triangle are one draw's, counted by a GLsizei.
+    // One draw has 3 indices per triangle, counted in a GLsizei.
     const auto draw_max = static_cast<std::uint64_t>(std::numeric_limits<GLsizei>::max() / 3);
-    std::uint64_t power = 1;  // of two: the widest texture's width and height
+    std::uint64_t power = 1;  // a power of two: side of the largest usable texture
     while (2 * power <= static_cast<std::uint64_t>(side)) {
         power *= 2;
     }
@@ -111,7 +111,7 @@ Result<void> checkSize(std::size_t vertices, std::size_t triangles) {
     if (triangles > most) {
         return tooLarge("triangles", triangles, most);
     }
-    // The slots are not known yet; this bounds the memory for finding them.
+    // The number of slots is not known yet; this check bounds the memory for computing it.
     if (index_max > 0 && triangles > static_cast<std::uint64_t>(index_max)) {
         return tooLarge("triangles", triangles, static_cast<std::uint64_t>(index_max));
     }
@@ -196,8 +196,8 @@ Result<void> GpuMesh::createTextures(std::span<const glm::uvec3> triangles) {
     return allocated();
 }
 
-/// Fills the texture of the present positions.
-/// \param data  in memory, or, with a pixel unpack buffer bound, an offset into it.
+/// Uploads the current positions.
+/// \param data  pointer to memory or, with a pixel unpack buffer bound, an offset into it.
 void GpuMesh::upload(const void* data) {
     const std::uint32_t width = 1U << vertex_shift_;
     const std::uint32_t rows = vertex_count_ >> vertex_shift_;
@@ -209,7 +209,7 @@ void GpuMesh::upload(const void* data) {
     }
     if (rest > 0) {
         const std::size_t done = std::size_t{rows} * width * sizeof(glm::vec3);
-        // An offset may start at a null pointer: no arithmetic on that.
+        // An offset may be a null pointer, on which arithmetic is undefined.
         const auto* const from = reinterpret_cast<const void*>(reinterpret_cast<std::uintptr_t>(data) + done);
         glTexSubImage2D(GL_TEXTURE_2D, 0, 0, static_cast<GLint>(rows), static_cast<GLsizei>(rest), 1, GL_RGB,
                         GL_FLOAT, from);

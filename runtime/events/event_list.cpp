@@ -13,14 +13,13 @@
 namespace relief {
 namespace {
 
-// Texture units.
 constexpr int kVelocityUnit = 0;
 constexpr int kSurfaceUnit = 1;
 constexpr int kBeforeUnit = 2;
 constexpr int kBirthUnit = 3;
-constexpr int kCountUnit = 4;  // and those of the further levels
+constexpr int kCountUnit = 4;  // and the units of further levels
 
-constexpr std::size_t kFloats = 4;  // of a texel
+constexpr std::size_t kFloats = 4;  // per texel
 constexpr std::uint32_t kMostMax = 1U << 24;
 constexpr auto kWidth = static_cast<std::uint32_t>(kEventsWidth);
 
@@ -37,7 +36,7 @@ GlTexture makeTexture(std::uint32_t width, std::uint32_t height) {
                          GL_FLOAT);
 }
 
-/// Over the texels of `count` entries.
+/// Draws over the texels of `count` entries.
 void drawEntries(const GlProgram& program, const GlFramebuffer& target, std::uint32_t count) {
     program.drawScreen(target.name(), static_cast<GLsizei>(std::min(count, kWidth)),
                        static_cast<GLsizei>(rowsOf(count)));
@@ -115,10 +114,10 @@ Result<void> EventList::createTextures(std::uint32_t capacity) {
     return {};
 }
 
-/// Makes the program current.
+/// Sets the filter uniforms; makes the program current.
 void EventList::useFilter(const GlProgram& program) const {
     std::array<float, kEventLists> min_speed{};
-    std::array<GLint, kEventLists> kinds{};  // of a list that does not exist: none
+    std::array<GLint, kEventLists> kinds{};  // missing lists select no events
     std::array<GLint, kEventLists> type{};
     std::array<GLint, kEventLists> material{};
     for (std::size_t i = 0; i < lists_.size(); ++i) {
@@ -167,7 +166,7 @@ bool EventList::request(const Step& step) {
     request.end = step.end;
     const std::uint32_t rows = layOut(step.extent, request.first_row);
     request.floats = rows == 0 ? 0 : kFloats * (list_.size() * listWidth() * rows + 1);
-    if (rows == 0) {  // the list on the GPU becomes empty, too
+    if (rows == 0) {  // also clears the list on the GPU
         const std::array<float, 4> zero{};
         glBindFramebuffer(GL_FRAMEBUFFER, counts_.back().target.name());
         glClearBufferfv(GL_COLOR, 0, zero.data());
@@ -274,7 +273,7 @@ std::optional<EventList::Collected> EventList::collect() {
     collected.number = request.number;
     collected.events.tag = request.tag;
     collected.events.time = request.end;
-    // Of the lists, which are as long as they may ever be, the events alone: the rest would take milliseconds.
+    // Copy only the events, not the whole capacity of the lists, which would take milliseconds.
     const std::size_t plane = request.floats / kFloats / list_.size() * kFloats;
     for (std::size_t i = 0; i < lists_.size(); ++i) {
         const auto count = static_cast<std::uint32_t>(total[i]);

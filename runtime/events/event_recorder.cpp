@@ -21,7 +21,7 @@ std::uint32_t materialCount(const ShaderCollider* collider) {
 
 class EventRecorder : public StepFeature {
   public:
-    using Outputs = std::array<GlTexture, 2>;  // velocity and surface, as step_event.glsl writes them
+    using Outputs = std::array<GlTexture, 2>;  // velocity and surface, as written by step_event.glsl
     EventRecorder(EventList list, Outputs outputs, double time)
         : list_(std::move(list)), outputs_(std::move(outputs)), begin_(time), end_(time) {}
 
@@ -35,7 +35,7 @@ class EventRecorder : public StepFeature {
     void beforeStep(double begin, double end, std::uint32_t extent, const ShaderCollider* collider) override;
 
     [[nodiscard]] const EventList& list() const { return list_; }
-    /// Other lists, of steps to come.
+    /// Replaces the lists for subsequent steps.
     void replaceList(EventList list) {
         list_ = std::move(list);
         replaced_.clear();
@@ -46,18 +46,18 @@ class EventRecorder : public StepFeature {
     [[nodiscard]] Result<std::optional<StepEvents>> wait(const ParticleSystem& particles);
 
   private:
-    /// With whole ids: as they were in that step.
+    /// Restores the full ids at the time of the step.
     [[nodiscard]] StepEvents withIds(const ParticleSystem& particles, EventList::Collected collected) const;
 
-    struct Replaced {        // an id that a birth took the place of
-        std::uint64_t step;  // the last one that it was in
+    struct Replaced {        // an id that a birth replaced
+        std::uint64_t step;  // the last step with this id
         std::uint32_t index;
         std::uint32_t id;
     };
     EventList list_;
     Outputs outputs_;
-    std::deque<Replaced> replaced_;  // since the oldest list under way
-    // Of the last step, of those since this was made:
+    std::deque<Replaced> replaced_;  // since the oldest pending list
+    // Data of the last step, and the number of steps since creation:
     std::uint64_t steps_ = 0;
     double begin_ = 0.0;
     double end_ = 0.0;
@@ -80,7 +80,7 @@ Result<void> EventRecorder::check(const ShaderCollider* collider) const {
 
 void EventRecorder::beforeStep(double begin, double end, std::uint32_t extent,
                                const ShaderCollider* collider) {
-    // Lists are of the step before this one, or older and under way.
+    // Lists concern the previous step, or earlier ones that are pending.
     const std::uint64_t oldest = list_.oldestNumber().value_or(steps_ + 1);
     while (!replaced_.empty() && replaced_.front().step < oldest) {
         replaced_.pop_front();
@@ -110,7 +110,7 @@ Result<std::optional<StepEvents>> EventRecorder::wait(const ParticleSystem& part
 }
 
 StepEvents EventRecorder::withIds(const ParticleSystem& particles, EventList::Collected collected) const {
-    // The first that took the place of the one that the event is about.
+    // For each index, the first id replaced after the event.
     std::unordered_map<std::uint32_t, std::uint32_t> before;
     for (const Replaced& one : replaced_) {
         if (one.step >= collected.number) {

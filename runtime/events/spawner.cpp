@@ -41,7 +41,8 @@ std::uint64_t Spawner::spawn(std::span<const ParticleEvent> events, std::span<co
         if (!heeds(event)) {
             continue;
         }
-        if (++used > settings_.most) {  // nothing is drawn: a shorter list makes the same births
+        if (++used >
+            settings_.most) {  // no random numbers are drawn, so a shorter event list gives the same births
             refused += settings_.count_min;
             continue;
         }
@@ -62,7 +63,7 @@ std::uint64_t Spawner::spawn(std::span<const ParticleEvent> events, std::span<co
     return refused;
 }
 
-// The order of the draws is part of every seeded run: direction, speed, lifetime.
+// The order of the random draws must not change, because seeded runs depend on it: direction, speed, lifetime.
 Birth Spawner::sample(const ParticleEvent& event, float radius) {
     glm::vec3 axis = event.hit ? event.normal : unitVector(event.velocity);
     if (axis == glm::vec3(0.0F)) {
@@ -71,7 +72,7 @@ Birth Spawner::sample(const ParticleEvent& event, float radius) {
     const glm::vec3 direction = basisAbout(axis).toWorld(inCone(random_, opening_));
     const float speed =
         random_.between(settings_.speed_min, settings_.speed_max) + settings_.kick * event.speed;
-    // The velocity without its part towards the surface.
+    // The velocity without its component towards the surface.
     const glm::vec3 along = event.velocity + event.speed * event.normal;
     Birth birth;
     birth.position = event.position + radius * event.normal;

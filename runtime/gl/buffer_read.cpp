@@ -20,7 +20,7 @@ bool readBuffer(const GlBuffer& buffer, std::size_t offset, std::span<std::byte>
     if (mapped != nullptr) {
         std::memcpy(out.data(), mapped, out.size());
     }
-    // False if the memory was lost while it was mapped.
+    // GL_FALSE if the memory was lost while it was mapped.
     const bool whole = mapped != nullptr && glUnmapBuffer(GL_PIXEL_PACK_BUFFER) == GL_TRUE;
     glBindBuffer(GL_PIXEL_PACK_BUFFER, static_cast<GLuint>(bound));
     return whole;

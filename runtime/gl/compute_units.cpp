@@ -6,7 +6,7 @@
 namespace relief {
 namespace {
 
-/// The GL's queries of an indexed binding.
+/// The GL queries for an indexed binding.
 struct Queries {
     GLenum buffer, offset, size;
 };
@@ -41,7 +41,7 @@ void SavedRange::restore() const {
     if (size_ > 0) {
         glBindBufferRange(target_, index_, static_cast<GLuint>(buffer_), static_cast<GLintptr>(offset_),
                           static_cast<GLsizeiptr>(size_));
-    } else {  // the whole buffer, or none
+    } else {  // the whole buffer, or no buffer
         glBindBufferBase(target_, index_, static_cast<GLuint>(buffer_));
     }
 }
@@ -103,7 +103,7 @@ void StorageUnits::bind(GLuint unit, const GlBuffer& buffer) {
 }
 
 void StorageUnits::order() {
-    // Of the two the image bit alone also keeps later stores behind earlier loads.
+    // Of the two bits, only the image bit also orders later stores after earlier loads.
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 

@@ -16,17 +16,17 @@ namespace relief {
 namespace {
 
 bool loads(const char* library) {
-    // Left open: libepoxy opens it again, and a driver would be initialised twice.
+    // Leave it open: libepoxy opens it again, and closing it would initialise the driver twice.
     return ::dlopen(library, RTLD_LAZY | RTLD_LOCAL) != nullptr;
 }
 
 bool hasClientExtension(const char* name) {
-    // Client extensions come first: without them the entry points may not exist.
+    // Check client extensions first: without them the entry points may not exist.
     return epoxy_has_egl_extension(EGL_NO_DISPLAY, name);
 }
 
-/// The name of a library that EGL, or this API, needs and that cannot be loaded; "" if all are there.
-/// libepoxy ends the process where it misses one, so call this before EGL or the GL.
+/// Returns the name of a missing library that EGL or this API requires; "" if there is none. Call it before EGL or the
+/// GL, because libepoxy aborts if a library is missing.
 std::string missingGlLibrary(GlApi api) {
     if (!loads("libEGL.so.1")) {
         return "libEGL.so.1";
@@ -37,7 +37,7 @@ std::string missingGlLibrary(GlApi api) {
     return loads("libOpenGL.so.0") || loads("libGL.so.1") ? "" : "libOpenGL.so.0";
 }
 
-/// EGL's devices in its order; none where it does not enumerate them.
+/// Returns EGL's devices in order; empty if EGL cannot enumerate them.
 std::vector<EGLDeviceEXT> eglDevices() {
     if (!hasClientExtension("EGL_EXT_device_enumeration") && !hasClientExtension("EGL_EXT_device_base")) {
         return {};
@@ -51,7 +51,7 @@ std::vector<EGLDeviceEXT> eglDevices() {
     return devices;
 }
 
-/// EGL_NO_DISPLAY where there is no such platform. The display is not yet initialised.
+/// Returns an uninitialised display, or EGL_NO_DISPLAY if the platform is not supported.
 EGLDisplay platformDisplay(const char* extension, EGLenum platform, void* native) {
     return hasClientExtension(extension) && hasClientExtension("EGL_EXT_platform_base")
                ? eglGetPlatformDisplayEXT(platform, native, nullptr)
@@ -62,7 +62,7 @@ EGLDisplay deviceDisplay(EGLDeviceEXT device) {
     return platformDisplay("EGL_EXT_platform_device", EGL_PLATFORM_DEVICE_EXT, device);
 }
 
-/// "" for null.
+/// Returns a GL string, or "" for null.
 std::string glText(unsigned what) {
     const GLubyte* text = glGetString(what);
     return text == nullptr ? std::string() : reinterpret_cast<const char*>(text);
@@ -77,11 +77,11 @@ std::string eglErrorText() {
 EGLContext createContext(EGLDisplay display, EGLConfig config, bool es) {
     const EGLint on_reset = es ? EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT
                                : EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_KHR;
-    // The version with compute shaders first: some drivers give exactly the requested version.
+    // Try the version with compute shaders first: some drivers return exactly the requested version.
     const std::array<EGLint, 2> with_compute = es ? std::array<EGLint, 2>{3, 1} : std::array<EGLint, 2>{4, 3};
     const std::array<EGLint, 2> without = es ? std::array<EGLint, 2>{3, 0} : std::array<EGLint, 2>{3, 3};
     for (const auto& [major, minor] : {with_compute, without}) {
-        // Without reports of resets where EGL, or the driver, refuses them.
+        // Retry without reset notification in case EGL or the driver rejects it.
         for (const bool with_reset : {true, false}) {
             std::vector<EGLint> attributes{EGL_CONTEXT_MAJOR_VERSION, major, EGL_CONTEXT_MINOR_VERSION,
                                            minor};
@@ -111,7 +111,7 @@ struct GlContext::Impl {
     std::string description;
     bool software = false;
 
-    /// Empty on success, else what failed. Leaves nothing behind on failure.
+    /// Returns "" on success, otherwise the reason of the failure, after releasing everything.
     std::string open(EGLDisplay opened) {
         display = opened;
         if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) != EGL_TRUE) {
@@ -135,7 +135,7 @@ struct GlContext::Impl {
             eglChooseConfig(display, wanted, &config, 1, &count) != EGL_TRUE) {
             return eglErrorText();
         }
-        // A context needs no configuration where nothing is drawn to a surface.
+        // A context needs no configuration if nothing is drawn to a surface.
         context = createContext(display, count > 0 ? config : nullptr, es);
         if (context == EGL_NO_CONTEXT ||
             eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) != EGL_TRUE) {
@@ -151,14 +151,14 @@ struct GlContext::Impl {
         if (display == EGL_NO_DISPLAY) {
             return;
         }
-        // Another context may have become current since.
+        // Another context may have become current.
         if (context != EGL_NO_CONTEXT && eglGetCurrentContext() == context) {
             eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
         }
         if (context != EGL_NO_CONTEXT) {
             eglDestroyContext(display, context);
         }
-        // The display stays open: it is the process's, by EGL's rules, and someone else may be using it.
+        // Leave the display open: by EGL's rules it belongs to the process and may be in use elsewhere.
         display = EGL_NO_DISPLAY;
         context = EGL_NO_CONTEXT;
     }
@@ -170,7 +170,7 @@ struct GlContext::Impl {
         software = isSoftwareRenderer();
     }
 
-    /// The failed attempts; "" once a context is open.
+    /// Returns the failed attempts; "" once a context is open.
     std::string openAny() {
         std::string tried;
         const auto opens = [&](EGLDisplay opened, const std::string& name) {
@@ -254,7 +254,7 @@ Result<std::unique_ptr<GlContext>> GlContext::create(GlApi api) {
 }
 
 Result<void> GlContext::makeCurrent() {
-    // Each thread has an API of its own, whose context it is.
+    // The bound API is per thread and determines which context is current.
     if (eglBindAPI(impl_->api == GlApi::kGles30 ? EGL_OPENGL_ES_API : EGL_OPENGL_API) != EGL_TRUE ||
         (eglGetCurrentContext() != impl_->context &&
          eglMakeCurrent(impl_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, impl_->context) != EGL_TRUE)) {

@@ -12,8 +12,8 @@
 namespace relief {
 namespace {
 
-constexpr int kErrorFlagsMax = 64;         // a lost context may report errors without end
-constexpr GLuint64 kAtOnce = 100'000'000;  // nanoseconds of one wait
+constexpr int kErrorFlagsMax = 64;         // a lost context may report errors endlessly
+constexpr GLuint64 kAtOnce = 100'000'000;  // nanoseconds per wait
 
 std::string errorText(GLenum error) {
     std::array<char, 16> text{};

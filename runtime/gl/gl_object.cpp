@@ -23,13 +23,13 @@ std::string infoLog(GLuint name, bool is_program) {
     while (!log.empty() && (log.back() == '\0' || log.back() == '\n')) {
         log.pop_back();
     }
-    std::replace(log.begin(), log.end(), '\n', ' ');  // a message is one line
+    std::replace(log.begin(), log.end(), '\n', ' ');  // messages are one line
     return log;
 }
 
 Result<GLuint> compile(GLenum stage, std::string_view file, std::string_view defines) {
     const std::string body = RELIEF_TRY(includedShader(file));
-    // highp everywhere: state and depth are 32-bit floats, and ES 3.0 requires highp in fragment shaders.
+    // Use highp everywhere: state and depth are 32-bit floats, and ES 3.0 requires a precision in fragment shaders.
     const bool compute = stage == GL_COMPUTE_SHADER;
     std::string source = isGles() ? (compute ? "#version 310 es\n" : "#version 300 es\n")
                                   : (compute ? "#version 430 core\n" : "#version 330 core\n");
@@ -114,7 +114,7 @@ GlSampler makeSampler() {
 }
 namespace {
 
-/// A texture's name, bound to GL_TEXTURE_2D of the active unit until it is gone, with nearest filter, clamped.
+/// Creates a texture with nearest filter and clamping, bound to GL_TEXTURE_2D of the active unit during its lifetime.
 class NewTexture2D {
   public:
     NewTexture2D() : texture_(generate([](GLsizei n, GLuint* out) { glGenTextures(n, out); })) {
@@ -199,7 +199,7 @@ Result<GlFramebuffer> makeFramebuffer(std::span<const GLuint> color_textures, GL
 
 namespace {
 
-/// Links what is attached. \param name  of the program, for the error.
+/// Links the attached shaders. \param name  of the program, for the error.
 Result<GlProgram> linked(GlProgram program, const std::string& name) {
     glLinkProgram(program.name());
     GLint status = GL_FALSE;
@@ -211,7 +211,7 @@ Result<GlProgram> linked(GlProgram program, const std::string& name) {
     return program;
 }
 
-/// \param outputs  of the vertex shader that transform feedback writes, interleaved; empty: none.
+/// \param outputs  vertex shader outputs that transform feedback writes, interleaved; empty: none.
 Result<GlProgram> compileAndLink(std::string_view vertex, std::string_view fragment, std::string_view defines,
                                  std::span<const char* const> outputs) {
     const GLuint vertex_shader = RELIEF_TRY(compile(GL_VERTEX_SHADER, vertex, defines));
@@ -227,7 +227,7 @@ Result<GlProgram> compileAndLink(std::string_view vertex, std::string_view fragm
         glTransformFeedbackVaryings(program.name(), static_cast<GLsizei>(outputs.size()), outputs.data(),
                                     GL_INTERLEAVED_ATTRIBS);
     }
-    glDeleteShader(vertex_shader);  // once the program lets go of them
+    glDeleteShader(vertex_shader);  // takes effect once the program releases them
     glDeleteShader(*fragment_shader);
     return linked(std::move(program), std::string(vertex) + " + " + std::string(fragment));
 }
@@ -312,7 +312,7 @@ Result<GlProgram> makeComputeProgram(std::string_view compute, std::string_view 
     const GLuint shader = RELIEF_TRY(compile(GL_COMPUTE_SHADER, compute, defines));
     GlProgram program(glCreateProgram());
     glAttachShader(program.name(), shader);
-    glDeleteShader(shader);  // once the program lets go of it
+    glDeleteShader(shader);  // takes effect once the program releases it
     return linked(std::move(program), std::string(compute));
 }
 

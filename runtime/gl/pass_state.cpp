@@ -18,7 +18,7 @@ struct Switch {
     bool wanted;
 };
 
-// All are off during a pass, except that point sizes come from the vertex shader (as always on GL ES).
+// All are off during a pass, except that vertex shaders set point sizes (always the case on GL ES).
 constexpr Switch kSwitches[] = {
     {GL_BLEND, false, false},
     {GL_DEPTH_TEST, false, false},
@@ -42,7 +42,7 @@ struct PixelStore {
     GLint wanted;
 };
 
-// Transfers have tight rows and skip nothing. GL ES 3.0 has all of these.
+// Transfers are tightly packed without skips. GL ES 3.0 supports all of these.
 constexpr PixelStore kPixelStores[] = {
     {GL_PACK_ALIGNMENT, 1},     {GL_PACK_ROW_LENGTH, 0},    {GL_PACK_SKIP_ROWS, 0},
     {GL_PACK_SKIP_PIXELS, 0},   {GL_UNPACK_ALIGNMENT, 1},   {GL_UNPACK_ROW_LENGTH, 0},
@@ -64,7 +64,7 @@ void set(GLenum name, bool on) {
 
 bool known(const Switch& one, bool gles) {
     if (one.name == GL_PRIMITIVE_RESTART_FIXED_INDEX) {
-        return gles;  // OpenGL has it from 4.3 only
+        return gles;  // only from OpenGL 4.3 on
     }
     return !(one.desktop_only && gles);
 }
@@ -132,7 +132,7 @@ PassState::PassState() : saved_(std::make_unique<Saved>()) {
     glGetBooleanv(GL_COLOR_WRITEMASK, s.color_mask.data());
     glGetFloatv(GL_COLOR_CLEAR_VALUE, s.clear_color.data());
     if (!gles) {
-        GLint modes[2] = {};  // some drivers of compatibility contexts answer for front and back
+        GLint modes[2] = {};  // some drivers return front and back modes in compatibility contexts
         glGetIntegerv(GL_POLYGON_MODE, modes);
         s.polygon_mode = modes[0];
         glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
@@ -168,7 +168,7 @@ PassState::~PassState() {
     for (const SavedRange& block : s.blocks) {
         block.restore();
     }
-    glBindBuffer(GL_UNIFORM_BUFFER, name(s.uniform_buffer));  // binding a block sets it too
+    glBindBuffer(GL_UNIFORM_BUFFER, name(s.uniform_buffer));  // binding a block also sets the generic binding
     for (std::size_t i = 0; i < s.switches.size(); ++i) {
         if (known(kSwitches[i], gles)) {
             set(kSwitches[i].name, s.switches[i] == GL_TRUE);

@@ -17,7 +17,7 @@ std::int32_t flagsOf(const PlacedMap& placed) {
            (map.empty_is_outside ? kEmptyIsOutside : 0) | (map.decode == Decode::kPlane ? kDecodesPlane : 0);
 }
 
-/// The first votes of a step, one after another, with what the compiler must know to leave out the other formats' code.
+/// Returns the unrolled first votes of a step, with constants that let the compiler remove the code of other formats.
 std::string unrolledVotes(std::span<const PlacedMap> maps) {
     std::string votes;
     for (std::size_t i = 0; i < std::min<std::size_t>(maps.size(), kUnrolledMaps); ++i) {
@@ -39,7 +39,7 @@ BlockMap blockMap(const PlacedMap& placed, const MapPlace& at) {
     const glm::vec3 size = cube || patches ? glm::vec3(1.0F) : glm::vec3(map.width, map.height, 1.0F);
     const float last[3] = {0.0F, static_cast<float>(map.width - 1), static_cast<float>(map.height - 1)};
     for (int i = 0; i < 3; ++i) {
-        // The rows are orthogonal and as long as the inverse of object_per_map.
+        // The rows are orthogonal, and their lengths are the reciprocals of object_per_map.
         const glm::vec3 row(map.object_to_map.row[i]);
         block.row[i] = map.object_to_map.row[i] * size[i];
         block.column[i] = glm::vec4(row * map.object_per_map[i] * map.object_per_map[i] / size[i],

@@ -25,15 +25,15 @@ void clampIndices(std::span<std::byte> normal) {
     }
 }
 
-/// The map's texels, changed where that spares every particle a test in the shader. No vote changes:
+/// Returns the map's texels, modified if that saves the shader a test per particle. Votes are unchanged:
 ///
-/// - a normal index 255, which reads as 254, is 254;
-/// - in a front-back map of planes, an end that is empty beside one that is not has the other's plane: two
-///   equal votes are one;
-/// - texels of a float map are as they were.
+/// - a normal index of 255, which decodes like 254, becomes 254;
+/// - in front-back maps of planes, an empty surface next to a non-empty one gets the other's plane, because two equal
+///   votes count once;
+/// - texels of float maps are unchanged.
 std::vector<std::byte> shaderTexels(const DepthMap& map) {
     std::vector<std::byte> texels = map.texels;
-    if (map.format == MapFormat::kFloat32) {  // whose normals are no indices
+    if (map.format == MapFormat::kFloat32) {  // its normals are not indices
         return texels;
     }
     const std::size_t size = texelSize(map.format);
@@ -42,7 +42,7 @@ std::vector<std::byte> shaderTexels(const DepthMap& map) {
         if (map.format == MapFormat::kFixed8 || map.format == MapFormat::kCube8) {
             clampIndices(texel.first(2));
         } else if (isFrontBack(map.format)) {
-            // Front normal, back normal, front depth, back depth, of 16 bits each.
+            // Front normal, back normal, front depth and back depth, 16 bits each.
             clampIndices(texel.first(4));
             const auto isEmpty = [&](std::size_t end) {
                 return texel[4 + 2 * end] == std::byte{0} && texel[5 + 2 * end] == std::byte{0};

@@ -19,7 +19,7 @@ Result<void> reserve(std::span<const PlacedMap> maps, std::int32_t side_max, std
             const auto width = static_cast<std::int32_t>(map->width);
             const auto height = static_cast<std::int32_t>(map->height);
             texture.addRectangle(width, height);
-            textures[kFloatTexels].addRectangle(width, 2 * height);  // how its front moves, and its back
+            textures[kFloatTexels].addRectangle(width, 2 * height);  // motion of its front and its back
         } else {
             texture.addPacked(texelCount(*map));
         }
@@ -113,7 +113,7 @@ Result<MapLayout> MapLayout::create(std::span<const PlacedMap> maps, std::int32_
     MapLayout layout;
     auto& textures = layout.textures;
     RELIEF_TRY(reserve(maps, side_max, room_texels, textures));
-    // In the order in which they were added, packed texels as well as rectangles.
+    // Assign places in the order in which packed texels and rectangles were added.
     std::array<std::size_t, kTexelKinds> packed{};
     std::array<std::size_t, kTexelKinds> rectangles{};
     for (const auto& [map, live] : maps) {

@@ -11,7 +11,7 @@
 namespace relief {
 namespace {
 
-/// The rounding of a box, of its sides.
+/// Tolerance for rounding of a box, relative to its sides.
 constexpr float kRoomSlack = 1e-5F;
 
 bool isFinite(const MeshPose& pose) {
@@ -43,7 +43,7 @@ Result<AnimatedCollider> AnimatedCollider::create(std::shared_ptr<const Animated
     const glm::vec3 room = options.room ? *options.room : poseExtent(*mesh).room;
     Collider frames = RELIEF_TRY(animatedFrames(room, options.resolution));
     SkinPass pass = RELIEF_TRY(SkinPass::create(*mesh));
-    // Any places would do: setPose() moves all of them before anything is drawn.
+    // Any initial positions are valid: setPose() replaces all of them before the first render.
     LiveCollider live = RELIEF_TRY(LiveCollider::create(mesh->positions, mesh->triangles, std::move(frames)));
     AnimatedCollider made(std::move(mesh), room, std::move(pass), std::move(live));
     RELIEF_TRY(made.setPose(firstPose(*made.mesh_)));

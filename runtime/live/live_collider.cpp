@@ -18,13 +18,13 @@ constexpr int kMotionXyUnit = 0;
 constexpr int kMotionZUnit = 1;
 constexpr int kTexelUnit = 2;
 
-// As in baked tight boxes: a little free space and a least thickness, in longest sides.
+// As in baked tight boxes: a margin of free space and a minimum thickness, relative to the longest side.
 constexpr float kPadding = 1e-4F;
 constexpr float kThinnest = 1e-2F;
-/// Of a side that is short in proportion.
+/// Minimum texels of a short side.
 constexpr std::uint32_t kLeastTexels = 16;
 
-/// True if a vertex lies in the volume of the map.
+/// Returns true if a vertex lies in the volume of the map.
 bool holds(const DepthMap& map, const glm::vec3& p) {
     const glm::vec3 q = map.object_to_map.apply(p);
     const glm::vec3 rim(1.0F / static_cast<float>(map.width), 1.0F / static_cast<float>(map.height), 0.0F);
@@ -33,7 +33,7 @@ bool holds(const DepthMap& map, const glm::vec3& p) {
            glm::all(glm::lessThanEqual(q, 1.0F - rim + kTexelRounding));
 }
 
-/// As liveFrames() makes them.
+/// Returns whether a map has the form that liveFrames() makes.
 bool isLiveMap(const DepthMap& map) {
     return map.format == MapFormat::kFrontBackFixed && map.compare == Compare::kBoth &&
            map.decode == Decode::kPlane && validateFrame(map);
@@ -61,13 +61,13 @@ Result<Collider> liveFrames(const Bounds& box, std::uint32_t resolution, LiveSiz
     const glm::vec3 middle = box.center();
     const glm::vec3 half =
         glm::max(0.5F * box.size() + kPadding * longest, glm::vec3(0.5F * kThinnest * longest));
-    // To the right, upwards and away, as a person sees it who looks along the last.
+    // Right, up and away, for a viewer who looks along the last axis.
     const glm::vec3 x(1, 0, 0);
     const glm::vec3 y(0, 1, 0);
     const glm::vec3 z(0, 0, 1);
     const glm::vec3 frames[3][3] = {{z, y, x}, {x, -z, -y}, {x, y, -z}};
     const float longest_half = std::max({half.x, half.y, half.z});
-    // Texels along a direction of the box.
+    // Returns the texels along a direction of the box.
     const auto texels = [&](const glm::vec3& axis) {
         const float share = glm::dot(glm::abs(axis), half) / longest_half;
         const auto count = static_cast<std::uint32_t>(std::ceil(share * static_cast<float>(resolution)));
@@ -84,7 +84,7 @@ Result<Collider> liveFrames(const Bounds& box, std::uint32_t resolution, LiveSiz
         map.width = texels(axes[0]);
         map.height = texels(axes[1]);
         for (int i = 0; i < 3; ++i) {
-            // The rim has nothing.
+            // The border texels are empty.
             const float inner =
                 i < 2 ? 1.0F - 2.0F / static_cast<float>(i == 0 ? map.width : map.height) : 1.0F;
             const float side = 2.0F * glm::dot(glm::abs(axes[i]), half) / inner;
@@ -159,7 +159,7 @@ Result<void> LiveCollider::setPositions(GLuint buffer, std::size_t offset) {
 
 void LiveCollider::settle() {
     mesh_.settle();
-    // A mesh that stays where it was no longer moves, but its maps must show where it is.
+    // A mesh that jumped is at rest, but its maps must still be updated.
     shown_ = shown_ && !moved_;
 }
 
@@ -193,7 +193,8 @@ void LiveCollider::copyTexels(const LiveSlot& slot, const DepthMap& map) const {
     glReadBuffer(GL_COLOR_ATTACHMENT0);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, texel_target_.name());
     glFramebufferTexture2D(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, slot.texels->name(), 0);
-    // Not glCopyTexSubImage2D: an H200's driver took integers by way of the CPU, 13 ms a map.
+    // glBlitFramebuffer instead of glCopyTexSubImage2D: an H200's driver copied integer formats on the CPU, 13 ms per
+    // map.
     const auto width = static_cast<GLint>(map.width);
     const auto height = static_cast<GLint>(map.height);
     glBlitFramebuffer(0, 0, width, height, slot.x, slot.y, slot.x + width, slot.y + height,

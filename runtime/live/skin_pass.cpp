@@ -17,7 +17,7 @@ namespace {
 constexpr int kPoseUnit = 0;
 constexpr int kInfluencesUnit = 1;
 constexpr int kDeltasUnit = 2;
-/// Of the widest of the textures: the least that OpenGL ES 3.0 promises.
+/// log2 width of the widest texture: the minimum maximum size in OpenGL ES 3.0.
 constexpr int kWidestShift = 11;
 
 struct RestVertex {
@@ -26,7 +26,7 @@ struct RestVertex {
     glm::vec3 normal;
 };
 
-/// Texels of a texture that is as wide as a power of two, and no higher than it has to be.
+/// Pads texels to whole rows of a power-of-two width, with as few rows as possible.
 template <class T>
 int padToRows(std::vector<T>& texels) {
     const std::size_t count = std::max<std::size_t>(texels.size(), 1);
@@ -127,7 +127,7 @@ void SkinPass::run(const MeshPose& pose, const glm::vec3& origin) {
     }
     const PassState state;
     useTexture(kPoseUnit, pose_);
-    // By way of a new buffer: the step before may still read the texture, and this must not wait for it.
+    // Upload through a new buffer: the previous step may still read the texture, and this must not wait for it.
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, upload_.name());
     glBufferData(GL_PIXEL_UNPACK_BUFFER, static_cast<GLsizeiptr>(texels_.size() * sizeof(glm::vec4)),
                  texels_.data(), GL_STREAM_DRAW);

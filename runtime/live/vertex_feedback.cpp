@@ -12,7 +12,7 @@
 namespace relief {
 namespace {
 
-/// The bindings of transform feedback, which PassState leaves alone.
+/// Saves the bindings of transform feedback, which PassState does not.
 class FeedbackState {
   public:
     FeedbackState() { glGetIntegerv(GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, &generic_); }
@@ -59,7 +59,7 @@ void VertexFeedback::run() const {
     glBeginTransformFeedback(GL_POINTS);
     glDrawArrays(GL_POINTS, 0, vertices_);
     glEndTransformFeedback();
-    // Bound for feedback it could not be read from.
+    // A buffer bound for feedback cannot be read from.
     glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
     glDisable(GL_RASTERIZER_DISCARD);
 }

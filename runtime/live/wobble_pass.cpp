@@ -20,13 +20,13 @@
 namespace relief {
 namespace {
 
-// Differences that normals are made of reach this share of the mesh's box: wide enough for floats, and narrow
-// enough to see a curvature.
+// Step of the finite differences for normals, relative to the mesh's box: large enough for float precision, small
+// enough to resolve the curvature.
 constexpr float kInch = 1e-3F;
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
-/// Of the three waves at a time, within a turn.
+/// Returns the phases of the three waves at a time, reduced to one period.
 glm::vec3 phasesAt(const Wobble& wobble, double time) {
     constexpr std::array<double, 3> kRates{1.0, 1.25, 0.8};
     const double turns = static_cast<double>(wobble.frequency) * time;

@@ -11,13 +11,13 @@
 namespace relief {
 namespace {
 
-// 11.5 MB, below every GL's largest storage block.
+// 11.5 MB, below the maximum storage block size of every GL.
 constexpr std::size_t kDispatchedAtOnce = std::size_t{1} << 18;
 
 constexpr GLsizei kStride = sizeof(BirthPass::Newborn);
 static_assert(kStride == 11 * sizeof(float));
 
-/// A fresh store each time: the driver need not wait until the last one has been used.
+/// Allocates new storage each time, so that the driver need not wait until the old contents have been used.
 void upload(GLenum target, std::span<const BirthPass::Newborn> newborn) {
     glBufferData(target, static_cast<GLsizeiptr>(newborn.size_bytes()), newborn.data(), GL_STREAM_DRAW);
 }

@@ -8,11 +8,11 @@ namespace relief {
 namespace {
 
 constexpr float kDaysPerSecond = 64.0F;
-// The day of everything later, still far below what 32 bits count and beyond every clock that is set back in
-// time (ParticleSystemOptions::epoch_seconds).
+// The day of all later times: far below the range of 32 bits, and later than any clock reaches before it is set back
+// (ParticleSystemOptions::epoch_seconds).
 constexpr float kLastDay = 0x1p30F;
 
-/// The day of a time since time 0; the last for NaN.
+/// Returns the day of a time since time 0; the last day for NaN.
 std::uint32_t dayOf(float time) {
     const float day = time * kDaysPerSecond;  // exact
     return static_cast<std::uint32_t>(day < kLastDay ? std::max(day, 0.0F) : kLastDay);
@@ -27,14 +27,14 @@ void DeathQueue::push(float time, std::uint32_t index) {
 
 void DeathQueue::file(const Death& death) {
     Day& day = days_[std::max(dayOf(death.time), today_) % kDays];
-    // Never above the earliest time; where NaN makes it NaN the day is opened whenever it is met.
+    // A lower bound of the times. If it is NaN, the day is always opened.
     day.earliest = day.deaths.empty() || death.time < day.earliest ? death.time : day.earliest;
     day.deaths.push_back(death);
 }
 
 void DeathQueue::popUntil(float now, std::vector<std::uint32_t>& dead) {
     const std::uint32_t last = std::max(dayOf(now), today_);
-    // A turn of the calendar meets every day there is.
+    // One cycle of the calendar visits every day.
     const std::uint32_t days = std::min(last - today_, kDays - 1) + 1;
     const std::uint32_t first = std::exchange(today_, last);
     for (std::uint32_t i = 0; i < days; ++i) {
@@ -58,7 +58,7 @@ void DeathQueue::openDay(std::uint32_t day, float now, std::vector<std::uint32_t
 
 void DeathQueue::rebase(float shift) {
     std::vector<Day> days = std::exchange(days_, std::vector<Day>(kDays));
-    today_ = 0;  // nothing is lost by beginning early: the days up to now are empty
+    today_ = 0;  // starting early is safe: the days up to now are empty
     for (const Day& day : days) {
         for (const Death& death : day.deaths) {
             file({death.time - shift, death.index});

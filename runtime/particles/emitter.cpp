@@ -13,17 +13,17 @@
 namespace relief {
 namespace {
 
-// The most births in all: beyond it a double no longer counts one by one.
+// Maximum total births: beyond it a double cannot represent every integer.
 constexpr double kCountMax = 9007199254740992.0;  // 2^53
 
-// Keeps 60 steps of 1/60 s from missing the last birth of a second by rounding.
+// Keeps 60 steps of 1/60 s from missing the last birth of a second through rounding.
 constexpr double kEarly = 1e-12;
 
 std::uint64_t wholeCount(double count) {
     return count > 0.0 ? static_cast<std::uint64_t>(std::min(count, kCountMax)) : 0;  // 0 for NaN
 }
 
-/// The first of them that is there; nullptr: none is.
+/// Returns the first problem that applies, or nullptr.
 const char* firstOf(std::initializer_list<std::pair<bool, const char*>> problems) {
     for (const auto& [there, problem] : problems) {
         if (there) {
@@ -103,7 +103,7 @@ std::uint64_t Emitter::burstsDue(double active) const {
     if (!(every > 0.0)) {
         return 1;
     }
-    // Burst j is due at j · every: always the same product.
+    // Burst j is due at j · every, always computed as the same product.
     const auto due = [&](double j) { return j * every <= active && j * every < settings_.duration; };
     double last = std::floor(std::min({active / every, settings_.duration / every, kCountMax}));
     while (last > 0.0 && !due(last)) {
@@ -116,7 +116,7 @@ std::uint64_t Emitter::burstsDue(double active) const {
 }
 
 Emitter::Due Emitter::dueAfter(double dt) const {
-    // Summed with its rounding errors (Kahan): a day of steps ends where one long step does.
+    // Kahan summation: a day of small steps ends at the same time as one long step.
     const double more = dt + remainder_;
     const double sum = elapsed_ + more;
     Due due{.elapsed = sum, .remainder = std::isfinite(sum) ? more - (sum - elapsed_) : 0.0};
@@ -150,8 +150,8 @@ std::uint64_t Emitter::emit(double dt, std::uint64_t room, std::vector<Birth>& b
     const bool nowhere = settings_.shape == EmitterShape::kSurface && !(settings_.surface->area() > 0.0);
     const std::uint64_t made = nowhere ? 0 : std::min(wanted, room);
 
-    // Births in the order of time. Before burst j come the births by rate up to its moment: a number that
-    // does not depend on where a step ends, and is never above that of this step.
+    // Output births in order of time. Before burst j, output the births by rate up to its time: their number does not
+    // depend on the step boundaries and never exceeds that of this step.
     const std::size_t first = births.size();
     if (births.capacity() < first + made) {
         births.reserve(std::max(first + static_cast<std::size_t>(made), 2 * births.capacity()));
@@ -185,7 +185,7 @@ std::uint64_t Emitter::emit(double dt, std::uint64_t room, std::vector<Birth>& b
     return wanted - made;
 }
 
-/// \return the normal there; 0: it has none.
+/// \return the normal at the point; 0 if it has none.
 glm::vec3 Emitter::place(Birth& birth) {
     const EmitterSettings& s = settings_;
     switch (s.shape) {
@@ -225,7 +225,7 @@ glm::vec3 Emitter::place(Birth& birth) {
     return glm::vec3(0.0F);
 }
 
-// The order of the draws is part of every seeded run: place, velocity, aim, lifetime.
+// The order of the random draws must not change, because seeded runs depend on it: place, velocity, aim, lifetime.
 void Emitter::sample(Birth& birth) {
     const EmitterSettings& s = settings_;
     const glm::vec3 normal = place(birth);

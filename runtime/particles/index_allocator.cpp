@@ -40,7 +40,7 @@ bool IndexAllocator::release(std::uint32_t index) {
     live_[index / kBits] &= ~bit(index);
     --live_count_;
     first_ = std::min<std::size_t>(first_, index / kBits);
-    // Index by index: the extent has grown so, too.
+    // Amortized: the extent also grew index by index.
     while (extent_ > 0 && !isLive(extent_ - 1)) {
         --extent_;
     }

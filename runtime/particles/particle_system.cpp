@@ -15,11 +15,11 @@
 namespace relief {
 namespace {
 
-// A dead particle, as step_state.glsl writes it.
+// A dead particle, as written by step_state.glsl.
 constexpr std::array<float, 4> kDeadPosition{0.0F, kDeadHeight, 0.0F, kDeadCollisions};
 constexpr std::array<float, 4> kZero{};
 
-// Below every floor and every particle, and yet finite when a height is subtracted from it.
+// Below every floor and particle, but finite when a height is subtracted.
 constexpr float kNoGround = -1e30F;
 
 constexpr std::uint32_t kIdMask = kBirthTypeMax;
@@ -51,7 +51,7 @@ Result<ParticleSystem> ParticleSystem::create(const ParticleSystemOptions& optio
                                            " particles is not possible; choose 1 to " +
                                            std::to_string(kCapacityMax));
     }
-    // The upper end keeps the resolution of the GPU's clock below 8 ms.
+    // The upper limit keeps the resolution of the GPU's clock below 8 ms.
     if (!(options.epoch_seconds > 0.0 && options.epoch_seconds <= 65536.0)) {
         return fail(ErrorCode::kUsage, "epoch_seconds must be above 0 and at most 65536");
     }
@@ -215,7 +215,7 @@ Result<void> ParticleSystem::setCollider(const ShaderCollider* collider) {
 
 Result<void> ParticleSystem::replaceFeature(const StepFeature* old, std::shared_ptr<StepFeature> now) {
     const PassState state;
-    const std::vector<std::shared_ptr<StepFeature>> before = features_;  // the present step points to them
+    const std::vector<std::shared_ptr<StepFeature>> before = features_;  // the current step points to them
     std::erase_if(features_, [&](const std::shared_ptr<StepFeature>& one) { return one.get() == old; });
     if (now) {
         features_.push_back(std::move(now));
@@ -249,7 +249,7 @@ Result<std::size_t> ParticleSystem::spawn(std::span<const Birth> births) {
         }
         const float born = now - birth.age;
         const float death = born + birth.lifetime;
-        // The same free flight as a step's, for as long as the particle has lived.
+        // The same free flight as in a step, for the particle's age.
         const ParticleType& type = types_[std::min<std::size_t>(birth.type, types_.size() - 1)];
         const float drag = dragRate(forces_, type);
         const glm::vec3 velocity =
@@ -261,7 +261,7 @@ Result<std::size_t> ParticleSystem::spawn(std::span<const Birth> births) {
         }
         ids_[*index] = id;
         deaths_.push(death, *index);
-        // Written member by member: a copy of a whole vertex would wait for its parts.
+        // Write the members individually: copying a whole vertex would stall on store forwarding.
         BirthPass::Newborn& vertex = newborn_.emplace_back();
         vertex.index = *index;
         vertex.position = birth.position + birth.age * velocity;
@@ -304,7 +304,9 @@ void ParticleSystem::runBirths(float dt) {
     if (newborn_.empty()) {
         return;
     }
-    if (integrator_ == Integrator::kVerlet) {  // as if they had moved so during the step before
+    if (integrator_ ==
+        Integrator::kVerlet) {  // sets the previous position as if they had moved like this in the
+                                // previous step
         const float rate = 1.0F / dt;
         for (BirthPass::Newborn& newborn : newborn_) {
             const glm::vec3 before = newborn.position - dt * newborn.velocity;
@@ -331,11 +333,11 @@ void ParticleSystem::runStep(float dt, float now) {
     }
     Forces forces = forces_;
     if (featureWind()) {
-        forces.wind = glm::vec3(0.0F);  // the feature adds it
+        forces.wind = glm::vec3(0.0F);  // the feature applies it
     }
     step_.use({now, dt, ground_.value_or(kNoGround), sweep_, time_, forces, types_});
-    // Rows beyond the extent keep what they held in either buffer. That is sound: an index beyond it is only
-    // reached again through a birth, which overwrites it, and an index below it has been stepped ever since.
+    // Rows beyond the extent keep stale contents in either buffer. This is safe: an index beyond the extent is only
+    // reused by a birth, which overwrites it, and indices below it have been stepped since.
     const std::uint32_t rows = (extent + width_ - 1) / width_;
     if (path_ == StepPath::kCompute) {
         const ImageUnits units;
@@ -377,13 +379,13 @@ void ParticleSystem::setEpochForward() {
         birth_spare_ = makeStateTexture();
         rebase_target_ = makeFramebuffer();
     }
-    // Made by hand, because a step cannot report an error: create() has tried this combination.
+    // Created without checks because a step cannot report this error; create() has tested the combination.
     glBindFramebuffer(GL_FRAMEBUFFER, rebase_target_.name());
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, birth_spare_.name(), 0);
     rebase_program_.use();
     useTexture(StepPass::kBirthUnit, birth_);
     rebase_program_.set("u_shift", shift);
-    // Those that have just died included: their events may yet be listed.
+    // Include particles that have just died: their events may still be listed.
     const std::uint32_t rows = (std::max(allocator_.extent(), stepped_extent_) + width_ - 1) / width_;
     rebase_program_.drawScreen(rebase_target_.name(), static_cast<GLsizei>(width_),
                                static_cast<GLsizei>(rows));
@@ -444,7 +446,7 @@ Result<std::vector<ParticleState>> ParticleSystem::readState() const {
         const float* position = &raw.position[std::size_t{4} * index];
         const float* velocity = &raw.velocity[std::size_t{4} * index];
         const float* birth = &raw.birth[std::size_t{4} * index];
-        if (position[3] < 0.0F) {  // killed by a collision, which the CPU does not know of
+        if (position[3] < 0.0F) {  // killed by a collision; the CPU does not track these
             continue;
         }
         ParticleState& particle = particles.emplace_back();

@@ -11,7 +11,7 @@ namespace relief {
 std::uint32_t Pcg32::below(std::uint32_t count) {
     std::uint64_t product = std::uint64_t{next()} * count;
     if (static_cast<std::uint32_t>(product) < count) {
-        // 2^32 mod count: so many products are one too many for an even share.
+        // 2^32 mod count: the number of products to reject for an even distribution.
         const std::uint32_t excess = (0U - count) % count;
         while (static_cast<std::uint32_t>(product) < excess) {
             product = std::uint64_t{next()} * count;
@@ -52,14 +52,15 @@ float standardNormal(Pcg32& random) {
 }
 
 double oneMinusCosine(double degrees) {
-    // 2 sin²(a/2): the difference itself is rounded away where the angle is small.
+    // 2 sin²(a/2), because 1 − cos loses all precision for small angles.
     const double sine = portable::sin(degrees * (3.14159265358979323846 / 360.0));
     return 2.0 * sine * sine;
 }
 
 glm::vec3 inCone(Pcg32& random, float opening) {
-    // Of a point in the disc the squared radius is uniform and independent of the angle (Marsaglia 1972): the
-    // one gives the height, which is uniform over a cone's solid angle (Archimedes), the other the azimuth.
+    // For a uniform point in the disc, the squared radius is uniform and independent of the angle (Marsaglia 1972). The
+    // squared radius gives the height, which is uniform over a cone's solid angle (Archimedes); the angle gives the
+    // azimuth.
     const glm::vec2 p = inUnitDisc(random);
     const float down = std::min(p.x * p.x + p.y * p.y, 1.0F) * opening;
     const float aside = std::sqrt(opening * (2.0F - down));

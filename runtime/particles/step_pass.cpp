@@ -13,12 +13,12 @@
 namespace relief {
 namespace {
 
-/// Maps that a work group copies at most. OpenGL ES 3.1 promises 16 KB of shared memory: room for 113 maps of 144 bytes; but
-/// each group of 64 particles makes a copy, and what many maps cost then was not measured.
+/// Maximum maps that a work group copies to shared memory. OpenGL ES 3.1 guarantees 16 KB, enough for 113 maps of 144
+/// bytes. The cost of more maps was not measured; each group of 64 particles makes a copy.
 constexpr int kTourMapsMax = 64;
 
-/// True if lanes proceed on their own along their paths (shaders/collider/collider_tour.glsl). For one point this gains nothing,
-/// and a ball's points are as well asked in loops.
+/// Returns true if lanes should advance independently (shaders/collider/collider_tour.glsl). This gains nothing for
+/// single points; the points of a ball are queried in loops in either case.
 bool toursMaps(const StepVariant& variant) {
     return variant.compute && variant.collider != nullptr && !variant.radius && variant.sweep &&
            variant.collider->bodyCount() == 0 && variant.collider->mapCount() <= kTourMapsMax;

@@ -105,7 +105,7 @@ class FileSource : public ColliderSource {
     std::vector<Collider> released_;
     std::size_t under_way_ = 0;
     bool ends_ = false;
-    std::thread thread_;  // the last: it uses the others
+    std::thread thread_;  // last, because it uses the other members
 };
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace {
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
 
-/// From a body's box, in world units; 0 within.
+/// Returns the distance from a body's box in world units; 0 inside.
 float distanceTo(const StreamBody& body, const glm::vec3& point) {
     const glm::vec3 at = toObject(body.pose, point);
     return body.pose.scale * glm::distance(at, glm::clamp(at, body.box.min, body.box.max));

@@ -21,23 +21,23 @@ namespace relief {
 namespace {
 
 constexpr std::size_t kTexelSize = 8;
-/// Of the distance of a collider that is there.
+/// Factor on the distance of resident colliders, as hysteresis.
 constexpr float kHere = 0.9F;
-/// Pairs of a body and a point whose distance an update measures: some tens of microseconds.
+/// Body-point distances to measure per update: some tens of microseconds.
 constexpr std::size_t kPairs = 8192;
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
 /// A collider of the world.
 struct Streamed {
-    std::size_t body = kNone;          // one that has it; kNone: there is none, or it does not come and go
-    std::size_t texels = 0;            // of its own map
-    Collider coarse;                   // without texels, but for the one that holds its tree's size
-    std::optional<std::size_t> place;  // of its own map's texels
-    std::uint64_t last_wanted = 0;     // number of the choice
-    std::uint64_t refused = kNone;     // State::era in which there was no place for it
-    bool requested = false;            // and not yet uploaded
+    std::size_t body = kNone;          // a body that uses it; kNone if there is none or it is not streamed
+    std::size_t texels = 0;            // of its full map
+    Collider coarse;                   // without texels, except the one with the size of its tree
+    std::optional<std::size_t> place;  // location of the full map's texels
+    std::uint64_t last_wanted = 0;     // number of the last choice that included it
+    std::uint64_t refused = kNone;     // State::era in which it did not fit
+    bool requested = false;            // requested but not yet uploaded
     bool failed = false;
-    bool present = false;  // with its own map
+    bool present = false;  // resident with its full map
 };
 
 struct Upload {
@@ -59,13 +59,13 @@ Result<void> checkPoints(std::span<const PointOfInterest> points) {
     return {};
 }
 
-/// The world before anything has come.
+/// The initial state of the world.
 struct Start {
     std::vector<Streamed> colliders;   // of the world
-    std::vector<StreamBody> plan;      // bodies whose colliders come and go
-    std::vector<std::size_t> planned;  // the number in it of each body, or kNone
-    std::uint64_t coarse_bytes = 0;    // of all that is always there
-    std::size_t texels = 0;            // of all that comes and goes
+    std::vector<StreamBody> plan;      // bodies whose colliders are streamed
+    std::vector<std::size_t> planned;  // index into `plan` for each body, or kNone
+    std::uint64_t coarse_bytes = 0;    // of all permanently resident texels
+    std::size_t texels = 0;            // of all streamed texels
 };
 
 Result<Start> layOut(const World& world, std::span<const ColliderBody> bodies,
@@ -112,20 +112,20 @@ Result<Start> layOut(const World& world, std::span<const ColliderBody> bodies,
 struct WorldStream::State {
     WorldTextures textures;
     StreamPlan plan;
-    std::vector<std::size_t> planned;  // the number in the plan of each body, or kNone
+    std::vector<std::size_t> planned;  // index into the plan for each body, or kNone
     TexelRanges ranges;
     std::unique_ptr<ColliderSource> source;
     StreamOptions options;
     std::vector<Streamed> colliders;         // of the world
-    std::vector<std::string> names;          // of their files
-    std::uint64_t coarse_bytes = 0;          // of all that is always there
+    std::vector<std::string> names;          // names of their files
+    std::uint64_t coarse_bytes = 0;          // of all permanently resident texels
     std::size_t room = 0;                    // texels
-    std::size_t spare = 0;                   // texels of the room that are not chosen for
-    std::vector<std::uint32_t> wanted = {};  // that there is room for together, the most urgent first
+    std::size_t spare = 0;                   // texels reserved against fragmentation
+    std::vector<std::uint32_t> wanted = {};  // those that fit together, most urgent first
     std::uint64_t choices = 0;
-    std::uint64_t era = 0;  // of what may go: another when others are wanted, or something has gone
+    std::uint64_t era = 0;  // changes if the wanted set changes or a collider is evicted
     std::deque<Upload> arrived = {};
-    std::size_t under_way = 0;  // requested, and not in arrived
+    std::size_t under_way = 0;  // requested and not yet in `arrived`
     std::uint64_t uploaded = 0;
     std::vector<std::string> warnings = {};
 
@@ -133,18 +133,18 @@ struct WorldStream::State {
     void request();
     void take(ColliderSource::Arrival arrival);
     void giveUp(std::size_t collider, const std::string& warning);
-    /// Whether there is a place for its texels where all goes that is not wanted.
+    /// Returns whether its texels fit if all unwanted colliders are evicted.
     [[nodiscard]] bool hasRoom(const Streamed& collider) const;
-    /// Takes a place for its texels. Colliders that are not wanted go for it, those first that were not for the longest time.
+    /// Allocates a range for its texels. Evicts colliders that are not wanted, those wanted least recently first.
     Result<bool> makeRoom(Streamed& collider);
-    /// \param bytes  at most.
+    /// \param bytes  maximum to upload.
     Result<void> upload(std::uint64_t bytes);
     void finishUpload();
 };
 
 void WorldStream::State::choose() {
     ++choices;
-    // Those that are there or on their way count as a little nearer, or two that are as far would take turns.
+    // Resident and pending colliders count as slightly nearer; otherwise equally distant ones would alternate.
     std::vector<std::pair<float, std::uint32_t>> order;
     for (const std::uint32_t i : plan.wanted()) {
         const bool here = colliders[i].present || colliders[i].requested;
@@ -248,7 +248,7 @@ Result<void> WorldStream::State::upload(std::uint64_t bytes) {
         std::size_t count = std::min(texels, collider.texels - first.done);
         if (const std::size_t beyond = (*collider.place + first.done + count) % textures.rowTexels();
             count < collider.texels - first.done && beyond < count) {
-            count -= beyond;  // up to the end of a row: one copy for the GL, and not two
+            count -= beyond;  // up to the end of a row: the GL then needs one copy instead of two
         }
         textures.upload(
             *collider.place + first.done,
@@ -306,18 +306,20 @@ Result<std::unique_ptr<WorldStream>> WorldStream::create(const World& world,
         std::min({std::uint64_t{texels}, (options.gpu_bytes - coarse_bytes) / kTexelSize, most}));
     auto textures = RELIEF_TRY(WorldTextures::create(bodies, room));
     const std::size_t first = textures.room();
-    auto state = std::make_unique<State>(State{.textures = std::move(textures),
-                                               .plan = StreamPlan(std::move(plan), colliders.size()),
-                                               .planned = std::move(planned),
-                                               .ranges = TexelRanges(first, room),
-                                               .source = std::move(source),
-                                               .options = options,
-                                               .colliders = std::move(colliders),
-                                               .names = std::move(names),
-                                               .coarse_bytes = coarse_bytes,
-                                               .room = room,
-                                               // Or gaps between others would be too short for the last ones.
-                                               .spare = room < texels ? room / 8 : 0});
+    auto state =
+        std::make_unique<State>(State{.textures = std::move(textures),
+                                      .plan = StreamPlan(std::move(plan), colliders.size()),
+                                      .planned = std::move(planned),
+                                      .ranges = TexelRanges(first, room),
+                                      .source = std::move(source),
+                                      .options = options,
+                                      .colliders = std::move(colliders),
+                                      .names = std::move(names),
+                                      .coarse_bytes = coarse_bytes,
+                                      .room = room,
+                                      // Without it, gaps between other ranges would be too short for the last
+                                      // ones.
+                                      .spare = room < texels ? room / 8 : 0});
     for (std::size_t i = 0; i < state->colliders.size(); ++i) {
         if (state->colliders[i].texels > room) {
             state->giveUp(
