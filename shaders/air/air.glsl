@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Forces on a particle besides collision and gravity. runtime/air/air_block.h lists the defines. In a scene without any,
-// none of it is compiled and the functions return 0.
+// Forces on particles besides collision and gravity. runtime/air/air_block.h lists the defines. Without forces, nothing
+// is compiled and the functions return 0.
 //
-//     airVelocity        wind + flow + curl noise: acts through drag     object units a second
-//     fieldAcceleration  attractors and vortices                         object units a second squared
+//     airVelocity        wind + flow + curl noise: acts through drag     object units/s
+//     fieldAcceleration  attractors and vortices                         object units/s^2
 #ifdef RELIEF_HAS_CURL
 //!include air/curl_noise.glsl
 #endif
@@ -14,7 +14,7 @@ layout(std140) uniform ReliefAir {
     ivec4 air_count;       // attractors, vortices, octaves of noise, the noise's seed as bits
     vec4 air_curl;         // gain, lattice units per object unit, patterns a second, 1
     vec4 air_flow_min;     // xyz; w: gain
-    vec4 air_flow_max;     // xyz; w: 1 if the edge goes on outside, else 0
+    vec4 air_flow_max;     // xyz; w: 1 to extend the edge values outside, else 0
     vec4 air_flow_scale;   // xyz: nodes per object unit
     vec4 air_attractor[2 * RELIEF_AIR_FIELDS_MAX];  // position, strength; radius, falloff, reach
     vec4 air_vortex[3 * RELIEF_AIR_FIELDS_MAX];     // centre, strength; unit axis, radius; falloff
@@ -24,7 +24,7 @@ layout(std140) uniform ReliefAir {
 #ifdef RELIEF_HAS_FLOW
 uniform highp sampler3D u_relief_flow;  // node (i, j, k) is texel (i, j, k)
 
-// Trilinear by hand: GLs need not filter float textures, and those that do may round the weights to 8 bits.
+// Manual trilinear interpolation: GLs need not filter float textures, and may round the weights to 8 bits.
 vec3 reliefFlow(vec3 p) {
     bool within = all(greaterThanEqual(p, air_flow_min.xyz)) && all(lessThanEqual(p, air_flow_max.xyz));
     if (!within && air_flow_max.w == 0.0) {
@@ -32,7 +32,7 @@ vec3 reliefFlow(vec3 p) {
     }
     ivec3 last = textureSize(u_relief_flow, 0) - 1;
     vec3 u = clamp((p - air_flow_min.xyz) * air_flow_scale.xyz, vec3(0.0), vec3(last));
-    // The last node has no neighbour beyond it, so the far end of the cell before it is used.
+    // The last node has no neighbour beyond it, so it is reached from the cell before it.
     ivec3 a = clamp(ivec3(u), ivec3(0), max(last - 1, 0));
     ivec3 b = min(a + 1, last);
     vec3 f = u - vec3(a);
@@ -48,7 +48,7 @@ vec3 reliefFlow(vec3 p) {
 }
 #endif
 
-// The air at p. t: seconds, as airTime() of runtime/air/air.h gives them.
+// Returns the velocity of the air at p. t: seconds, from airTime() in runtime/air/air.h.
 vec3 airVelocity(vec3 p, float t) {
     vec3 velocity = vec3(0.0);
 #ifdef RELIEF_HAS_AIR
@@ -63,7 +63,7 @@ vec3 airVelocity(vec3 p, float t) {
     return velocity;
 }
 
-// The strength at distance r over r: a field is this times an offset that is r long. Linear inside the radius.
+// Returns strength(r) / r, as a factor for an offset of length r. The strength is linear inside the radius.
 float airProfile(float r, float radius, float falloff) {
     if (r <= radius) {
         return 1.0 / radius;
@@ -72,7 +72,7 @@ float airProfile(float r, float radius, float falloff) {
     return (falloff < 0.5 ? 1.0 : (falloff < 1.5 ? s : s * s)) / r;
 }
 
-// v and t: for fields to come.
+// v and t are reserved for future fields.
 vec3 fieldAcceleration(vec3 p, vec3 v, float t) {
     vec3 sum = vec3(0.0);
 #ifdef RELIEF_HAS_ATTRACTORS

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turbulence without divergence, by runtime/air/curl_noise.h. Casts between int and uint keep the bits; uint arithmetic wraps
-// at 2^32.
+// Divergence-free turbulence, see runtime/air/curl_noise.h. Casts between int and uint keep the bits; uint arithmetic
+// wraps at 2^32.
 
 uint curlHash(uint x) {
     x ^= x >> 16u;
@@ -11,15 +11,15 @@ uint curlHash(uint x) {
     return x;
 }
 
-// The random bits of a pattern at a lattice point; those below bit 7 are poor.
+// Returns the random bits of a pattern at a lattice point; bits below bit 7 are of poor quality.
 uint curlDraw(uint point, uint key) {
     uint x = (point ^ key) * 0x9E3779B1u;
     return (x ^ (x >> 16u)) * 0x85EBCA77u;
 }
 
-// Four bits each as floats: 1 + n/16 of bits 19 to 22, and 1 + n/256 of bits 15 to 18, for n from 0 to 15. GPUs
-// cast integers slowly, so the bits become those of a float's mantissa. one: the bits of 1.0; from a uniform,
-// because GPUs fuse both operations, but not with two constants.
+// Convert four bits each to floats: 1 + n/16 from bits 19 to 22, and 1 + n/256 from bits 15 to 18, for n from 0 to 15.
+// The bits are placed in a float's mantissa because GPUs cast integers slowly. one: the bits of 1.0, passed in a
+// uniform because GPUs then fuse both operations, which they do not for two constants.
 vec3 curlHigh(uvec3 h, uint one) {
     return uintBitsToFloat((h & 0x780000u) | one);
 }
@@ -28,8 +28,8 @@ vec3 curlLow(uvec3 h, uint one) {
     return uintBitsToFloat((h & 0x078000u) | one);
 }
 
-// The share of the corner from which the point lies by d. part: factors of curlHigh and curlLow, for the pattern
-// of key.x and for that of key.y; middle: added to them.
+// Returns the contribution of a corner; d is the offset of the point from it. part: factors of curlHigh and curlLow,
+// for the patterns of key.x and key.y; middle: added to them.
 vec3 curlCorner(vec3 d, uint corner, uvec2 key, vec4 part, vec2 middle, uint one) {
     uint point = corner ^ (corner >> 16u);
     uint h = curlDraw(point, key.x);
@@ -43,7 +43,7 @@ vec3 curlCorner(vec3 d, uint corner, uvec2 key, vec4 part, vec2 middle, uint one
         b += part.w * curlLow(bits, one);
     }
     float t = max(0.5 - dot(d, d), 0.0);
-    // Ordered so that GPUs fuse multiplications and additions.
+    // Ordered for fused multiply-add.
     vec3 curl = (t * (4.0 / 3.0) - 0.5) * b;
     curl += dot(b, d) * d;
     curl += a.yzx * d.zxy;
@@ -51,8 +51,8 @@ vec3 curlCorner(vec3 d, uint corner, uvec2 key, vec4 part, vec2 middle, uint one
     return (t * t) * curl;
 }
 
-// The curl of one octave's potential. q: the point in units of the lattice; share: of the pattern of key.x and of
-// the one that follows it, of key.y.
+// Returns the curl of one octave's potential. q: the point in lattice units; share: weights of the pattern of key.x and
+// of its successor, key.y.
 vec3 curlOctave(vec3 q, uvec2 key, vec2 share, uint one) {
     q = clamp(q, -RELIEF_CURL_CELL_MAX, RELIEF_CURL_CELL_MAX);
     q += (q.x + q.y + q.z) * (1.0 / 3.0);
@@ -62,7 +62,7 @@ vec3 curlOctave(vec3 q, uvec2 key, vec2 share, uint one) {
     const uint across = 0x2353C25Du;  // their sum
     uvec3 cell = uvec3(ivec3(low)) * steps;
     uint corner = cell.x + cell.y + cell.z;
-    // Corners of the simplex follow each other along the axis of the largest fraction first, of the least last.
+    // The corners of the simplex are visited by descending fraction of their axes.
     bool xy = f.x >= f.y;
     bool xz = f.x >= f.z;
     bool yz = f.y >= f.z;
@@ -77,7 +77,7 @@ vec3 curlOctave(vec3 q, uvec2 key, vec2 share, uint one) {
                        xz && yz ? 1.0 / 3.0 : -2.0 / 3.0);
     uint to_first = x_first ? steps.x : (y_first ? steps.y : steps.z);
     uint to_last = x_last ? steps.x : (y_last ? steps.y : steps.z);
-    // From curlHigh and curlLow to 2 n - 15, times the share.
+    // Maps curlHigh and curlLow to 2 n - 15, times the share.
     vec4 part = share.xxyy * vec2(32.0, 512.0).xyxy;
     vec2 middle = -(share.x + share.y) * vec2(47.0, 527.0);
     vec3 d = f - (f.x + f.y + f.z) * (1.0 / 6.0);
@@ -88,7 +88,7 @@ vec3 curlOctave(vec3 q, uvec2 key, vec2 share, uint one) {
     return curl;
 }
 
-// curl: gain, lattice units per object unit, patterns a second, 1. Object units a second.
+// Returns object units/s. curl: gain, lattice units per object unit, patterns per second, 1.
 vec3 curlVelocity(vec3 p, float t, vec4 curl, int octaves, uint seed) {
     vec3 sum = vec3(0.0);
     float twice = 1.0;

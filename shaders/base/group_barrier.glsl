@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Barrier: all invocations of the work group have reached this point, and see what all have written to shared memory.
+// Waits for all invocations of the work group and makes their writes to shared memory visible.
 void groupBarrier() {
     memoryBarrierShared();
     barrier();

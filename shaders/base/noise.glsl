@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Uniform in [0, 1), different for every seed (PCG's output permutation).
+// Returns a uniform number in [0, 1) and advances the seed (PCG's output permutation).
 float noise(inout uint seed) {
     seed = seed * 747796405u + 2891336453u;
     uint word = ((seed >> ((seed >> 28) + 4u)) ^ seed) * 277803737u;

@@ -1,4 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// For programs of a vertex shader alone: OpenGL ES requires a fragment shader all the same.
+// For programs that only need a vertex shader: OpenGL ES requires a fragment shader.
 void main() {
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One triangle that covers the viewport, from gl_VertexID alone: draw 3 vertices with an empty vertex array.
+// One triangle that covers the viewport, computed from gl_VertexID: draw 3 vertices with an empty vertex array.
 //
 //      (-1,3)                 v_uv runs from (0,0) at the viewport's lower left
 //        |\                   to (1,1) at its upper right

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One colour. RELIEF_ALPHA: how opaque.
+// Fills with one colour. RELIEF_ALPHA: opacity.
 layout(location = 0) out vec4 o_texel;
 
 void main() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cheapest draw of particles as points of their sprites' size: the baseline of `relief-bench picture`.
+// The cheapest way to draw particles, as points with the size of their sprites: the baseline of `relief-bench picture`.
 uniform highp sampler2D u_position;
 uniform mat4 u_clip;
 uniform float u_pixels;  // of a sprite at view distance 1

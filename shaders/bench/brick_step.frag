@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// A step among distances in a sparse grid of bricks, as engines have them, in place of depth maps: the rival of `relief-bench step
-// --bricks`. All but the solid is the step of particles/step.frag. With RELIEF_DENSE there is one brick and no index.
+// A step with distances in a sparse grid of bricks, as game engines use, in place of depth maps: the baseline of
+// `relief-bench step --bricks`. Everything except the solid is shared with particles/step.frag. With RELIEF_DENSE there
+// is one brick and no index.
 //
-// Near the surface a point costs a fetch of the index and a filtered one of the atlas; elsewhere the index alone, and beyond the
-// mesh's box nothing. Only points inside need a normal, for three filtered fetches more.
+// Near the surface a point costs one index fetch and one filtered fetch of the atlas; elsewhere only the index fetch,
+// and outside the mesh's box nothing. Only points inside need a normal, for three more filtered fetches.
 //!include particles/step.glsl
 
 #if !defined(RELIEF_DENSE)
-uniform highp usampler3D u_index;  // of each cube: its brick's place in the atlas, or one of the two below
+uniform highp usampler3D u_index;  // for each cube: the position of its brick in the atlas, or one of the two values
+                                   // below
 uniform uint u_outside;
 uniform uint u_inside;
 #endif
@@ -15,9 +17,9 @@ uniform highp sampler3D u_atlas;
 uniform vec3 u_box_min;   // of the mesh, object space
 uniform vec3 u_box_max;
 uniform vec3 u_origin;    // of cube (0, 0, 0)
-uniform vec3 u_per_cube;  // cubes in an object unit
+uniform vec3 u_per_cube;  // cubes per object unit
 uniform vec3 u_last_cube;
-uniform vec3 u_cells;     // voxels in a cube
+uniform vec3 u_cells;     // voxels per cube
 uniform vec3 u_per_node;  // 1 / the atlas's texels
 uniform float u_range;    // object units
 
@@ -25,7 +27,7 @@ float distanceAt(vec3 place) {
     return u_range * textureLod(u_atlas, place * u_per_node, 0.0).r;
 }
 
-// The distance at p, and the place in the atlas that it is from, in texels; false where no brick is.
+// Returns the distance at p, and the position in the atlas that it is read from, in texels; false if there is no brick.
 bool brickAt(vec3 p, out float distance, out vec3 place) {
     bool found = false;
     distance = RELIEF_FAR_OUTSIDE;
@@ -56,12 +58,13 @@ Solid solid(vec3 p, float radius) {
     vec3 place;
     vec3 normal = vec3(0.0);
     if (brickAt(p, distance, place) && distance < 0.0) {
-        // Within a voxel the filter is linear along each axis: half a voxel towards its middle gives the slope exactly.
+        // Within a voxel the filter is linear along each axis: a step of half a voxel towards its centre gives the
+        // exact slope.
         vec3 way = 0.5 - step(0.5, fract(place - 0.5));
         vec3 beside = vec3(distanceAt(place + vec3(way.x, 0.0, 0.0)), distanceAt(place + vec3(0.0, way.y, 0.0)),
                            distanceAt(place + vec3(0.0, 0.0, way.z)));
-        vec3 slope = (beside - distance) * way * u_cells * u_per_cube;  // but for a factor
-        // Zero where all codes are clamped alike.
+        vec3 slope = (beside - distance) * way * u_cells * u_per_cube;  // up to a factor
+        // Zero if all codes are clamped.
         normal = slope * inversesqrt(max(dot(slope, slope), 1e-30));
     }
     return Solid(distance < 0.0 ? distance : RELIEF_FAR_OUTSIDE, normal, 0, 0, vec3(0.0));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For `relief-bench step`: the least work of a step of two state textures.
+// For `relief-bench step`: the minimum work of a step, copying two state textures.
 uniform highp sampler2D u_position;
 uniform highp sampler2D u_velocity;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bodies of a world (world.glsl): their motion, and their union.
+// The motion and the union of the bodies of a world (world.glsl).
 
-// The place at the end of the step of a point of a body at its beginning, and back.
+// Moves a point of a body from the start to the end of the step; and back.
 vec3 reliefMoved(int body, vec3 p) {
     vec3 now = p;
     if (reliefBodyResponse(body).w != 0.0) {
@@ -16,14 +16,14 @@ vec3 reliefMovedBack(int body, vec3 p) {
         vec4 row0 = reliefBodyMove(body, 0);
         vec4 row1 = reliefBodyMove(body, 1);
         vec4 row2 = reliefBodyMove(body, 2);
-        // The rows are orthogonal and of one length.
+        // The rows are orthogonal and of equal length.
         before = (row0.xyz * (p.x - row0.w) + (row1.xyz * (p.y - row1.w) + row2.xyz * (p.z - row2.w))) *
                  (1.0 / reliefDot(row0.xyz, row0.xyz));
     }
     return before;
 }
 
-// A direction of the world in object space, but for its length; and back.
+// Rotates a direction from world to object space, up to its length; and back.
 vec3 reliefTurned(int body, vec3 v) {
     return vec3(reliefDot(reliefBodyRow(body, 0).xyz, v), reliefDot(reliefBodyRow(body, 1).xyz, v),
                 reliefDot(reliefBodyRow(body, 2).xyz, v));
@@ -38,7 +38,7 @@ vec3 reliefToObject(int body, vec3 p) {
                 reliefRow(reliefBodyRow(body, 2), p));
 }
 
-// One body and a ball about p, as reliefSolid or, with `whole`, reliefEvaluate.
+// Evaluates one body for a ball about p, as reliefSolid or, with `whole`, reliefEvaluate.
 #if RELIEF_PLACED
 
 ReliefField reliefBodyField(int body, vec3 p, float radius, bool whole) {
@@ -72,9 +72,9 @@ ReliefField reliefBodyField(int body, vec3 p, float radius, bool whole) {
 
 #endif
 
-// Joins a body to the union of those before it, in which the nearest, inside the deepest, decides, and of equals the first.
+// Joins a body to the union of the previous ones. The nearest (inside: the deepest) decides; ties go to the first.
 void reliefJoinBody(inout ReliefField best, inout int best_body, int body, vec3 p, float radius, bool whole) {
-#if defined(RELIEF_MASKS)  // of a step, alone: step.frag
+#if defined(RELIEF_MASKS)  // only in a step: step.frag
     if (!collidesWith(reliefBodyMaps(body).w)) {
         return;
     }
@@ -86,7 +86,7 @@ void reliefJoinBody(inout ReliefField best, inout int best_body, int body, vec3 
     }
 }
 
-// cellHash() of body_grid.h.
+// Must match cellHash() in body_grid.h.
 uint reliefCellHash(ivec3 cell) {
     uint h = uint(cell.x) * 0x8da6b343u + uint(cell.y) * 0xd8163841u + uint(cell.z) * 0xcb1ab31fu;
     h ^= h >> 15u;
@@ -94,13 +94,14 @@ uint reliefCellHash(ivec3 cell) {
     return h ^ (h >> 13u);
 }
 
-// False where no ball about p meets the box of a body that is placed, turned as it is; elsewhere the cell has to do.
+// Returns false if a ball about p cannot touch the oriented box of a placed body; for other bodies, the cell test
+// suffices.
 bool reliefMeetsBox(int body, vec3 p, float radius) {
     bool meets = true;
 #if RELIEF_PLACED
     if (reliefHas(reliefMapInfo(body), RELIEF_ENCLOSES)) {
         vec3 in_map = reliefInMap(body, p);
-        // A little more than the radius, which rounds.
+        // Slightly more than the radius, to allow for rounding.
         float margin = radius * (1.001 / reliefObjectPerMap(body).x);
         meets = all(greaterThanEqual(in_map, vec3(-margin))) && all(lessThan(in_map, reliefPatchRoots(body) + margin));
     }
@@ -108,15 +109,15 @@ bool reliefMeetsBox(int body, vec3 p, float radius) {
     return meets;
 }
 
-// A search for bodies that a point may be in, in the lists of its cells one after another.
+// The state of a search for bodies that may contain a point, through the lists of its cells.
 struct ReliefSearch {
-    int level;   // the next one
-    uint entry;  // the next one of the list
+    int level;   // next level
+    uint entry;  // next entry of the list
     uint end;
-    uint hash;   // of the cell
+    uint hash;   // hash of the cell
 };
 
-// The next bodies whose boxes hold p, from x on; -1: none. Where there is a w there may be more.
+// Returns the next bodies whose boxes contain p, from x on; -1: none. There may be more if w is set.
 ivec4 reliefNextBodies(inout ReliefSearch search, vec3 p, float radius) {
     ivec4 found = ivec4(-1);
     while (found.w < 0 && (search.entry < search.end || search.level < u_relief_world_place.w)) {
@@ -141,10 +142,10 @@ ivec4 reliefNextBodies(inout ReliefSearch search, vec3 p, float radius) {
     return found;
 }
 
-// The union of all bodies in the world. The distance is in world units. body is -1 where none votes. Without `whole`, and of
-// placed bodies, those alone whose boxes hold p, which a box grown by the radius does where a ball meets the body: no other is
-// inside, and of patches no other has a distance. Each lane searches on to its next bodies before any evaluates one, so that
-// all evaluate theirs at once.
+// Evaluates the union of all bodies. The distance is in world units; body is -1 if no body votes. Without `whole`, and
+// for placed bodies, only bodies whose boxes contain p are evaluated; boxes are enlarged by the radius of a ball. No
+// other body contains p, and patches have no distance outside their box. Each lane first searches for its next bodies,
+// so that all lanes then evaluate theirs at the same time.
 ReliefField reliefUnion(vec3 p, float radius, bool whole, out int body) {
     ReliefField best = ReliefField(RELIEF_FAR_OUTSIDE, vec3(0.0), -1);
     body = -1;
@@ -179,8 +180,9 @@ ReliefField reliefEvaluate(vec3 p) {
 
 #if RELIEF_LIVE
 
-// The motion of the surface of map i of a body at a point q of object space since the update before. Of two ends it is the one
-// whose normal is more like `normal`, which is of object space too. Zero where the map has no surface.
+// Returns the motion of the surface of map i of a body at a point q of object space since the previous update. Of two
+// surfaces, uses the one whose normal is more similar to `normal`, also in object space. Zero if the map has no
+// surface.
 vec3 reliefMotion(int body, int i, vec3 q, vec3 normal) {
     vec3 in_map = reliefInMap(i, q);
     ivec4 place = reliefMapPlace(i);
@@ -196,9 +198,10 @@ vec3 reliefMotion(int body, int i, vec3 q, vec3 normal) {
     return (scale * scale) * reliefTurnedBack(body, motion);
 }
 
-// The motion of the surface of a body near a point of the world; zero on one that is not live. Each map is evaluated alone:
-// where one sees nothing near a silhouette, another one does. Of those that see the surface equally near, the one that faces it
-// counts: in a view along the surface, the piece in the same texel may be far away.
+// Returns the motion of the surface of a body near a world point; zero for bodies that are not live. Each map is
+// evaluated separately because one may miss a surface near a silhouette that another one sees. Of maps that see the
+// surface equally near, the one that faces it most decides: in a view along the surface, the piece in the same texel
+// may be far away.
 vec3 reliefBodyMotion(int body, vec3 p) {
     if (reliefBodyMaps(body).z == 0) {
         return vec3(0.0);
@@ -221,7 +224,7 @@ vec3 reliefBodyMotion(int body, vec3 p) {
     return met.map >= 0 ? reliefMotion(body, met.map, q, met.normal) : vec3(0.0);
 }
 
-// The longest diagonal of a texel of a live body's maps, world units.
+// Returns the longest texel diagonal of a live body's maps, world units.
 float reliefBodyTexel(int body) {
     float texel = 0.0;
     int first = reliefBodyMaps(body).x;

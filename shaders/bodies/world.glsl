@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// The data of a world, as body_table.h writes it: all in one texture of words, texel i at (i mod width, i / width), since a
-// block of uniforms is too small for more than a few bodies, and OpenGL ES 3.0 has no other buffers.
+// The data of a world, written by body_table.h. Everything is in one texture of words, texel i at (i mod width, i /
+// width), because uniform blocks are too small for many bodies and OpenGL ES 3.0 has no other buffers.
 //
-//     from texel 0                   ReliefMap of each map, in RELIEF_WORLD_MAP_TEXELS texels. With RELIEF_PLACED each body has one
-//                                    of patches, placed: map i is of body i, and its object space is the world
-//     u_relief_world_place.y         bodies, in RELIEF_WORLD_BODY_TEXELS texels: the first map, how many, 1 if they are live, the
-//                                    bit of its group in ParticleType::collides; scale (world units of an object unit),
-//                                    restitution, 1 - friction, 1 if it moves in the step; world to object space at the end
-//                                    of the step (a rotation, divided by scale), three rows; what takes a point of the body in
-//                                    the world from the beginning of the step to its end, three rows
-//     as u_relief_levels have it     lists of the broad phase (body_grid.h): the second entry; the one after the last; the
-//                                    body, below 0 if there is none, and the hash of the first entry
-//     as the lists have it           entries: body and hash; 0; 0
+//     from texel 0             ReliefMap of each map, in RELIEF_WORLD_MAP_TEXELS texels. With RELIEF_PLACED each body
+//                              has one map of patches in world space: map i belongs to body i
+//     u_relief_world_place.y   bodies, in RELIEF_WORLD_BODY_TEXELS texels each: index of the first map, number of maps,
+//                              1 if live, the bit of its group in ParticleType::collides; scale (world units per object
+//                              unit), restitution, 1 - friction, 1 if it moves in the step; world to object space at
+//                              the end of the step (a rotation divided by the scale), three rows; the transform of a
+//                              point of the body from the start of the step to its end, in world space, three rows
+//     by u_relief_levels       lists of the broad phase (body_grid.h): index of the second entry; index after the last;
+//                              body (negative: none) and hash of the first entry
+//     by the lists             entries: body and hash; 0; 0
 layout(std140) uniform ReliefCollider {
     ivec4 u_relief_count;        // maps in use; then RELIEF_LOG2_WIDTHS
     ivec4 u_relief_world_place;  // log2 of the width; the first texel of body 0; bodies; levels
-    ivec4 u_relief_levels[RELIEF_WORLD_LEVELS];  // cells in a world unit, as a float's bits; texel of the first list; mask of the hash; 0
+    ivec4 u_relief_levels[RELIEF_WORLD_LEVELS];  // cells per world unit, as a float's bits; texel of the first list;
+                                                 // mask of the hash; 0
 };
 
 uniform highp usampler2D u_relief_world;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The method's core: the distance of a point to a collider by its depth maps. formats/depth_map.cpp and
-// formats/collider.cpp are the same in C++, formats/README.md in words; all three change together.
+// The core of the method: the distance from a point to a collider by its depth maps. formats/depth_map.cpp and
+// formats/collider.cpp are the C++ version, formats/README.md is the specification; change all three together.
 //
-// ColliderTextures compiles it (collider_block.h: RELIEF_MAP_CAPACITY and so on) and binds all below.
+// ColliderTextures compiles this file (collider_block.h: RELIEF_MAP_CAPACITY and so on) and binds its inputs.
 //
 //     P --T_i--> P'    orthographic                       cube
 //                      z'                                        \  dist  /
@@ -13,14 +13,14 @@
 //                      v | * P'     |     negative: inside     /   +--+  \   d = P'/|P'|
 //                        +----------+ 1
 //
-// An orthographic map that keeps the farthest surface, and a cube that keeps the nearest, turn the sign. Those
-// are the paper's projected distances. In a map of planes f = n*(P - S) instead, with S the surface point on
-// the ray through the texel's centre; the normal points outwards, so that no sign turns.
+// The sign is reversed for orthographic maps that keep the farthest surface and for cubes that keep the nearest. These
+// are the paper's projected distances. In a map of planes f = n*(P - S), where S is the surface point on the ray
+// through the texel's centre; normals point outwards, so no sign is reversed.
 
 //!include collider/maps.glsl
 
-// The combined vote. map is the deciding map, -1 where every map abstains; normal is zero where nothing but "outside"
-// is known (distance RELIEF_FAR_OUTSIDE).
+// The combined vote. map: the deciding map, -1 if every map abstains; normal: zero if only "outside" is known (distance
+// RELIEF_FAR_OUTSIDE).
 struct ReliefField {
     float distance;
     vec3 normal;
@@ -31,8 +31,8 @@ bool reliefInside(ReliefField field) {
     return field.map >= 0 && field.distance < 0.0;
 }
 
-// Rule 2 of the paper: outside as soon as one map sees P outside; the smallest positive or the largest
-// negative vote wins. A vote of 0 is outside, so that the order of the maps does not matter.
+// Rule 2 of the paper: one outside vote is enough for outside; the smallest positive or the largest negative vote wins.
+// A vote of 0 is outside, so that the order of the maps does not matter.
 bool reliefReplaces(float vote, float best) {
     return (best < 0.0 && vote > best) || (vote >= 0.0 && vote < best);
 }
@@ -69,7 +69,7 @@ ReliefVote reliefVote(int i, vec3 p, bool whole) {
     return reliefVoteOf(i, reliefMapInfo(i), p, whole);
 }
 
-// The votes so far: of none the map is -1.
+// The best of the votes so far; map -1: none.
 struct ReliefBest {
     float distance;
     RELIEF_CODE normal;
@@ -79,7 +79,7 @@ const ReliefBest RELIEF_NO_VOTE = ReliefBest(RELIEF_FAR_INSIDE, RELIEF_NO_CODE, 
 
 void reliefJoin(inout ReliefBest best, int i, ivec4 info, vec3 p, bool whole) {
     ReliefVote vote = reliefVoteOf(i, info, p, whole);
-    // Without `whole` the best one is below 0 so far.
+    // Without `whole`, the best vote so far is negative.
     if (whole ? reliefReplaces(vote.distance, best.distance) : vote.distance > best.distance) {
         best = ReliefBest(vote.distance, vote.normal, i);
     }
@@ -90,7 +90,7 @@ ReliefField reliefFieldOf(ReliefBest best) {
     return ReliefField(best.distance, known ? reliefDecode(best.normal) : vec3(0.0), best.map);
 }
 
-// The maps [first, end) alone, as reliefSolid or, with `whole`, reliefEvaluate.
+// Evaluates only the maps [first, end), as reliefSolid or, with `whole`, reliefEvaluate.
 ReliefField reliefMaps(int first, int end, vec3 p, bool whole) {
     ReliefBest best = RELIEF_NO_VOTE;
     for (int i = first; i < end && (whole || best.distance < 0.0); ++i) {
@@ -99,7 +99,7 @@ ReliefField reliefMaps(int first, int end, vec3 p, bool whole) {
     return reliefFieldOf(best);
 }
 
-// From p to the nearest point of the volume of map i; zero where p is in it.
+// Returns the vector from p to the nearest point of the volume of map i; zero inside.
 vec3 reliefToVolume(int i, vec3 p) {
     vec3 in_map = reliefInMap(i, p);
     vec3 low = vec3(-1.0);
@@ -107,21 +107,21 @@ vec3 reliefToVolume(int i, vec3 p) {
     if (reliefIsPatches(reliefMapInfo(i))) {
         low = vec3(0.0);
         high = reliefPatchRoots(i);
-    } else if (!reliefIsCube(reliefMapInfo(i))) {  // its rim has nothing
+    } else if (!reliefIsCube(reliefMapInfo(i))) {  // its border is empty
         low = vec3(1.0, 1.0, 0.0);
         high = vec3(reliefMapColumn(i, 1).w, reliefMapColumn(i, 2).w, 1.0);
     }
     return reliefFromMap(i, clamp(in_map, low, high) - in_map);
 }
 
-// The maps [first, end) of a point that is inside; any distance that is not below 0 stands for all others. Map `start` is
-// first: it saw p from near, and most often knows that it is outside.
+// Evaluates the maps [first, end) for a point that should be inside; any distance >= 0 means outside. Map `start` is
+// evaluated first: it saw p nearby and is most likely to classify it as outside.
 ReliefBest reliefProbe(int first, int end, int start, vec3 p) {
     ReliefBest best = RELIEF_NO_VOTE;
     int i = start;
     for (int k = first; k < end && best.distance < 0.0; ++k) {
         ReliefVote vote = reliefVote(i, p, false);
-        // Of equal votes that of the first map counts, as in reliefMaps().
+        // Ties go to the first map, as in reliefMaps().
         if (vote.distance > best.distance || (vote.distance == best.distance && i < best.map)) {
             best = ReliefBest(vote.distance, vote.normal, i);
         }
@@ -130,9 +130,10 @@ ReliefBest reliefProbe(int first, int end, int start, vec3 p) {
     return best;
 }
 
-// The surface that a ball is in or touches. Where its centre is inside, as reliefSolid() of that, and deeper by the radius. Else
-// each map that sees a surface near gives the direction to it, and the point of the ball there is evaluated; the deepest such
-// point decides, with a distance below 0. Where it touches nothing: RELIEF_FAR_OUTSIDE, or where all maps abstain, no map.
+// Returns the surface that a ball penetrates or touches. If its centre is inside: reliefSolid() of the centre, deeper
+// by the radius. Otherwise each map that sees a surface nearby gives the direction to it, and the ball's point in that
+// direction is evaluated; the deepest such point decides, with a negative distance. Without contact:
+// RELIEF_FAR_OUTSIDE, or no map if all maps abstain.
 ReliefField reliefBall(int first, int end, vec3 center, float radius) {
     ReliefBest inside = RELIEF_NO_VOTE;
     ReliefField touched = ReliefField(RELIEF_FAR_OUTSIDE, vec3(0.0), -1);
@@ -141,7 +142,7 @@ ReliefField reliefBall(int first, int end, vec3 center, float radius) {
         if (vote.distance > inside.distance) {
             inside = ReliefBest(vote.distance, vote.normal, i);
         }
-        // A projected distance may be some times the distance.
+        // A projected distance may be several times the actual distance.
         bool seen = vote.distance >= 0.0 && vote.distance < 4.0 * radius;
         vec3 way = reliefToVolume(i, center);
         float apart = reliefLength(way);
@@ -153,7 +154,7 @@ ReliefField reliefBall(int first, int end, vec3 center, float radius) {
             }
         }
     }
-    if (inside.map >= 0 && inside.distance < 0.0) {  // WebGL has no ?: of structures
+    if (inside.map >= 0 && inside.distance < 0.0) {  // WebGL does not support ?: for structures
         touched = reliefFieldOf(inside);
         touched.distance -= radius;
     }
@@ -162,21 +163,21 @@ ReliefField reliefBall(int first, int end, vec3 center, float radius) {
 
 #if RELIEF_BODIES == 0
 
-// Of all maps, in the object space that they share.
+// Evaluates all maps, in their common object space.
 ReliefField reliefEvaluate(vec3 p) {
     return reliefMaps(0, u_relief_count.x, p, true);
 }
 
-// Its format and flags are numbers here: a compiler that reads them in the block keeps the code of every format for every
-// map, and a GL may run it.
+// Format and flags are constants here: if a compiler had to read them from the block, it would keep the code of every
+// format for every map, and a GL may execute it.
 #define RELIEF_VOTE_OF(n, format, flags) \
     if (best.distance < 0.0) { \
         reliefJoin(best, n, ivec4(reliefMapInfo(n).x, format, flags, reliefMapInfo(n).w), p, false); \
     }
 
-// For a step of a simulation: the same as reliefEvaluate where P is inside; where it is not, the first map that sees it
-// outside ends the loop, so that most points cost one fetch however many maps there are. (Rule 2 never turns a vote >= 0
-// into one below.) The first maps have constant indices, so that GPUs need not index the block for them.
+// For simulation steps: equals reliefEvaluate if P is inside. Otherwise the first map that classifies P as outside ends
+// the loop, so that most points cost one fetch for any number of maps. (Rule 2 never turns a vote >= 0 into a negative
+// one.) The first maps have constant indices, so that GPUs need not index the block dynamically.
 ReliefField reliefSolid(vec3 p) {
     ReliefBest best = RELIEF_NO_VOTE;
     RELIEF_VOTES
@@ -188,8 +189,8 @@ ReliefField reliefSolid(vec3 p) {
     return reliefFieldOf(best);
 }
 
-// reliefInside(reliefSolid(p)) with map `first` before the others: the map that decides nearby most often knows that p is
-// outside. With a few maps constants are cheaper than what that order saves.
+// Returns reliefInside(reliefSolid(p)), evaluating map `first` before the others: the map that decided nearby is most
+// likely to classify p as outside. With few maps, constant indices are cheaper than that order.
 bool reliefSolidAt(vec3 p, int first) {
 #if RELIEF_MAP_CAPACITY <= 4
     return reliefInside(reliefSolid(p));

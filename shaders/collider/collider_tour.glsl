@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// A single collider in a step as a tour: one map of one point at a time, so that each invocation goes on to the next piece of
-// its path as soon as a point is decided. In a loop over pieces all lanes of a warp wait at each for the one that needs most
-// maps. Where reliefSolid() is inside, a tour gives the same.
+// Evaluates a single collider in a step as a tour: one map of one point per iteration, so that each invocation
+// continues with the next piece of its path as soon as a point is decided. In a loop over pieces, all lanes of a warp
+// would wait for the lane that needs most maps. If reliefSolid() is inside, a tour gives the same result.
 struct ReliefTour {
     vec3 p;
     bool going;
-    int map;          // the next one
-    int done;         // so many are done
-    int start;        // the first one to evaluate
-    ReliefBest best;  // the deepest so far; outside its distance is RELIEF_FAR_OUTSIDE
+    int map;          // next map
+    int done;         // number of maps evaluated
+    int start;        // first map to evaluate
+    ReliefBest best;  // deepest vote so far; if outside, its distance is RELIEF_FAR_OUTSIDE
 };
 
 bool reliefGoesOn(ReliefTour tour) {
     return tour.going;
 }
 
-// Begins at a point; map `start` is first.
+// Starts at a point with map `start`.
 void reliefEnter(inout ReliefTour tour, vec3 p, int start) {
     tour.p = p;
     tour.going = true;
@@ -34,7 +34,7 @@ void reliefEnter(inout ReliefTour tour, vec3 p, int start) {
 // Evaluates the next map.
 void reliefAdvance(inout ReliefTour tour) {
     ReliefVote vote = reliefVote(tour.map, tour.p, false);
-    // Of equal votes that of the first map counts, as in reliefMaps().
+    // Ties go to the first map, as in reliefMaps().
     if (vote.distance > tour.best.distance || (vote.distance == tour.best.distance && tour.map < tour.best.map)) {
         tour.best = ReliefBest(vote.distance, vote.normal, tour.map);
     }
@@ -47,7 +47,7 @@ void reliefAdvance(inout ReliefTour tour) {
     }
 }
 
-// Outside, the normal is zero and the map -1.
+// Returns the result; outside, the normal is zero and the map -1.
 ReliefField reliefToured(ReliefTour tour) {
     vec3 normal = vec3(0.0);
     if (tour.best.map >= 0) {

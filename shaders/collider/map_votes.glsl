@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // For collider.glsl: the votes of projected maps, orthographic and cube.
-// The vote of one map: RELIEF_FAR_INSIDE where it abstains, which never wins.
+
+// The vote of one map. An abstention is RELIEF_FAR_INSIDE, which never wins.
 struct ReliefVote {
     float distance;
     RELIEF_CODE normal;
@@ -10,14 +11,14 @@ float reliefEmpty(ivec4 info) {
     return reliefHas(info, RELIEF_EMPTY_IS_OUTSIDE) ? RELIEF_FAR_OUTSIDE : RELIEF_FAR_INSIDE;
 }
 
-// No function that every particle runs returns early: a GL may make a loop of each that does.
+// Functions that every particle runs do not return early: a GL may turn each of these into a loop.
 
 // A point of an orthographic map relative to the ray through its texel's centre.
 struct ReliefSight {
-    int texel;    // its index
+    int texel;    // texel index
     float z;      // depth of the point
     bool plane;   // the map decodes planes
-    vec3 from;    // as reliefPlane() takes them
+    vec3 from;    // see reliefPlane(); likewise ray
     vec3 ray;
     float scale;  // z_scale
 };
@@ -30,12 +31,12 @@ float reliefSightProjected(ivec4 info, float depth, ReliefSight sight) {
     return sight.scale * ((info.z & RELIEF_KEEPS_FARTHEST) != 0 ? sight.z - depth : depth - sight.z);
 }
 
-// The votes of a texel of each kind; without meaning where none is found.
+// The votes of each kind of texel; undefined if `found` is false.
 
-// Outside where either surface votes so.
+// Outside if either surface votes outside.
 ReliefVote reliefVoteFrontBack(ivec4 info, ReliefSight sight, bool whole, out bool found) {
     uvec4 words = texelFetch(u_relief_front_back, reliefTexel(sight.texel, RELIEF_LOG2_WIDTHS.z), 0);
-    // In integers, which takes fewer instructions than a conjunction of conditions.
+    // Uses integers, which needs fewer instructions than combined conditions.
     uint depths = !sight.plane || RELIEF_HALF_EMPTY ? words.b | words.a : words.b;
     found = depths != 0u;
     float front = reliefFrontBackDepth(info.y, words.b);
@@ -68,7 +69,7 @@ ReliefVote reliefVoteFixed(ivec4 info, ReliefSight sight, out bool found) {
 }
 
 #if defined(RELIEF_HAS_FLOAT)
-// A float map's normals count as they are.
+// Normals of float maps are used as stored.
 ReliefVote reliefVoteFloat(ivec4 info, ReliefSight sight, out bool found) {
     vec4 values = texelFetch(u_relief_float, reliefTexel(sight.texel, RELIEF_LOG2_WIDTHS.x), 0);
     found = values.a >= 0.0;
@@ -83,13 +84,13 @@ ReliefVote reliefVoteFloat(ivec4 info, ReliefSight sight, out bool found) {
 }
 #endif
 
-// Without `whole` any distance that is not below 0 stands for all of them.
+// Without `whole`, any distance >= 0 means outside.
 ReliefVote reliefVoteOrthographic(int i, vec3 p, ivec4 place, ivec4 info, bool whole) {
     bool encloses = reliefHas(info, RELIEF_ENCLOSES);
     ReliefVote vote = ReliefVote(encloses ? RELIEF_FAR_OUTSIDE : RELIEF_FAR_INSIDE, RELIEF_NO_CODE);
     bool in_window = reliefInWindow(i, p);
     bool in_depth = reliefInDepth(p);
-    // Before and behind the volume the texel gives only the distance, or that the map abstains.
+    // In front of and behind the volume, the texel only determines the distance or an abstention.
     bool sees_beyond = encloses && (whole || !reliefHas(info, RELIEF_EMPTY_IS_OUTSIDE));
     if (in_window && (in_depth || sees_beyond)) {
         ivec2 at = ivec2(p.xy);
@@ -104,7 +105,7 @@ ReliefVote reliefVoteOrthographic(int i, vec3 p, ivec4 place, ivec4 info, bool w
         } else {
             vote = reliefVoteFixed(info, sight, found);
         }
-        if (sees_beyond && !in_depth && !(vote.distance >= 0.0)) {  // nothing of the collider remains there
+        if (sees_beyond && !in_depth && !(vote.distance >= 0.0)) {  // the collider does not extend there
             vote.distance = RELIEF_FAR_OUTSIDE;
         }
         vote.distance = found ? vote.distance : reliefEmpty(info);
@@ -116,7 +117,7 @@ ReliefVote reliefVoteCube(int i, vec3 p, ivec4 place, ivec4 info) {
     bool encloses = reliefHas(info, RELIEF_ENCLOSES);
     ReliefVote vote = ReliefVote(encloses ? RELIEF_FAR_OUTSIDE : RELIEF_FAR_INSIDE, RELIEF_NO_CODE);
     bool in_volume = all(lessThanEqual(abs(p), vec3(1.0)));
-    // The squares below must not overflow.
+    // Keeps the squares below from overflowing.
     if (in_volume || (encloses && all(lessThanEqual(abs(p), vec3(1e15))))) {
         float radius = reliefLength(p);
         vec3 direction = radius > 0.0 ? p / radius : vec3(1.0, 0.0, 0.0);

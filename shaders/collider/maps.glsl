@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// For collider.glsl: the maps of a collider, where their texels lie, and the kinds that a program is compiled for.
+// For collider.glsl: the maps of a collider, their texel layout, and the formats that a program is compiled for.
 struct ReliefMap {
-    vec4 row[3];           // object space to map space, whose rows are orthogonal. Of an orthographic map x and y are
-                           // in texels here
-    vec4 column[3];        // xyz: an axis of map space in object units, so that they undo the rows; w: 0; width - 1;
+    vec4 row[3];           // object space to map space; the rows are orthogonal. Orthographic maps: x and y are in
+                           // texels
+    vec4 column[3];        // xyz: an axis of map space in object units (the inverse of the rows); w: 0; width - 1;
                            // height - 1
-    vec4 object_per_map;   // xyz; z is z_scale of an orthographic map, xyz the paper's s of a cube. Of patches the size of a
-                           // root, and how many there are along x, y and z
-    ivec4 place;           // index of texel (0,0) of face 0; from row to row; from face to face; width. Of patches texel 0; from
-                           // root to root along y and z; levels
-    ivec4 info;            // height; format; flags: the sum of MapFlag; of a live map the index of the
-                           // texel (0,0) of its motion, in u_relief_float, whose rows are as wide as that texture
+    vec4 object_per_map;   // xyz; orthographic: z is z_scale; cube: xyz is the paper's s; patches: x is the size of a
+                           // root, yzw the number of roots along x, y and z
+    ivec4 place;           // index of texel (0,0) of face 0; texels from row to row; from face to face; width. Patches:
+                           // texel 0; from root to root along y and z; levels
+    ivec4 info;            // height; format; flags (sum of MapFlag); live maps: index of the texel (0,0) of its motion
+                           // in u_relief_float, whose rows are as wide as that texture
 };
 
 // 1: a world of bodies with poses of their own; 0: one collider, in its own object space.
@@ -36,9 +36,10 @@ layout(std140) uniform ReliefCollider {
     ReliefMap u_relief_maps[RELIEF_MAP_CAPACITY];
 };
 
-// In a tour (collider_tour.glsl) each lane of a warp is at a map of its own. A uniform block serves lanes at different
-// addresses one after another, shared memory nearly all at once: so the maps below are the work group's copy there, made
-// from the same buffer bound as storage, since copying reads different addresses, too. The counts stay in the block.
+// In a tour (collider_tour.glsl) each lane of a warp reads a different map. Uniform blocks serve different addresses
+// one after another, shared memory nearly all at once. The maps below are therefore the work group's copy in shared
+// memory. It is copied from the same buffer bound as storage, because copying also reads different addresses. The
+// counts stay in the block.
 #if defined(RELIEF_TOUR)
 layout(std140, binding = RELIEF_TOUR_STORAGE) readonly buffer ReliefColliderStorage {
     ivec4 b_relief_count;
@@ -46,7 +47,7 @@ layout(std140, binding = RELIEF_TOUR_STORAGE) readonly buffer ReliefColliderStor
 };
 shared ReliefMap s_relief_maps[RELIEF_MAP_CAPACITY];
 
-// Called first, by every invocation of a group of so many lanes.
+// Call it first, in every invocation of the group.
 void reliefShare(int lane, int lanes) {
     for (int i = lane; i < RELIEF_MAP_CAPACITY; i += lanes) {
         s_relief_maps[i] = b_relief_maps[i];
@@ -65,18 +66,18 @@ void reliefShare(int lane, int lanes) {
 #define reliefMapInfo(i) u_relief_maps[i].info
 #endif
 
-// Texels of all maps in a row, wrapped at the texture's width: texel i is at (i mod width, i / width). So maps of
-// any sizes lie together without a gap. RELIEF_LOG2_WIDTHS: log2 of the widths, which every texel needs.
+// The texels of all maps in sequence, wrapped at the texture's width: texel i is at (i mod width, i / width). Maps of
+// any size are thus packed without gaps. RELIEF_LOG2_WIDTHS: log2 of the widths.
 uniform highp sampler2D u_relief_float;
 uniform highp sampler2D u_relief_fixed;
 uniform highp usampler2D u_relief_front_back;
 
-// 1: a texel of planes may hold one end alone. ColliderTextures gives the empty end of a stored one the plane of the other,
-// which changes no vote; the maps of live bodies are as drawn.
+// 1: a texel of planes may have only one surface. In uploaded maps, ColliderTextures copies the plane of a texel's only
+// surface to the other one, which changes no vote; maps of live bodies are not modified.
 #define RELIEF_HALF_EMPTY (RELIEF_LIVE == 1)
 
-// The kind of a map, constant where all are alike: a GL may otherwise run the branches of all formats for every map.
-// ColliderTextures defines RELIEF_HAS_... for the kinds present.
+// The format of a map, a constant if all are alike: otherwise a GL may execute the branches of all formats for every
+// map. ColliderTextures defines RELIEF_HAS_... for the formats present.
 bool reliefIsCube(ivec4 info) {
 #if !defined(RELIEF_HAS_CUBE)
     return false;
@@ -87,7 +88,7 @@ bool reliefIsCube(ivec4 info) {
 #endif
 }
 
-// Asked before the other kinds.
+// Test this before the other formats.
 bool reliefIsPatches(ivec4 info) {
 #if !defined(RELIEF_HAS_PATCHES)
     return false;
@@ -98,7 +99,7 @@ bool reliefIsPatches(ivec4 info) {
 #endif
 }
 
-bool reliefIsFrontBack(ivec4 info) {  // of an orthographic map, as is the next one
+bool reliefIsFrontBack(ivec4 info) {  // orthographic maps only; likewise the next function
 #if !defined(RELIEF_HAS_FRONT_BACK)
     return false;
 #elif defined(RELIEF_HAS_FLOAT) || defined(RELIEF_HAS_FIXED)
@@ -126,7 +127,7 @@ bool reliefIsPlane(ivec4 info) {
 #endif
 }
 
-// The flags that every map has.
+// The flags that all maps have in common.
 #if !defined(RELIEF_ALL)
 #define RELIEF_ALL 0
 #endif

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// The vote of a map of patches: formats/patch_tree.h says how its texels lie, formats/patch_tree.cpp is the same in C++.
+// The vote of a map of patches. formats/patch_tree.h documents the texels; formats/patch_tree.cpp is the C++ version.
 
-// The two halves of a texel.
+// Returns the two halves of a texel.
 uvec2 reliefPatchTexel(int index) {
     uvec4 words = texelFetch(u_relief_front_back, reliefTexel(index, RELIEF_LOG2_WIDTHS.z), 0);
     return uvec2(words.r | (words.g << 16), words.b | (words.a << 16));
 }
 
-// How many of 8 bits are set; OpenGL ES 3.0 has no bitCount().
+// Counts the bits set in a byte; OpenGL ES 3.0 has no bitCount().
 int reliefBitCount(uint bits) {
     bits -= (bits >> 1) & 0x55u;
     bits = (bits & 0x33u) + ((bits >> 2) & 0x33u);
     return int((bits + (bits >> 4)) & 0xfu);
 }
 
-// The place of q across the frame of a patch: u, v and the depth w.
+// Transforms q into the frame of a patch: u, v and the depth w.
 vec3 reliefPatchAcross(uvec2 record, vec3 q) {
     uint diagonal = (record.x >> 5) & 3u;
     uint axis = (record.x >> 7) & 3u;
@@ -30,18 +30,19 @@ vec3 reliefPatchAcross(uvec2 record, vec3 q) {
     return at;
 }
 
-// Squares between heights along a side.
+// Returns the number of grid squares along a side.
 float reliefPatchSquares(uvec2 record) {
     uint size = (record.x >> 2) & 3u;
     return size == 0u ? 1.0 : size == 1u ? 2.0 : 4.0;
 }
 
-// The codes at the corners of a square, whose lowest is that corner: 00, 10, 01 and 11.
+// Returns the codes at the corners 00, 10, 01 and 11 of a grid square with the lowest corner `corner`.
 vec4 reliefPatchCodes(int first, uvec2 record, vec2 corner, float squares) {
     int side = int(squares) + 1;
     int at = int(corner.y) * side + int(corner.x);
     int end = side * side - 1;
-    // The four lie within seven bytes, so in two texels that follow each other; those of 2 by 2, but the last, in the record.
+    // The four codes lie within seven bytes, so in two consecutive texels. For 2 by 2 heights, all but the last are in
+    // the record.
     ivec4 i = ivec4(at, at + 1, at + side, at + side + 1);
     uvec4 words = uvec4(record.y, 0u, 0u, 0u);
     if (side > 2) {
@@ -62,18 +63,18 @@ vec4 reliefPatchCodes(int first, uvec2 record, vec2 corner, float squares) {
     return vec4(codes);
 }
 
-// The height of code 0, and of a step.
+// Return the height of code 0, and the height of one code step.
 float reliefPatchBase(uvec2 record) {
     return (float((record.x >> 11) & 0xfffu) - 2048.0) * (1.0 / 512.0);
 }
 float reliefPatchStep(uvec2 record) {
     uint scale = record.y >> 24;
-    // 2^((scale >> 4) - 12) by its bits: exp2() may round.
+    // Builds 2^((scale >> 4) - 12) from its bits, because exp2() may round.
     float range = (1.0 + float(scale & 15u) * (1.0 / 16.0)) * uintBitsToFloat(((scale >> 4) + 115u) << 23);
     return range * (1.0 / 255.0);
 }
 
-// xyz: the gradient in the cell, of length 1 and outwards; w: the distance, in cells.
+// Returns xyz: the gradient in the cell, unit length and outwards; w: the distance, in cells.
 vec4 reliefPatch(int first, uvec2 record, vec3 q) {
     uint diagonal = (record.x >> 5) & 3u;
     uint axis = (record.x >> 7) & 3u;
@@ -101,7 +102,7 @@ vec4 reliefPatch(int first, uvec2 record, vec3 q) {
     return vec4(per_length * gradient, (at.z - height) * per_length);
 }
 
-// As reliefPatch(), also of a pair.
+// As reliefPatch(), but also for pairs.
 vec4 reliefPatchOrPair(int first, uvec2 record, vec3 q) {
     bool pair = (record.x & 15u) == 15u;
     int at = first + int(record.y & 0xffffffu);
@@ -114,16 +115,16 @@ vec4 reliefPatchOrPair(int first, uvec2 record, vec3 q) {
     return piece;
 }
 
-// The cell of a tree that a point ends up in.
+// The leaf of a tree that contains a point.
 struct ReliefLeaf {
-    uvec2 record;  // its own, or where it has none that of the split cell above it
-    vec3 q;        // the place of the point in the unit cube of the record's cell
-    float cell;    // that cell's size, in roots
-    bool inside;   // of a leaf without a patch
-    bool beside;   // it has no record
+    uvec2 record;  // its own record, or that of its split parent if it has none
+    vec3 q;        // the point in the unit cube of the record's cell
+    float cell;    // size of that cell, in roots
+    bool inside;   // for leaves without a patch
+    bool beside;   // the leaf has no record
 };
 
-// p: map space, in the roots.
+// p: map space, within the roots.
 ReliefLeaf reliefPatchLeaf(ivec4 place, vec3 p) {
     vec3 root = floor(p);
     vec3 q = p - root;
@@ -151,17 +152,17 @@ ReliefLeaf reliefPatchLeaf(ivec4 place, vec3 p) {
     return ReliefLeaf(record, q, cell, inside, beside);
 }
 
-// Roots along x, y and z.
+// Returns the number of roots along x, y and z.
 vec3 reliefPatchRoots(int i) {
     return reliefObjectPerMap(i).yzw;
 }
 
-// A distance of the side that a cell without a patch lies on.
+// Returns a distance on the side of a cell without a patch.
 float reliefOnSide(bool inside, float distance, float nearest) {
     return inside ? min(distance, -nearest) : max(distance, nearest);
 }
 
-// p: map space. Without `whole` any distance that is not below 0 stands for all of them.
+// p: map space. Without `whole`, any distance >= 0 means outside.
 ReliefVote reliefVotePatches(int i, ivec4 info, vec3 p, bool whole) {
     bool encloses = reliefHas(info, RELIEF_ENCLOSES);
     ReliefVote vote = ReliefVote(encloses ? RELIEF_FAR_OUTSIDE : RELIEF_FAR_INSIDE, RELIEF_NO_CODE);

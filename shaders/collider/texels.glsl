@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// For collider.glsl: normals and depths as texels hold them, and the spaces of a map.
-// Equation 3: indices 0...2 half_range in each direction to the octahedron, of which the sphere's point is reliefUnit(). In
-// steps of the index, so that all of it is exact. shaderTexels() leaves no index 255.
+// For collider.glsl: decoding of normals and depths, and transforms between the spaces of a map.
+
+// Equation 3: maps indices 0...2 half_range in each direction to the octahedron; reliefUnit() projects it onto the
+// sphere. Computed in index steps, so that it is exact. shaderTexels() removes index 255.
 vec3 reliefFold(vec2 index, float half_range) {
     vec2 st = index - half_range;
     float z = half_range - abs(st.x) - abs(st.y);
@@ -27,13 +28,13 @@ float reliefRow(vec4 r, vec3 p) {
     return r.x * p.x + (r.y * p.y + (r.z * p.z + r.w));
 }
 
-// A point of object space in the space of map i.
+// Transforms a point from object space to the space of map i.
 vec3 reliefInMap(int i, vec3 p) {
     return vec3(reliefRow(reliefMapRow(i, 0), p), reliefRow(reliefMapRow(i, 1), p),
                 reliefRow(reliefMapRow(i, 2), p));
 }
 
-// True for a point p of an orthographic map's own space above its texels, without its rim, which is empty.
+// Returns true if p, in map space, lies above the texels of an orthographic map, excluding the empty border.
 bool reliefInWindow(int i, vec3 p) {
     return p.x >= 1.0 && p.y >= 1.0 && p.x < reliefMapColumn(i, 1).w && p.y < reliefMapColumn(i, 2).w;
 }
@@ -42,7 +43,7 @@ bool reliefInDepth(vec3 p) {
     return p.z >= 0.0 && p.z <= 1.0;
 }
 
-// In the order of the CPU's twin: the order of dot() is the driver's choice.
+// Uses the operation order of the C++ version, because that of dot() depends on the driver.
 float reliefDot(vec3 a, vec3 b) {
     return a.x * b.x + (a.y * b.y + a.z * b.z);
 }
@@ -51,8 +52,8 @@ float reliefLength(vec3 v) {
     return sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
 }
 
-// The face that d meets and the place on it, OpenGL's rule; x wins over y over z among equals. By hand on
-// six layers, so that every GL picks the same texel as the CPU and no seam is filtered.
+// Returns the face that d hits and the position on it by OpenGL's rule; ties are resolved in the order x, y, z.
+// Computed manually on six layers, so that every GL selects the same texel as the CPU and no seam is filtered.
 vec3 reliefCubeCoordinates(vec3 d) {
     vec3 a = abs(d);
     float face, sc, tc, major;
@@ -75,7 +76,7 @@ vec3 reliefCubeCoordinates(vec3 d) {
     return vec3(0.5 * (sc / major + 1.0), 0.5 * (tc / major + 1.0), face);
 }
 
-// The direction, of largest component 1, through (s, t) of a face.
+// Returns the direction through (s, t) of a face; its largest component is 1.
 vec3 reliefCubeDirection(vec3 st_face) {
     vec2 c = 2.0 * st_face.xy - 1.0;
     int face = int(st_face.z);
@@ -89,14 +90,14 @@ vec3 reliefCubeDirection(vec3 st_face) {
     return d;
 }
 
-// From map space to object space, directions alone.
+// Transforms directions from map space to object space.
 vec3 reliefFromMap(int i, vec3 q) {
     return reliefMapColumn(i, 0).xyz * q.x +
            (reliefMapColumn(i, 1).xyz * q.y + reliefMapColumn(i, 2).xyz * q.z);
 }
 
-// The vote of a plane: n*(P - S). along_normal: n times 1 / per_length; from: P - O, with O where the ray of the texel's centre
-// has depth 0; ray: its direction, for a unit of depth.
+// Returns the vote of a plane: n*(P - S). along_normal: n times 1 / per_length; from: P - O, where O is the point at
+// depth 0 on the ray of the texel's centre; ray: its direction per unit of depth.
 float reliefPlane(vec3 along_normal, float per_length, float depth, vec3 from, vec3 ray) {
     float along = per_length * reliefDot(along_normal, ray);
     return per_length * reliefDot(along_normal, from) - depth * along;
@@ -106,8 +107,8 @@ float reliefOctahedralPlane(vec3 along_normal, float depth, vec3 from, vec3 ray)
     return reliefPlane(along_normal, inversesqrt(reliefDot(along_normal, along_normal)), depth, from, ray);
 }
 
-// A half-float depth: a positive normal half, whose exponent's bias is moved from 15 to 127. By hand, since
-// GLSL 3.30 has no unpackHalf2x16.
+// Decodes a positive normal half-float depth by changing the exponent's bias from 15 to 127. GLSL 3.30 has no
+// unpackHalf2x16.
 float reliefHalf(uint bits) {
     return uintBitsToFloat((bits << 13) + (112u << 23));
 }
@@ -125,7 +126,7 @@ float reliefFrontBackDepth(int format, uint code) {
 #endif
 }
 
-// R,G: normal; B,A: 16-bit fixed-point depth, 0 where empty. Of the normal the indices.
+// R,G: indices of the normal; B,A: 16-bit fixed-point depth, 0 if empty.
 bool reliefFixedTexel(int index, float depth_max, out float depth, out vec2 normal) {
     vec4 bytes = floor(texelFetch(u_relief_fixed, reliefTexel(index, RELIEF_LOG2_WIDTHS.y), 0) * 255.0 + 0.5);
     float code = bytes.b * 256.0 + bytes.a;
@@ -134,7 +135,7 @@ bool reliefFixedTexel(int index, float depth_max, out float depth, out vec2 norm
     return code > 0.0;
 }
 
-// A normal as a texel holds it: of all fetched only the deciding one is decoded. A patch has none but by its heights.
+// A normal in texel form: only the normal of the deciding vote is decoded. Patches compute normals from their heights.
 #if defined(RELIEF_HAS_FLOAT) || defined(RELIEF_HAS_PATCHES)
 #define RELIEF_CODE vec3
 const vec3 RELIEF_NO_CODE = vec3(0.0);

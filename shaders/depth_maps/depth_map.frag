@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// One texel of a front-back map: of the triangle that the rasteriser found, the plane at the texel's centre as the container
-// stores it (formats/README.md), and its motion, each in all channels that either end may keep.
+// Computes one texel of a front-back map: the plane of the rasterised triangle at the texel's centre in container form
+// (formats/README.md), and its motion. Each is written to the channels of both surfaces; the colour mask selects one.
 //!include depth_maps/normal_index.glsl
 uniform highp sampler2D u_positions;
 uniform highp usampler2D u_corners;
 uniform ivec2 u_shift;
 uniform vec3 u_center;
 uniform vec4 u_row[3];
-uniform bool u_far;          // the far end: rays run against the depth
+uniform bool u_far;          // render the far surface: rays run against the depth
 uniform bool u_starts_free;  // otherwise inner sides leave the texel empty
-uniform vec3 u_ray;          // object units for one unit of depth
+uniform vec3 u_ray;          // object units per unit of depth
 
 flat in vec4 v_at;
 flat in vec2 v_slope;
@@ -28,7 +28,7 @@ float cornerDepth(uint vertex) {
     return dot(u_row[2].xyz, position) + u_row[2].w;
 }
 
-// The plane of a triangle seen almost edge-on is a poor guide: no further than its corners.
+// The plane of a triangle seen almost edge-on extrapolates poorly, so clamp to the range of its corners.
 float insideTriangle(float depth) {
     int i = int(v_triangle.x);
     uvec3 corners = texelFetch(u_corners, ivec2(i & ((1 << u_shift.y) - 1), i >> u_shift.y), 0).xyz;
@@ -38,10 +38,11 @@ float insideTriangle(float depth) {
     return depth >= low && depth <= high ? depth : depth > high ? high : low;
 }
 
-// The plane through the surface point on the centre's ray (bake/named_maps/plane_fit.cpp with one ray a texel), packed normal and
-// code of depth: pushed towards the viewer to the next code, and facing the viewer where the plane is too steep to be stored.
+// Returns the packed normal and depth code of the plane through the surface point on the centre's ray
+// (bake/named_maps/plane_fit.cpp with one ray per texel). Moves it towards the viewer to the next code; if it is too
+// steep to be stored, it faces the viewer.
 uvec2 stored(uint normal, float depth) {
-    float u = u_far ? 1.0 - depth : depth;  // from where the ray starts
+    float u = u_far ? 1.0 - depth : depth;  // from the start of the ray
     vec3 onwards = normalize(u_far ? -u_ray : u_ray);
     float from_start = clamp(floor(u * kSteps), 0.0, kSteps);
     bool steep = dot(reliefUnpackNormal(normal), onwards) > -RELIEF_PLANE_COSINE_MIN;
@@ -57,7 +58,7 @@ void main() {
     bool behind = u_far ? cosine < 0.0 : cosine > 0.0;
     o_texel = uvec4(0u);
     vec3 motion = vec3(0.0);
-    if (u_starts_free || !behind) {  // else the ray started inside: the space before this surface is not free
+    if (u_starts_free || !behind) {  // otherwise the ray started inside: the space before this surface is not free
         uint normal = behind ? v_triangle.y >> 16 : v_triangle.y & 0xffffu;
         o_texel = stored(normal, clamp(depth, 0.0, 1.0)).xxyy;
         motion = v_motion;

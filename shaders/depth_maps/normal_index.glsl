@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Packed normals, as formats/normal_index.cpp has them: 256 * s + t.
+// Packed normals, 256 * s + t, as in formats/normal_index.cpp.
 
 vec3 reliefUnpackNormal(uint code) {
     const float half_range = float(RELIEF_NORMAL_HALF_RANGE);
@@ -13,8 +13,8 @@ vec3 reliefUnpackNormal(uint code) {
     return v / sqrt(dot(v, v));
 }
 
-// The best of the four indices about a normal of length 1. By the squared distance between the ends of the
-// vectors: a cosine as a float does not resolve angles below a thirtieth of a degree.
+// Returns the best of the four indices around a unit normal. Compares squared distances between the vectors' ends,
+// because a float cosine does not resolve angles below a thirtieth of a degree.
 uint reliefPackNormal(vec3 n) {
     vec2 st = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
     if (n.z < 0.0) {
@@ -29,7 +29,7 @@ uint reliefPackNormal(vec3 n) {
             uint code = uint((low.x + ds) << 8 | (low.y + dt));
             vec3 d = reliefUnpackNormal(code) - n;
             float distance = dot(d, d);
-            // Twice the improvement of the cosine that the CPU requires: ties go to the lower index.
+            // Twice the cosine improvement that the CPU requires: ties go to the lower index.
             if (distance < best_distance - 2e-9) {
                 best = code;
                 best_distance = distance;

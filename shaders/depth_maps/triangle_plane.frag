@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plane of one triangle a texel, for GpuMesh::planes(): unit normal and packed indices of both sides.
+// Computes the plane of one triangle per texel, for GpuMesh::planes(): unit normal and packed indices of both sides.
 //!include depth_maps/normal_index.glsl
 uniform highp sampler2D u_positions;
 uniform highp usampler2D u_corners;
@@ -12,8 +12,8 @@ vec3 corner(uint vertex) {
     return texelFetch(u_positions, ivec2(i & ((1 << u_shift) - 1), i >> u_shift), 0).xyz;
 }
 
-// By a power of two, so that nothing is rounded, to a largest component in [1, 2): products of the edges of
-// tiny and of huge triangles stay in a float's range.
+// Scales by a power of two, without rounding, to a largest component in [1, 2). Products of edges of tiny and huge
+// triangles then stay in the range of floats.
 vec3 scaled(vec3 v) {
     float largest = max(abs(v.x), max(abs(v.y), abs(v.z)));
     uint exponent = clamp(floatBitsToUint(largest) >> 23, 1u, 253u);
@@ -28,7 +28,7 @@ void main() {
     vec3 ab = b - a;
     vec3 bc = c - b;
     vec3 ca = a - c;
-    // Of the two shorter edges: the error of the normal by the product's rounding grows with their lengths.
+    // Use the two shorter edges: the rounding error of the normal grows with their lengths.
     vec3 length2 = vec3(dot(ab, ab), dot(bc, bc), dot(ca, ca));
     vec3 n;
     if (length2.x >= length2.y && length2.x >= length2.z) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sum of RELIEF_EVENTS_COUNTED entries in a row, for each list: of particles with an event that counts or, with
-// RELIEF_EVENT_SUMS, of counts.
+// Sums RELIEF_EVENTS_COUNTED consecutive entries for each list: particles with a matching event or, with
+// RELIEF_EVENT_SUMS, counts.
 #if defined(RELIEF_EVENT_SUMS)
 uniform highp sampler2D u_counts;
 #else
 //!include events/events.glsl
 #endif
-uniform int u_width;  // entries in a row of their textures
-uniform int u_count;  // of entries
+uniform int u_width;  // entries per row of their textures
+uniform int u_count;  // number of entries
 
 layout(location = 0) out vec4 o_count;
 

@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lists of a step's events in ascending order of index, one below the other: fragment k of a list finds the k-th event that
-// counts there, down the levels of counts.
+// Writes lists of a step's events in ascending order of index, one below the other. Fragment k of a list finds its k-th
+// event by descending through the levels of counts.
 //
-//     position  x y z   of the contact with the surface, or of the death; world space
-//               w       seconds from the step's beginning to the event
-//     surface   x y z   the normal, out of the body; 0 for a death of age
-//               w       speed of approach along it, relative to the surface
+//     position  x y z   contact with the surface, or place of death; world space
+//               w       seconds from the start of the step to the event
+//     surface   x y z   normal, outwards from the body; 0 for a death by age
+//               w       approach speed along it, relative to the surface
 //     velocity  x y z   of the particle before the event
-//               w       body; -1 the floor
-//     identity  x       index     y  id modulo 2^24     z  type     w  flags (EventFlag) + RELIEF_EVENT_FLAGS * m, with m
-//               the number of the material's name + 1, or 0 without a material
+//               w       body; -1 for the floor
+//     identity  x       index     y  id modulo 2^24     z  type    w  flags (EventFlag) + RELIEF_EVENT_FLAGS * m, where
+//               m is the index of the material's name + 1, or 0 without a material
 //!include events/events.glsl
 uniform highp sampler2D u_event_velocity;
 uniform highp sampler2D u_position_before;
 uniform highp sampler2D u_count_1;  // of particles
-uniform highp sampler2D u_count_2;  // of count_1's
+uniform highp sampler2D u_count_2;  // of the entries of u_count_1
 uniform highp sampler2D u_count_3;
 uniform highp sampler2D u_count_4;  // of all
-uniform int u_width;                          // of the particles' textures
-uniform int u_first_row[RELIEF_EVENT_LISTS];  // of each list
+uniform int u_width;                          // width of the particles' textures
+uniform int u_first_row[RELIEF_EVENT_LISTS];  // for each list
 uniform float u_radius[RELIEF_TYPES];
 
 layout(location = 0) out vec4 o_position;
@@ -26,8 +26,8 @@ layout(location = 1) out vec4 o_surface;
 layout(location = 2) out vec4 o_velocity;
 layout(location = 3) out vec4 o_identity;
 
-// In: the k-th event counted by the entries from `first` on, k from 0. Out: the k-th of the entry returned.
-// of: 1 at the component of the list.
+// In: the k-th event counted by the entries from `first` on, k from 0. Out: k relative to the returned entry. of: 1 in
+// the component of the list.
 int descended(highp sampler2D level, vec4 of, int first, inout float k) {
     int i = first;
     for (; i < first + RELIEF_EVENTS_COUNTED; ++i) {
@@ -69,7 +69,7 @@ void main() {
     vec4 of = vec4(equal(ivec4(list), ivec4(0, 1, 2, 3)));
     float k = float((at.y - u_first_row[list]) * RELIEF_EVENTS_WIDTH + at.x);
     if (k >= dot(texelFetch(u_count_4, ivec2(0), 0), of)) {
-        o_position = o_surface = o_velocity = o_identity = vec4(0.0);  // beyond, the counts are leftovers
+        o_position = o_surface = o_velocity = o_identity = vec4(0.0);  // beyond the total, the counts are stale
         return;
     }
     int first = descended(u_count_3, of, 0, k);

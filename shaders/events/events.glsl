@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// The events of a step, as step_event.glsl writes them.
+// The events of a step, as written by step_event.glsl.
 uniform highp sampler2D u_event_surface;
 uniform highp sampler2D u_birth;
-// Of each list:
-uniform float u_min_speed[RELIEF_EVENT_LISTS];     // slower hits do not count
-uniform int u_event_kinds[RELIEF_EVENT_LISTS];     // sums of 1: hits that begin, 2: hits that last, 4: deaths
-uniform int u_event_type[RELIEF_EVENT_LISTS];      // others do not count; -1: all do
-uniform int u_event_material[RELIEF_EVENT_LISTS];  // hits on others do not count: number of its name + 1; -1: all do
-uniform int u_materials;  // names of materials, + 1
+// For each list:
+uniform float u_min_speed[RELIEF_EVENT_LISTS];     // ignores slower hits
+uniform int u_event_kinds[RELIEF_EVENT_LISTS];     // sums of 1: new hits, 2: continued hits, 4: deaths
+uniform int u_event_type[RELIEF_EVENT_LISTS];      // only this type; -1: all
+uniform int u_event_material[RELIEF_EVENT_LISTS];  // only hits on this material, index of its name + 1; -1: all
+uniform int u_materials;  // number of material names + 1
 
-// The number of the material's name + 1, or 0 without one.
+// Returns the index of the material's name + 1, or 0 without a material.
 int materialOf(int code) {
     return code / (RELIEF_EVENT_FLAGS * RELIEF_EVENT_DIRECTIONS) % u_materials;
 }
 
-// Whether the event of a particle, if there is one, is in a list.
-// surface: as step_event.glsl writes it.
+// Returns whether a particle has an event that belongs to a list. surface: from step_event.glsl.
 bool countsIn(int list, ivec2 texel, vec4 surface) {
     int code = int(surface.w);
     int flags = code % RELIEF_EVENT_FLAGS;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // For step.glsl: the event of a particle in a step.
 //
-//     velocity texture  x y z   world units a second, in the step
-//                       w       seconds from the step's beginning to the event
+//     velocity texture  x y z   world units/s, during the step
+//                       w       seconds from the start of the step to the event
 //     surface texture   x y     the smaller two of the normal's components (events.glsl)
-//                       z       speed of approach along the normal, relative to the surface, >= 0
+//                       z       approach speed along the normal, relative to the surface, >= 0
 //                       w       flags, direction, material and body (kEventFlags in constants.h); 0: no event
 //
-// A path within a step is straight: the event was at position before + w * velocity.
+// Paths are straight within a step: the event was at position before + w * velocity.
 RELIEF_STATE_OUT(2) vec4 o_event_velocity;
 RELIEF_STATE_OUT(3) vec4 o_event_surface;
 
@@ -16,7 +16,7 @@ void writeNoEvent() {
     o_event_surface = vec4(0.0);
 }
 
-// All but the largest component, and the index of that: 2 * axis, + 1 if it is negative.
+// Returns all components but the largest, and the direction of that: 2 * axis, + 1 if it is negative.
 vec3 packedNormal(vec3 n) {
     vec3 a = abs(n);
     if (a.x >= a.y && a.x >= a.z) {
@@ -31,8 +31,8 @@ const float kMaterials = float(RELIEF_MATERIALS);
 const float kMaterials = 0.0;
 #endif
 
-// A hit from outside, `after` seconds before the end of the sweep: with vn, the velocity along the normal relative to the surface.
-// material: the number of its name + 1, or 0.
+// Writes a hit from outside, `after` seconds before the end of the sweep. vn: the velocity along the normal relative to
+// the surface. material: the index of its name + 1, or 0.
 void writeHit(Sweep sweep, float after, float vn, float material, bool lasts, bool dies) {
     vec3 normal = packedNormal(sweep.hit.normal);
     float code = float(RELIEF_EVENT_COLLISION) + (lasts ? float(RELIEF_EVENT_LASTS) : 0.0) +

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Copies the motion of the surface in the texels of a map from DepthMapRenderer's textures (depth_map_renderer.h) to those of
-// collider.glsl.
-uniform highp sampler2D u_motion_xy;  // x of either end, then y
+// Copies the surface motion of a map from DepthMapRenderer's textures (depth_map_renderer.h) to those of collider.glsl.
+uniform highp sampler2D u_motion_xy;  // x of both surfaces, then y
 uniform highp sampler2D u_motion_z;
-uniform highp usampler2D u_texels;  // depth codes of the ends in z and w
+uniform highp usampler2D u_texels;  // depth codes of the surfaces in z and w
 uniform int u_end;
-uniform ivec2 u_origin;  // of the rectangle that is drawn to
+uniform ivec2 u_origin;  // of the target rectangle
 
 layout(location = 0) out vec4 o_motion;
 
@@ -13,7 +12,7 @@ void main() {
     ivec2 texel = ivec2(gl_FragCoord.xy) - u_origin;
     uvec4 codes = texelFetch(u_texels, texel, 0);
     if ((u_end == 0 ? codes.z : codes.w) == 0u) {
-        discard;  // nobody asks for its motion, and most of a box is empty
+        discard;  // its motion is never read, and most of a box is empty
     }
     vec4 xy = texelFetch(u_motion_xy, texel, 0);
     vec4 z = texelFetch(u_motion_z, texel, 0);

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses the vertices of an animated mesh, for transform feedback; nothing is rasterised. formats/animation/mesh_pose.h has
-// the truth.
+// Poses the vertices of an animated mesh, for transform feedback; nothing is rasterised. formats/animation/mesh_pose.h
+// is the reference.
 layout(location = 0) in vec3 a_position;  // before joints and targets move it
-layout(location = 1) in uvec4 a_lists;    // of its influences and of its deltas: the first, and one past the last
+layout(location = 1) in uvec4 a_lists;    // ranges of its influences and of its deltas: first, and one past the last
 #if defined(RELIEF_NORMALS)
-layout(location = 2) in vec3 a_normal;  // of length 1, or zero
+layout(location = 2) in vec3 a_normal;  // unit length, or zero
 #endif
 
-uniform highp sampler2D u_pose;         // three rows a joint, then the weight of each target in x
+uniform highp sampler2D u_pose;         // three rows per joint, then the weight of each target in x
 uniform highp usampler2D u_influences;  // joint, bits of its weight
 uniform highp sampler2D u_deltas;       // xyz; the target in w
 uniform highp ivec3 u_shifts;           // log2 of the widths of these textures
 uniform int u_joints;
-uniform vec3 u_origin;  // of what is written, object space
+uniform vec3 u_origin;  // subtracted from the output, object space
 
 out vec3 v_position;
 #if defined(RELIEF_NORMALS)

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes the vertices of a mesh at rest wobble, for transform feedback; nothing is rasterised. The formula is in
-// runtime/live/wobble_pass.h.
+// Animates the vertices of a mesh with a wobble, for transform feedback; nothing is rasterised.
+// runtime/live/wobble_pass.h documents the formula.
 layout(location = 0) in vec3 a_position;  // object space, at rest
-layout(location = 1) in vec3 a_normal;    // of length 1, or zero
+layout(location = 1) in vec3 a_normal;    // unit length, or zero
 
-uniform float u_inch;       // reach of the differences for normals, object units
-uniform vec3 u_phases;      // of the waves, at this moment
+uniform float u_inch;       // step of the finite differences for normals, object units
+uniform vec3 u_phases;      // of the waves, at the current time
 uniform float u_amplitude;  // object units
 uniform float u_number;     // 2 pi / wavelength
 
@@ -22,7 +22,7 @@ vec3 moved(vec3 p) {
 void main() {
     v_position = moved(a_position);
 #if defined(RELIEF_NORMALS)
-    // Two directions across the normal, moved along.
+    // Move two directions perpendicular to the normal along with the surface.
     vec3 n = a_normal;
     vec3 u = abs(n.x) < 0.6 ? vec3(0.0, n.z, -n.y) : vec3(-n.z, 0.0, n.x);
     float l = length(u);

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Births, where there are compute shaders: an invocation for one particle.
+// Writes births with a compute shader: one invocation per particle.
 layout(local_size_x = RELIEF_BIRTH_GROUP) in;
 layout(rgba32f, binding = 0) writeonly uniform highp image2D u_position_out;
 layout(rgba32f, binding = 1) writeonly uniform highp image2D u_velocity_out;
 layout(rgba32f, binding = 2) writeonly uniform highp image2D u_birth_out;
 
-// As birth.vert's attributes: index, position, velocity, and the four of a_birth.
+// Layout as birth.vert's attributes: index, position, velocity, and the four components of a_birth.
 layout(std430, binding = 0) readonly buffer Births { uint b_words[]; };
 const uint kWords = 11u;
 
 uniform uint u_count;
-uniform ivec2 u_size;  // of the state textures, texels
+uniform ivec2 u_size;  // size of the state textures, texels
 
 vec3 threeAt(uint word) {
     return uintBitsToFloat(uvec3(b_words[word], b_words[word + 1u], b_words[word + 2u]));

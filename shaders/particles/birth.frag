@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Births: a fragment for one particle.
+// Writes births: one fragment per particle.
 flat in vec3 v_position;
 flat in vec3 v_velocity;
 flat in vec4 v_birth;

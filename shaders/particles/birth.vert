@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Births: one point for one particle, placed on the texel of its index.
+// Places births: one point per particle, on the texel of its index.
 layout(location = 0) in uint a_index;
 layout(location = 1) in vec3 a_position;
 layout(location = 2) in vec3 a_velocity;
 layout(location = 3) in vec4 a_birth;  // time of birth, time of death, type, id modulo 2^24
 
-uniform ivec2 u_size;  // of the state textures, texels
+uniform ivec2 u_size;  // size of the state textures, texels
 
 flat out vec3 v_position;
 flat out vec3 v_velocity;

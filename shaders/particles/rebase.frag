@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Moves the zero of the clock, so that times stay small enough for a float: both times of the birth texture
-// fall by as much as the clock does.
+// Moves the origin of the clock, so that times stay small enough for a float: shifts both times in the birth texture.
 uniform highp sampler2D u_birth;
 uniform float u_shift;  // seconds
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A step among the floor and, with RELIEF_COLLIDER, colliders. As a compute shader an invocation is a particle.
+// A step with the floor and, with RELIEF_COLLIDER, colliders. In a compute shader, one invocation is one particle.
 #if defined(RELIEF_MASKS)
 
-uniform int u_collides[RELIEF_TYPES];  // ParticleType::collides
-int g_collides;                        // that of this invocation's particle
+uniform int u_collides[RELIEF_TYPES];  // see ParticleType::collides
+int g_collides;                        // mask of this invocation's particle
 
 bool collidesWith(int bits) {
     return (g_collides & bits) != 0;

@@ -1,54 +1,54 @@
 // SPDX-License-Identifier: Apache-2.0
-// One step of the simulation: age, forces, collision reaction, Euler or Verlet. A fragment is a particle, or with
-// RELIEF_COMPUTE an invocation. step_solid.glsl defines the solids.
+// One step of the simulation: age, forces, collision reaction, Euler or Verlet integration. One fragment (with
+// RELIEF_COMPUTE: one invocation) is one particle. step_solid.glsl defines the solids.
 //!include particles/step_state.glsl
 
 uniform highp sampler2D u_birth;
 
-uniform float u_now;      // the clock at the end of this step
+uniform float u_now;      // clock at the end of this step
 uniform float u_dt;       // seconds
-uniform vec3 u_gravity;   // world units a second squared
-uniform vec3 u_wind;      // velocity of the air, world units a second
-uniform float u_still;    // a particle in contact rests at or below this speed: a thousandth of a step's gravity
+uniform vec3 u_gravity;   // world units/s^2
+uniform vec3 u_wind;      // velocity of the air, world units/s
+uniform float u_still;    // speed at or below which a particle in contact rests: a thousandth of a step's gravity
 #if defined(RELIEF_HAS_AIR)
-uniform float u_air_time;  // seconds, as airTime() gives them
+uniform float u_air_time;  // seconds, from airTime()
 #endif
 uniform float u_ground;   // height of the floor; far below everything if there is none
-uniform vec4 u_types[2 * RELIEF_TYPES];  // as typeOf() reads them
+uniform vec4 u_types[2 * RELIEF_TYPES];  // layout: see typeOf()
 
 struct ParticleType {
     float radius;
     float restitution;
     float slip;       // 1 - friction
-    float threshold;  // speed below which there is no friction
+    float threshold;  // no friction below this speed
     float drag;       // 1/s
     float behaviour;  // RELIEF_ON_COLLISION_BOUNCE, RELIEF_ON_COLLISION_STOP, RELIEF_ON_COLLISION_SLIDE or RELIEF_ON_COLLISION_DIE
-    float loss;       // seconds of life that a collision costs
+    float loss;       // seconds of life that a step in contact costs
     float gravity;    // factor of u_gravity
 };
 
-// A point is inside where distance is negative; then normal points out of it, map is the deciding depth map, and body the
-// body: -1 the floor.
+// A point is inside if distance is negative. normal then points outwards, map is the deciding depth map, and body is
+// the body (-1: the floor).
 struct Solid {
     float distance;
     vec3 normal;
     int map;
     int body;
-    vec3 motion;  // inside a live body: of its surface in this step; or zero
+    vec3 motion;  // inside a live body: displacement of its surface in this step; otherwise zero
 };
 
-// True if a ball about p, where the step began, was in the body of s at that time: its centre, or its point nearest to the
-// surface hit. (Contact with another side does not count: a ball on a floor bounces off a wall.) free: the last step ended
-// without contact.
+// Returns true if a ball about p, at the start of the step, was inside the body of s at that time: either its centre or
+// its point nearest to the surface hit. (Contact with another side does not count: a ball on a floor bounces off a
+// wall.) free: the last step ended without contact.
 bool insideBefore(vec3 p, float radius, Solid s, bool free);
-// The place of a point of the body of s at the beginning of the step.
+// Returns the position of a point of the body of s at the start of the step.
 vec3 pointBefore(Solid s, vec3 p);
-// The place, at the end of the step, of a point of a body at its beginning.
+// Returns the position at the end of the step of a point of a body at its start.
 vec3 pointNow(int body, vec3 p);
-// Restitution and 1 - friction of a body, factors of the particle's own.
+// Returns restitution and 1 - friction of a body, factors of the particle's own.
 vec2 bodyResponse(int body);
 
-// The material of a body at a point of its surface at the end of the step, as reliefMaterial() gives it.
+// Returns the material of a body at a point of its surface at the end of the step; see reliefMaterial().
 #if defined(RELIEF_MATERIALS)
 vec4 materialOf(int body, vec3 p, vec3 n);
 #else
@@ -57,7 +57,7 @@ vec4 materialOf(int body, vec3 p, vec3 n) {
 }
 #endif
 
-// Height above the floor y < u_ground.
+// Returns the height above the floor y < u_ground.
 float aboveGround(vec3 p, float radius) {
     float above = p.y - radius - u_ground;
 #if defined(RELIEF_MASKS)
@@ -66,7 +66,7 @@ float aboveGround(vec3 p, float radius) {
     return above;
 }
 
-// Union with the floor. Inside both, the deeper one decides.
+// Returns the union with the floor. Inside both, the deeper one decides.
 Solid orGround(Solid deepest, vec3 p, float radius) {
     float above = aboveGround(p, radius);
     if (above < deepest.distance) {
@@ -75,15 +75,15 @@ Solid orGround(Solid deepest, vec3 p, float radius) {
     return deepest;
 }
 
-// The solid, but for the floor, that a ball about p touches at the end of the step.
+// Returns the solid, excluding the floor, that a ball about p touches at the end of the step.
 Solid solid(vec3 p, float radius);
 
 #if defined(RELIEF_TOUR)
 
-// The solid that a tour has found at p.
+// Returns the solid that a tour has found at p.
 Solid solidOf(ReliefTour tour, vec3 p, float radius);
 
-// As solid(); in a tour of a single collider map `start` is first.
+// As solid(); a tour of a single collider evaluates map `start` first.
 Solid solidFrom(vec3 p, float radius, int start) {
     ReliefTour tour;
     reliefEnter(tour, p, start);
@@ -127,7 +127,7 @@ vec3 surfaceVelocity(Solid s, vec3 p) {
     return s.body < 0 ? vec3(0.0) : (p - pointBefore(s, p)) / u_dt;
 }
 
-// At rest for good, on something that may move.
+// Returns the state of a particle permanently at rest, on a surface that may move.
 State rested(State state) {
     int body = int(state.contact - float(RELIEF_CONTACT_STOPPED)) - 1;
     vec3 carried = state.position;
@@ -137,8 +137,8 @@ State rested(State state) {
     return State(carried, (carried - state.position) / u_dt, state.collisions, state.contact);
 }
 
-// The velocity after gravity, fields and drag. Drag is integrated implicitly, v' = v + dt (g + k (w - v')): it
-// approaches the wind for any dt, while the explicit form overshoots for dt k > 1 and grows without bound for dt k > 2.
+// Returns the velocity after gravity, fields and drag. Drag is integrated implicitly, v' = v + dt (g + k (w - v')),
+// which approaches the wind for any dt. The explicit form overshoots for dt k > 1 and diverges for dt k > 2.
 vec3 pushed(vec3 p, vec3 v, ParticleType type) {
     vec3 acceleration = type.gravity * u_gravity;
     vec3 air = u_wind;
@@ -149,21 +149,21 @@ vec3 pushed(vec3 p, vec3 v, ParticleType type) {
     return (v + u_dt * (acceleration + type.drag * air)) * (1.0 / (1.0 + u_dt * type.drag));
 }
 
-// The velocity after a bounce, relative to the surface. v_begin and `relative`, relative too, are those before
-// and after this step's forces; vn and along are the parts of `relative` across and along the surface.
+// Returns the velocity after a bounce, relative to the surface. v_begin and `relative` are the relative velocities
+// before and after this step's forces; vn and along are the normal and tangential components of `relative`.
 vec3 bounced(vec3 v_begin, vec3 relative, float vn, vec3 along, vec3 n, ParticleType type, vec2 response) {
     float slide = dot(relative, relative) >= type.threshold * type.threshold ? response.y : 1.0;
-    // The particle stays at p, above the surface, so it gets back the speed that it had there, without that of this step's
-    // forces: no bounce adds energy, and bounces end. (Where texels form a step, v may enter the collider and still head
-    // outwards: no bounce.)
+    // The particle stays at p, above the surface, so it gets back the speed that it had there, without this step's
+    // forces. Thus no bounce adds energy, and bouncing ends. (At a step between texels, v may enter the collider but
+    // point outwards: no bounce.)
     float arrives = min(max(-dot(v_begin, n), 0.0), abs(vn));
     vec3 left = slide * along + (response.x * arrives) * n;
-    // Less than a thousandth of a step's gravity is rounding, and would creep.
+    // Below a thousandth of a step's gravity, speed is rounding error and would cause creep.
     float still = type.gravity * u_still;
     return dot(left, left) > still * still ? left : vec3(0.0);
 }
 
-// Seconds from the contact with the surface to the end of the sweep, which is sweep.hit.distance deep, with vn, the velocity
+// Returns the seconds from the contact to the end of the sweep, where the depth is sweep.hit.distance. vn: the velocity
 // along the normal relative to the surface.
 float sinceContact(Sweep sweep, float vn) {
     return min(vn < 0.0 ? sweep.hit.distance / vn : 0.0, sweep.share * u_dt);
@@ -172,11 +172,11 @@ float sinceContact(Sweep sweep, float vn) {
 // Seconds of life that the material of this step's contact costs.
 float g_cost = 0.0;
 
-// The reaction (paper, section 3.3.2) to sweep.hit, with v split along the normal n at the end of the step:
+// Reacts to sweep.hit (paper, section 3.3.2); v is split along the normal n at the end of the step:
 //
 //      p o                    o p_next           p o      ^ p_next      caught: p is inside already.
-//         \   |  outside     /                  ----\----/---------    Never pushed inwards; a velocity
-//      ----\--+-------------/----                    \  /              inwards is turned round.
+//         \   |  outside     /                  ----\----/---------    Never pushed inwards; an inward
+//      ----\--+-------------/----                    \  /              velocity is reversed.
 //           v p + dt v     about to collide
 State reacted(State state, Sweep sweep, ParticleType type, out bool dies) {
     vec3 p = state.position;
@@ -241,8 +241,8 @@ void stepAt(ivec2 texel) {
     State state = stateAt(texel);
     vec4 birth = texelFetch(u_birth, texel, 0);
     ParticleType type = typeOf(birth);
-    // A mere comparison of numbers that the CPU made: both agree on the step. (Only the GPU knows a loss of life; the CPU
-    // then frees the index at its original time of death.)
+    // Compares numbers that the CPU computed, so both agree on the step. (Lifetime losses are only known to the GPU;
+    // the CPU frees the index at the original time of death.)
     float death = birth.y - type.loss * state.collisions;
 #if defined(RELIEF_MATERIAL_LOSS)
     death -= g_lost * (birth.y - birth.x);
@@ -287,7 +287,7 @@ layout(rgba32f, binding = 1) writeonly uniform highp image2D u_velocity_out;
 layout(rgba32f, binding = 2) writeonly uniform highp image2D u_event_velocity_out;
 layout(rgba32f, binding = 3) writeonly uniform highp image2D u_event_surface_out;
 #endif
-uniform ivec2 u_size;  // of the texels that hold particles
+uniform ivec2 u_size;  // size of the area with particles
 
 void main() {
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy);

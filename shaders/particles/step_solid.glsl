@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// For step.glsl: the solids of a step. Without RELIEF_COLLIDER there is the floor alone; with RELIEF_BODIES there are
-// bodies that may move in the step, and may be live; else one collider in its own object space.
+// For step.glsl: the solids of a step. Without RELIEF_COLLIDER there is only the floor. With RELIEF_BODIES there are
+// bodies, which may move in the step and may be live; otherwise one collider in its own object space.
 #if !defined(RELIEF_BODIES)
 #define RELIEF_BODIES 0
 #endif
@@ -26,7 +26,7 @@ bool insideBefore(vec3 p, float radius, Solid s, bool free) {
 }
 
 Solid solidOf(ReliefField field) {
-    // Outside too where no map votes.
+    // Also outside if no map votes.
     return Solid(reliefInside(field) ? field.distance : RELIEF_FAR_OUTSIDE, field.normal, field.map, 0, vec3(0.0));
 }
 
@@ -63,7 +63,7 @@ Solid solidOf(ReliefField field, int body, vec3 p, float radius) {
     bool inside = reliefInside(field);
     vec3 motion = vec3(0.0);
     if (inside) {
-        // A ball touches with its rim.
+        // A ball touches at its surface.
         motion = reliefBodyMotion(body, p - radius * field.normal);
     }
     return Solid(inside ? field.distance : RELIEF_FAR_OUTSIDE, field.normal, field.map, body, motion);
@@ -75,10 +75,10 @@ Solid solid(vec3 p, float radius) {
     return solidOf(field, body, p, radius);
 }
 
-// The maps of a live body show the surface at the end of the step alone. So the particle is moved with the piece of surface
-// that it met, and tested at the end: exact where all of the surface near it moves alike, as it does but for second order in
-// the distance of a step. The silhouette in the maps of the step before lay up to half a texel elsewhere: a particle that those
-// maps left free was outside if it is less than a texel deep.
+// The maps of a live body only represent the surface at the end of the step. The particle is therefore moved with the
+// piece of surface that it hit, and tested at the end. This is exact if the surface nearby moves uniformly; otherwise
+// the error is of second order in the length of a step. Silhouettes in the maps of the previous step were off by up to
+// half a texel: a particle that was free in those maps counts as outside if it is less than a texel deep.
 bool insideBefore(vec3 p, float radius, Solid s, bool free) {
     vec3 q = reliefMoved(s.body, p) + s.motion;
     float least = free && s.motion != vec3(0.0) ? reliefBodyTexel(s.body) : 0.0;
@@ -95,7 +95,7 @@ vec3 pointBefore(Solid s, vec3 p) {
 
 vec3 pointNow(int body, vec3 p) {
     vec3 now = p;
-    // A particle that stopped on a body of colliders that are no longer set stays where it is.
+    // A particle that stopped on a body of a collider that is no longer set stays in place.
     if (body < reliefBodyCount()) {
         now = reliefMoved(body, p);
         now += reliefBodyMotion(body, now);
@@ -110,7 +110,7 @@ vec2 bodyResponse(int body) {
 #endif
 
 #if !defined(RELIEF_MATERIALS)
-// step.glsl has it.
+// Defined in step.glsl.
 #elif RELIEF_BODIES == 0
 
 vec4 materialOf(int body, vec3 p, vec3 n) {

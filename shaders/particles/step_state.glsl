@@ -1,26 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-// The state of a particle, as the textures hold it.
+// The state of a particle, as stored in textures.
 //
 //     position texture   x y z   world space
-//                        w       collisions so far, each step in contact counting; RELIEF_DEAD_COLLISIONS once dead
-//     velocity texture   x y z   world units a second
-//                        w       contact of the last step (constants.h): RELIEF_CONTACT_NONE, _COLLIDED, _CAUGHT (and
-//                                pushed out); at rest for good _STOPPED on the floor, or more by 1 + b on body b. Its
-//                                fraction is the share of its lifetime that materials have cost: RELIEF_LOST_MOST for all
+//                        w       steps in contact so far; RELIEF_DEAD_COLLISIONS once dead
+//     velocity texture   x y z   world units/s
+//                        w       contact in the last step (constants.h): RELIEF_CONTACT_NONE, _COLLIDED, _CAUGHT (and
+//                                pushed out); permanently at rest: _STOPPED on the floor, _STOPPED + 1 + b on body b.
+//                                The fractional part is the fraction of its lifetime lost to materials:
+//                                RELIEF_LOST_MOST for all
 //     birth texture      x       time of birth   } seconds on the clock of u_now
 //                        y       time of death   }
 //                        z       type
 //                        w       id modulo 2^24
 //
-// With RELIEF_VERLET the velocity is the displacement of the last step over its duration; after a hit of a swept step, whose
-// path ends early, that of the reaction.
+// With RELIEF_VERLET the velocity is the displacement of the last step over its duration. After a hit in a swept step,
+// whose path ends early, it is the velocity of the reaction.
 uniform highp sampler2D u_position;
 uniform highp sampler2D u_velocity;
 #if defined(RELIEF_VERLET)
 uniform float u_rate;  // 1 / seconds of this step
 #endif
 
-// Outputs of a step: a fragment's colours, or for compute variables that step.glsl stores in images.
+// Outputs of a step: fragment colours, or variables that step.glsl stores in images (compute).
 #if defined(RELIEF_COMPUTE)
 #define RELIEF_STATE_OUT(i)
 #else
@@ -29,7 +30,7 @@ uniform float u_rate;  // 1 / seconds of this step
 RELIEF_STATE_OUT(0) vec4 o_position;
 RELIEF_STATE_OUT(1) vec4 o_velocity;
 
-// Share of the lifetime that materials have cost the particle of this invocation.
+// Fraction of its lifetime that this invocation's particle has lost to materials.
 #if defined(RELIEF_MATERIAL_LOSS)
 float g_lost = 0.0;
 #endif
@@ -52,7 +53,7 @@ State stateAt(ivec2 texel) {
     return State(position.xyz, velocity.xyz, position.w, contact);
 }
 
-// The state after a step from `before`.
+// Writes the state after a step from `before`.
 void writeState(State before, State after) {
 #if defined(RELIEF_VERLET)
     vec3 displaced = (after.position - before.position) * u_rate;

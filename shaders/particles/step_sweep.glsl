@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The path of a particle in a step: sweepOf() finds the solid that it hits, sweepEnd() its position at the step's end after
-// a reaction that left it with velocity v on a surface of velocity `carried`. Without RELIEF_SWEEP only the end of the step
-// is tested, as in the paper.
+// The path of a particle in a step. sweepOf() finds the solid that it hits. sweepEnd() returns its position at the end
+// of the step after a reaction with resulting velocity v on a surface with velocity `carried`. Without RELIEF_SWEEP
+// only the end of the step is tested, as in the paper.
 struct Sweep {
-    vec3 v;       // the particle's velocity
-    vec3 from;    // the last point known to be free
-    vec3 to;      // the end of the piece that begins there: in `hit`, or the end of the step
-    float share;  // of the step, taken by this piece
-    bool first;   // this piece begins where the step does
-    float end;    // of this piece, as a share of the step
+    vec3 v;       // velocity of the particle
+    vec3 from;    // last point known to be free
+    vec3 to;      // end of the piece that starts there: inside `hit`, or the end of the step
+    float share;  // fraction of the step taken by this piece
+    bool first;   // this piece starts at the start of the step
+    float end;    // end of this piece, as a fraction of the step
     Solid hit;
 };
 
@@ -25,9 +25,9 @@ vec3 sweepEnd(Sweep sweep, vec3 carried, vec3 v, float contact, float radius) {
 
 #else
 
-uniform float u_sweep;  // the longest distance between two tests, world units
+uniform float u_sweep;  // maximum distance between two tests, world units
 
-// In pieces no longer than u_sweep; a particle faster than RELIEF_SWEEP of them allow is slowed down.
+// Tests pieces of at most u_sweep; a particle that moves more than RELIEF_SWEEP pieces is slowed down.
 Sweep sweepOf(vec3 p, vec3 v, float radius) {
     float distance = u_dt * length(v);
     float longest = float(RELIEF_SWEEP) * u_sweep;
@@ -41,8 +41,8 @@ Sweep sweepOf(vec3 p, vec3 v, float radius) {
     vec3 to = p + (share * u_dt) * v;
     float end = share;
 #if defined(RELIEF_TOUR)
-    // One loop for all maps of all pieces, and a flag that ends it: a compiler turns a loop with a break into nested loops, in
-    // which lanes wait for each other at every piece.
+    // A single loop over all maps of all pieces, ended by a flag: compilers turn a loop with a break into nested loops,
+    // in which lanes wait for each other at every piece.
     ReliefTour tour;
     reliefEnter(tour, to, 0);
     int i = 1;
@@ -59,7 +59,7 @@ Sweep sweepOf(vec3 p, vec3 v, float radius) {
                 end = (float(i) + 1.0) * share;
                 to = p + (end * u_dt) * v;
                 ++i;
-                // The map that saw the last point outside most often sees this one outside.
+                // The map that classified the last point as outside most often does so for this one.
                 reliefEnter(tour, to, tour.map);
             }
         }
@@ -77,15 +77,15 @@ Sweep sweepOf(vec3 p, vec3 v, float radius) {
     return Sweep(v, from, to, share, from == p, end, next);
 }
 
-// From the free point on for the piece's time. All pieces are tested against the end of the step: a particle that hit a
-// moving body in its first piece is carried for the rest of it.
+// Continues from the free point for the duration of the piece. All pieces are tested against the bodies at the end of
+// the step: a particle that hits a moving body in its first piece is carried for the rest of the step.
 vec3 goneOn(Sweep sweep, vec3 carried, vec3 v) {
     vec3 from = sweep.from;
     from += sweep.first ? ((1.0 - sweep.share) * u_dt) * carried : vec3(0.0);
     return from + (sweep.share * u_dt) * v;
 }
 
-// The same for a particle that was outside: it stays outside.
+// Likewise for a particle that was outside: it stays outside.
 vec3 goneOnOutside(Sweep sweep, vec3 carried, vec3 v, float radius) {
     vec3 to = goneOn(sweep, carried, v);
     if (aboveGround(to, radius) < 0.0 || solidFrom(to, radius, max(sweep.hit.map, 0)).distance < 0.0) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The collider by its depth maps, on an infinite floor. For each pixel the ray is followed through the combined field, in
-// two passes (trace.glsl).
+// Renders the collider from its depth maps, on an infinite floor. Each pixel's ray is traced through the combined field
+// in two passes (trace.glsl).
 //
-// With RELIEF_MESH the collider's mesh has been drawn before, and gives position and normal; the field still casts the
+// With RELIEF_MESH the collider's mesh was rendered before and provides position and normal; the field only casts
 // shadows.
 //!include picture/trace.glsl
 
@@ -17,19 +17,19 @@ uniform float u_ground;     // height of the floor
 uniform bool u_has_ground;
 uniform vec3 u_background;  // linear
 uniform vec3 u_clay;        // linear
-uniform int u_normals;      // averaged for shading: 1, 7 or 13
+uniform int u_normals;      // number averaged for shading: 1, 7 or 13
 
 #if defined(RELIEF_COARSE)
-layout(location = 0) out float o_distance;  // along forward; -1: missed
+layout(location = 0) out float o_distance;  // along forward; -1: no hit
 #else
 layout(location = 0) out vec4 o_color;
 #endif
 #if defined(RELIEF_MESH)
-uniform highp sampler2D u_mesh_normal;      // as ColliderMesh::View
+uniform highp sampler2D u_mesh_normal;      // see ColliderMesh::View
 uniform highp sampler2D u_mesh_depth;
 #endif
 
-// The ray of this pixel: its direction, and the part of it in the box and above the floor.
+// Returns the ray of this pixel: its direction, and the part inside the box and above the floor.
 vec3 rayDirection() {
     vec2 at = 2.0 * v_uv - 1.0;
     return u_forward + at.x * u_right + at.y * u_up;
@@ -56,7 +56,7 @@ void main() {
 
 #ifdef RELIEF_MESH
 
-// The mesh at this pixel, if it lies before the floor.
+// Returns the view distance of the mesh at this pixel if it is in front of the floor.
 float meshHit(float t_floor) {
     float depth = texelFetch(u_mesh_depth, ivec2(gl_FragCoord.xy), 0).r;
     float t = u_depth.y / (depth - u_depth.x);
@@ -69,13 +69,13 @@ vec3 meshNormal(vec3 to_eye) {
 
 #else
 
-// The maps' normals, one a texel, averaged over a few texels round p so that they shade smoothly.
+// Averages the maps' normals, constant within a texel, over a few texels around p for smooth shading.
 vec3 smoothNormal(vec3 p, vec3 to_eye) {
     vec3 n = to_eye;
     vec3 a, b;
     vec3 sum = vec3(0.0);
     for (int i = 0; i < u_normals; ++i) {
-        // The middle first, then six on a ring, then six on a second one.
+        // The centre first, then six on a ring, then six on a second ring.
         vec3 q = p;
         if (i > 0) {
             float ring = float((i + 5) / 6);
@@ -88,7 +88,7 @@ vec3 smoothNormal(vec3 p, vec3 to_eye) {
             other = n;
             basis(n, a, b);
         }
-        // Across a crease the average would lie about both sides.
+        // Across a crease the average would be wrong for both sides.
         sum += other * smoothstep(0.3, 0.8, dot(other, n));
     }
     return normalize(sum);
@@ -101,7 +101,7 @@ void main() {
     uint seed = uint(gl_FragCoord.x) * 1973u + uint(gl_FragCoord.y) * 9277u + 26699u;
     noise(seed);
 
-    // A calm gradient, lighter below; the floor has the same colour wherever it lies in full light.
+    // A soft gradient, lighter at the bottom; the floor matches it wherever it is fully lit.
     vec3 color = u_background * mix(1.16, 0.70, smoothstep(0.0, 1.0, v_uv.y));
 
     float t_floor = floorDistance(d);
@@ -134,7 +134,7 @@ void main() {
         vec3 sky;
         receive(start, n, seed, sun, sky);
         if (on_collider) {
-            // The sun wraps round a little, as clay scatters.
+            // The sunlight wraps around slightly, as on clay.
             float key = max((dot(n, u_sun) + 0.12) / 1.12, 0.0);
             float rim = pow(1.0 - max(dot(n, to_eye), 0.0), 4.0);
             color = u_clay * (0.86 * key * sun * SUN_COLOR + sky) + 0.05 * rim * SKY_COLOR;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colour and depth of a stored picture into the bound framebuffer, pixel by pixel.
+// Copies colour and depth of a stored picture to the bound framebuffer, pixel by pixel.
 //!include base/srgb.glsl
 uniform highp sampler2D u_color;
 uniform highp sampler2D u_depth_texture;
-uniform bool u_srgb;     // the target holds sRGB values
+uniform bool u_srgb;     // the target stores sRGB values
 
 layout(location = 0) out vec4 o_color;
 

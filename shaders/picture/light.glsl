@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The light that a point among collider and floor receives: a sun of some width, and a sky, both hidden by the collider's own
-// field along rays. For the collider's picture, which is kept; particles look the same light up (particle_light.glsl). Needs
-// collider.glsl.
+// The light at a point near collider and floor: a sun with a disc, and a sky, both occluded along rays by the
+// collider's field. Used for the picture of the collider, which is cached; particles look up the same light
+// (particle_light.glsl). Needs collider.glsl.
 //!include picture/sky.glsl
 //!include base/noise.glsl
 //!include picture/ray.glsl
@@ -12,7 +12,7 @@ uniform float u_scale;        // longest side of the bounds
 uniform float u_texel;        // object units of the finest texel
 uniform vec3 u_sun;           // unit vector towards it
 
-// The part of a ray p + t d, t in [t_min, t_max], that lies in the bounds; empty where x > y.
+// Returns the part of a ray p + t d, t in [t_min, t_max], inside the bounds; empty if x > y.
 vec2 clipToBounds(vec3 p, vec3 d, float t_min, float t_max) {
     vec3 near, far;
     slabs(p, d, u_bounds_min, u_bounds_max, near, far);
@@ -35,7 +35,7 @@ bool blocked(vec3 p, vec3 d, float reach, int steps, float jitter) {
     return false;
 }
 
-// Two unit vectors that stand on n and on each other (Duff et al., JCGT 2017).
+// Returns two unit vectors that form an orthonormal basis with n (Duff et al., JCGT 2017).
 void basis(vec3 n, out vec3 a, out vec3 b) {
     float s = n.z < 0.0 ? -1.0 : 1.0;
     float u = -1.0 / (s + n.z);
@@ -44,11 +44,11 @@ void basis(vec3 n, out vec3 a, out vec3 b) {
     b = vec3(v, s + n.y * n.y * u, -n.y);
 }
 
-// The light on a surface of normal n at p: `sun`, the visible share of the sun's disc, and `sky`, the light of sky and
-// floor, by cosine-weighted rays as long as shade reaches. All rays go through one loop of one body, with bounds that no
-// compiler knows: drivers that inline and unroll would else compile the field dozens of times.
+// Returns the light on a surface with normal n at p: `sun`, the visible fraction of the sun's disc, and `sky`, the
+// light of sky and floor, by cosine-weighted rays of limited length. All rays run through one loop whose bounds are
+// unknown to the compiler: otherwise drivers that inline and unroll would compile the field dozens of times.
 uniform ivec2 u_rays;       // towards the sun, towards the sky; at least 1 each
-uniform ivec2 u_ray_steps;  // samples of the field on each
+uniform ivec2 u_ray_steps;  // samples of the field per ray
 
 void receive(vec3 p, vec3 n, inout uint seed, out float sun, out vec3 sky) {
     float turn = noise(seed);

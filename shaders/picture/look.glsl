@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// The look of a particle at its age: key-frames of its type, from the texture of runtime/picture/particle_look.h.
-uniform highp sampler2D u_looks;  // a row for each type
+// The appearance of a particle at its age: keyframes of its type, from the texture of runtime/picture/particle_look.h.
+uniform highp sampler2D u_looks;  // one row per type
 
 struct Look {
     float size;      // diameter, object units
-    float opacity;   // fading included
-    float rotation;  // radians, anticlockwise
+    float opacity;   // including fading
+    float rotation;  // radians, counter-clockwise
     vec3 color;      // linear
-    float cell;      // of the atlas; -1: a soft disc
-    float lit;       // 1: the light falls on it, 0: it shines
+    float cell;      // atlas cell; -1: a soft disc
+    float lit;       // 1: lit, 0: emissive
 #ifdef RELIEF_STRETCH
     float stretch;   // seconds of its path that it covers
 #endif
 };
 
-// Uniform in [-1, 1), different for every particle and salt.
+// Returns a uniform number in [-1, 1), different for each particle and salt.
 float particleRandom(float id, uint salt) {
     uint seed = (uint(id) * 2u + salt) * 747796405u + 2891336453u;
     uint word = ((seed >> ((seed >> 28) + 4u)) ^ seed) * 277803737u;
@@ -25,7 +25,7 @@ int keyTexel(int key) {
     return RELIEF_LOOK_HEAD_TEXELS + RELIEF_LOOK_KEY_TEXELS * key;
 }
 
-// `birth` is the particle's texel: time of birth, time of death, type, id.
+// Returns the look. `birth`: the particle's texel: time of birth, time of death, type, id.
 Look lookOf(vec4 birth, float now) {
     int row = clamp(int(birth.z + 0.5), 0, textureSize(u_looks, 0).y - 1);
     vec4 cells = texelFetch(u_looks, ivec2(0, row), 0);
@@ -34,7 +34,7 @@ Look lookOf(vec4 birth, float now) {
     float left = birth.y - now;
     float part = clamp(age / max(birth.y - birth.x, 1e-6), 0.0, 1.0);
 
-    // The last key at or before this age, or the first.
+    // Find the last key at or before this age, or the first key.
     int count = int(light.w);
     int low = 0;
     for (int end = count; end - low > 1;) {

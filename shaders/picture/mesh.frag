@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The normal of the mesh at each pixel; collider_view.frag shades it.
+// Writes the normal of the mesh at each pixel; collider_view.frag shades it.
 in vec3 v_normal;
 
 layout(location = 0) out vec4 o_normal;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The soles of figures, seen along the zenith's map: what is no higher above its surface than u_sole.
+// Draws footprints: the parts of figures at most u_sole above their ground, seen in the zenith map's projection.
 uniform highp sampler2D u_zenith;
 uniform float u_sole;  // window depth
 

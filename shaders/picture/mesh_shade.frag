@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The meshes' colours in the light of sun and sky, under rain and snow, in fog.
+// Shades the meshes with sun and sky light, rain, snow and fog.
 //!include picture/sky.glsl
 //!include base/srgb.glsl
 //!include base/noise.glsl
@@ -7,11 +7,11 @@
 in vec2 v_uv;
 
 uniform highp sampler2D u_surface_color;   // sRGB; a: how much snow stays there
-uniform highp sampler2D u_surface_normal;  // w: 0 where there is nothing
+uniform highp sampler2D u_surface_normal;  // w: 0 for no surface
 uniform highp sampler2D u_surface_depth;
 uniform highp sampler2D u_sun_depth;
 uniform highp sampler2D u_zenith_depth;
-uniform highp sampler2D u_prints;  // as the zenith's map
+uniform highp sampler2D u_prints;  // in the projection of the zenith map
 
 uniform vec3 u_eye;
 uniform vec3 u_forward;  // the pixel's ray is eye + t (forward + x right + y up), t = distance along forward
@@ -61,7 +61,8 @@ float fractalNoise(vec3 p) {
     return 0.55 * smoothNoise(p) + 0.3 * smoothNoise(2.1 * p + 7.3) + 0.15 * smoothNoise(4.3 * p + 1.7);
 }
 
-// The share of a disc about p, of a radius in the world, that a parallel map sees no nearer surface before; 1 beyond the map.
+// Returns the fraction of a disc around p, with a world-space radius, that is unoccluded in a parallel map; 1 outside
+// the map.
 float openShare(highp sampler2D map, mat4 clip, vec3 p, float radius, float bias, inout uint seed) {
     vec3 at = 0.5 * (clip * vec4(p, 1.0)).xyz + 0.5;
     vec2 reach = (0.5 * radius) * vec2(length(vec3(clip[0].x, clip[1].x, clip[2].x)), length(vec3(clip[0].y, clip[1].y, clip[2].y)));
@@ -83,8 +84,8 @@ vec3 skyColor(vec3 d) {
     return mix(1.05 * u_background, zenith, smoothstep(0.0, 0.6, d.y));
 }
 
-// The share of the sky that near surfaces leave open, by the picture's own depths: of rays about the normal, those whose
-// ends lie before what the picture shows there.
+// Returns the fraction of the sky that nearby surfaces leave visible, from the picture's own depths: rays around the
+// normal count as unoccluded if their end is in front of the surface visible there.
 float cornerShare(vec3 p, vec3 n, float t, inout uint seed) {
     float open = 0.0;
     float turn = noise(seed);
@@ -139,7 +140,7 @@ void main() {
             slope += (there / 6.0) * off;
         }
 
-        // Snow lies on what is level, on rough places first.
+        // Snow collects on level surfaces, first on rough spots.
         float level = n.y + 0.25 * (grain - 0.5);
         float rough = 0.25 + 0.75 * fractalNoise(0.45 * q + 3.1);
         float lies = u_snow > 0.0 ? smoothstep(1.0 - u_snow - 0.12, 1.0 - u_snow + 0.12, rough) : 0.0;
@@ -160,10 +161,10 @@ void main() {
         vec3 sky = mix(FLOOR_COLOR, SKY_COLOR, 0.5 + 0.5 * shaded.y) * mix(1.9, 1.05, u_sunlight);
         sky *= open * mix(0.45, 1.0, overhead);
         vec3 lit = albedo * (2.0 * max(facing, 0.0) * sun * u_sunlight * SUN_COLOR + sky);
-        // Snow scatters light inside.
+        // Snow has subsurface scattering.
         lit += cover * 0.06 * SKY_COLOR * open;
 
-        // A film of water mirrors the sky, in puddles more than elsewhere.
+        // A film of water reflects the sky, more in puddles.
         float puddle = smoothstep(0.97, 0.995, n.y) * smoothstep(0.52, 0.62, fractalNoise(0.8 * q + 11.0));
         float film = wet * mix(0.35, 1.0, puddle);
         vec3 mirrored = reflect(d, mix(n, vec3(0.0, 1.0, 0.0), puddle));
@@ -172,7 +173,7 @@ void main() {
         lit = mix(lit, skyColor(vec3(mirrored.x, abs(mirrored.y), mirrored.z)) * mix(0.5, 1.0, overhead) + glint,
                   film * fresnel);
 
-        // Reinhard's curve, whose white is at 2, so that snow in the sun keeps its shape.
+        // Reinhard's curve with its white at 2, so that sunlit snow keeps its shape.
         lit *= (1.0 + lit * 0.25) / (1.0 + 0.35 * lit);
 
         float haze = 1.0 - exp(-t * length(ray) * u_per_fog);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colour and normal of the meshes at each pixel; mesh_shade.frag shades them.
+// Writes colour and normal of the meshes at each pixel; mesh_shade.frag shades them.
 in vec3 v_normal;
 in vec4 v_color;
 

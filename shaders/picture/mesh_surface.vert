@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh in its place.
+// Transforms a mesh into the world.
 layout(location = 0) in vec3 a_position;
 layout(location = 1) in vec3 a_normal;
 layout(location = 2) in vec4 a_color;  // sRGB, and how much snow stays there
 
-uniform bool u_colored;  // a_color is given
-uniform vec3 u_clay;     // sRGB, where it is not
-uniform mat4 u_place;  // a turn, one scale and a shift
+uniform bool u_colored;  // a_color is valid
+uniform vec3 u_clay;     // sRGB, used otherwise
+uniform mat4 u_place;  // a rotation, a uniform scale and a translation
 uniform mat4 u_clip;   // world to clip space
 
 out vec3 v_normal;

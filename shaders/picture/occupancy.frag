@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The share of a voxel that the collider takes: 1 where its middle is inside, and from there down to 0 at a distance of one
-// voxel. So a sheet between two middles, however thin, is at least ½.
+// Writes the fraction of a voxel that the collider occupies: 1 if its centre is inside, decreasing to 0 at a distance
+// of one voxel. A sheet between two centres thus gives at least ½, however thin it is.
 //!include collider/collider.glsl
 //!include picture/volume.glsl
 

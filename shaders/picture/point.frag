@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One sprite: a soft round sprite or, with RELIEF_CELLS, a cell of the atlas; either shaded as the half of a ball that
-// faces the viewer.
+// Paints a sprite: a soft disc or, with RELIEF_CELLS, a cell of the atlas; both are shaded as the hemisphere that faces
+// the viewer.
 //!include picture/sprite_paint.glsl
 
 flat in uvec3 v_shading;

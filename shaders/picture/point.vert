@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// Particles as sprites that face the viewer, straight from the state textures: nothing is read back. A particle is one
-// point or, with RELIEF_QUADS, two triangles of six vertices:
+// Renders particles as viewer-facing sprites directly from the state textures, without read-back. A particle is one
+// point or, with RELIEF_QUADS, two triangles with six vertices:
 //
-//     5───4 2      A quad turns in the picture's plane; a point stays upright and its fragments turn. Both
-//     │  ╱ ╱│      cover the same pixels of a sprite that does not turn.
+//     5───4 2      A quad rotates in the picture's plane. A point stays upright and its fragments rotate the
+//     │  ╱ ╱│      texture. Both cover the same pixels if the sprite is not rotated.
 //     3 0───1
 //
-// RELIEF_CELLS: for an atlas.
+// RELIEF_CELLS: use an atlas.
 //!include picture/sprite.glsl
 //!include picture/sprite_place.glsl
 
 flat out uvec3 v_shading;
 #ifdef RELIEF_CELLS
-flat out vec4 v_cell;    // cosine and sine of its rotation; cell, -1: a soft disc; pixels
+flat out vec4 v_cell;    // cosine and sine of its rotation; atlas cell, -1: a soft disc; pixels
 #endif
 #ifdef RELIEF_QUADS
-out vec2 v_at;           // in the picture's frame, -1…1 where the sprite does not turn, y upwards
+out vec2 v_at;           // in the picture's frame, -1…1 for an unrotated sprite, y upwards
 #endif
 
-void nothing() {  // beyond the far plane
+void nothing() {  // moves it beyond the far plane
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
     v_shading = uvec3(0u);
 #ifdef RELIEF_CELLS

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts the digits of each block. The first digit's pass also makes the elements, in the order of the indices.
+// Counts the digits of each block. The pass of the first digit also creates the elements, in order of index.
 //!include picture/radix.glsl
 #if defined(RELIEF_RADIX_FIRST)
 //!include picture/sort_key.glsl

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Moves the elements of each block to where its digits begin, those of one digit in the order in which they are. The
-// last digit's pass moves them to the order texture.
+// Moves the elements of each block to the positions of their digits, in stable order. The pass of the last digit writes
+// to the order texture.
 //!include picture/radix.glsl
 layout(std430, binding = 0) readonly buffer From { uvec2 b_from[]; };
 #if defined(RELIEF_RADIX_LAST)
@@ -25,7 +25,7 @@ void store(uint rank, uvec2 element) {
 #endif
 }
 
-/// The number of invocations before this one that have its digit.
+/// Returns the number of preceding invocations with the same digit.
 uint before(uint digit, uint word, uint flag) {
     uint sum = uint(bitCount(s_flags[word][digit] & (flag - 1u)));
     for (uint i = 0u; i < word; ++i) {
@@ -34,7 +34,7 @@ uint before(uint digit, uint word, uint flag) {
     return sum;
 }
 
-/// The number that have the digit that this invocation manages; clears its flags.
+/// Returns the number of invocations with the digit that this invocation manages, and clears its flags.
 uint takeFlags(uint self) {
     uint sum = 0u;
     for (uint i = 0u; i < kWords; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A group a digit: its counts become sums over the blocks before, and b_totals has the sum over all.
+// One group per digit: replaces its counts by the sums over preceding blocks, and writes the total to b_totals.
 //!include picture/radix.glsl
 layout(std430, binding = 2) buffer Counts { uint b_counts[]; };
 layout(std430, binding = 3) writeonly buffer Totals { uint b_totals[]; };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Steps along a ray through the collider's field. Among placed bodies (world.glsl), a point that no box of a body holds is
-// followed by the next box on the ray. Needs collider.glsl.
+// Steps along a ray through the collider's field. With placed bodies (world.glsl), points outside all boxes skip to the
+// next box on the ray. Needs collider.glsl.
 
-// Where a ray p + t d enters and leaves the three slabs of a box.
+// Returns where a ray p + t d enters and leaves the three slabs of a box.
 void slabs(vec3 p, vec3 d, vec3 box_min, vec3 box_max, out vec3 near, out vec3 far) {
     vec3 safe = vec3(abs(d.x) < 1e-9 ? 1e-9 : d.x, abs(d.y) < 1e-9 ? 1e-9 : d.y, abs(d.z) < 1e-9 ? 1e-9 : d.z);
     vec3 a = (box_min - p) / safe;
@@ -13,9 +13,9 @@ void slabs(vec3 p, vec3 d, vec3 box_min, vec3 box_max, out vec3 near, out vec3 f
 
 #if RELIEF_BODIES > 0 && RELIEF_PLACED
 
-const int BOXES_MAX = 1024;  // of more bodies the search would take longer than the steps
+const int BOXES_MAX = 1024;  // with more bodies, the search would take longer than the steps
 
-// The first t from `from` on at which the ray is in the box of a body, or `end`.
+// Returns the first t from `from` on at which the ray is in the box of a body, or `end`.
 float nextBox(vec3 origin, vec3 d, float from, float end) {
     int bodies = reliefBodyCount();
     float next = bodies > BOXES_MAX ? from : end;
@@ -31,7 +31,7 @@ float nextBox(vec3 origin, vec3 d, float from, float end) {
     return next;
 }
 
-// Whether the ray is inside at t; `next`: where to look after t, at least `stride` on, while it is not.
+// Returns whether the ray is inside at t. `next`: the next t to test while outside, at least `stride` further.
 bool insideAt(vec3 origin, vec3 d, float t, float stride, float end, out float next) {
     int body;
     bool inside = reliefInside(reliefUnion(origin + t * d, 0.0, false, body));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The mean of factor × factor linear pixels, as sRGB.
+// Averages factor × factor linear pixels and converts to sRGB.
 //!include base/srgb.glsl
 uniform highp sampler2D u_color;
 uniform int u_factor;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The share of the sky from above, cosine-weighted, that each voxel sees past the collider: rays through the occupied
-// voxels, a voxel at a time, as long as shade reaches. All voxels send the same rays, so that neighbours agree.
+// Writes the cosine-weighted fraction of the sky that each voxel sees past the collider: rays of limited length through
+// the occupied voxels, in steps of one voxel. All voxels use the same rays, so that neighbours are consistent.
 //!include picture/sky.glsl
 //!include picture/volume.glsl
 
 uniform highp sampler3D u_occupied;
 uniform vec3 u_occupied_shift;  // object space to 0…1 of u_occupied: u_occupied_scale · (p - shift)
 uniform vec3 u_occupied_scale;
-uniform int u_sky_rays;         // for each voxel
-uniform int u_sky_steps;        // of a ray
+uniform int u_sky_rays;         // per voxel
+uniform int u_sky_steps;        // per ray
 
 layout(location = 0) out float o_share;
 
@@ -18,14 +18,14 @@ float occupied(vec3 p) {
     return within ? textureLod(u_occupied, at, 0.0).r : 0.0;
 }
 
-// The start of a voxel's rays. Voxels are looked up on surfaces, too: one that a surface crosses, or that lies just below
-// one, starts above it if that faces upwards. Below one that faces downwards it stays in the dark.
+// Returns the start of a voxel's rays. Voxels are also looked up on surfaces. If an upward surface crosses the voxel or
+// lies just above it, the rays start above that surface. Below a downward surface, the voxel stays dark.
 vec3 startAt(vec3 p) {
     float here = occupied(p);
     vec2 step = vec2(u_voxel, 0.0);
     vec3 away = vec3(occupied(p - step.xyy) - occupied(p + step.xyy), occupied(p - step.yxy) - occupied(p + step.yxy),
                      occupied(p - step.yyx) - occupied(p + step.yyx));
-    away.y += 0.2;  // a sheet through the middle faces both ways
+    away.y += 0.2;  // a sheet through the centre faces both ways
     return here > 0.0 && away.y > 0.0 ? p + (u_voxel * (here < 1.0 ? here : 2.0)) * normalize(away) : p;
 }
 

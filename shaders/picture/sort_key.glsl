@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sort key of a particle: the bits of its squared distance to the eye, which grow as it does; 0 for the dead.
+// The sort key of a particle: the bits of its squared distance to the eye, which are ordered like the distance; 0 for
+// dead particles.
 //
-// As uints the keys have one order on every machine: no NaN, no flushed denormal, no fused multiply in the way.
+// Comparing keys as uints gives the same order on every machine: no NaN, flushed denormals or fused multiplications
+// interfere.
 uniform highp sampler2D u_position;
-uniform int u_width;  // texels in a row of u_position
+uniform int u_width;  // texels per row of u_position
 uniform vec3 u_eye;
 
 uint sortKey(int index) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Refreshes the keys of an order for the present places of particles and viewer; the order itself stays.
+// Updates the keys of an order for the current positions of particles and viewer, without reordering.
 //
-//     order texture, uint    x   index of the particle that is drawn rank-th
-//                            y   sortKey(); 0 for the dead and the absent
+//     order texture, uint    x   index of the particle to draw at this rank
+//                            y   sortKey(); 0 for dead and missing particles
 //!include picture/sort_key.glsl
 
 uniform highp usampler2D u_order;
-uniform int u_kept;    // ranks below it hold an order; from it on rank i gets index i
-uniform int u_extent;  // indices from it on are absent
+uniform int u_kept;    // lower ranks have an order; rank i from here on gets index i
+uniform int u_extent;  // indices from here on are missing
 
 layout(location = 0) out uvec2 o_element;
 

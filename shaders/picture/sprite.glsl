@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes the sprite of the particle that is drawn i-th: its look at its age, its place in view space, and the light that it
-// receives. With RELIEF_LIT the collider shades the particles (particle_light.glsl); else they lie in the open.
+// Computes the sprite of the i-th particle to draw: its look at its age, its position in view space, and its light.
+// With RELIEF_LIT the collider shades the particles (particle_light.glsl); otherwise they are unoccluded.
 //!include picture/look.glsl
 //!include picture/sprite_shading.glsl
 //!include picture/sprite_light.glsl
@@ -13,24 +13,24 @@ uniform highp sampler2D u_birth;
 #ifdef RELIEF_STRETCH
 uniform highp sampler2D u_velocity;
 #endif
-uniform highp usampler2D u_order;  // row by row: the index of the i-th sprite; 0 where there is none
+uniform highp usampler2D u_order;  // row by row: the index of the i-th sprite; 0 if there is none
 uniform bool u_ordered;
 uniform int u_width;
 uniform int u_extent;
 uniform float u_now;
 uniform mat4 u_view;
-uniform float u_pixels_per_unit;   // pixels of a unit length at view distance 1
-uniform vec2 u_pixels;             // least and largest sprite
+uniform float u_pixels_per_unit;   // pixels per unit length at view distance 1
+uniform vec2 u_pixels;             // minimum and maximum sprite size
 uniform float u_texel;             // object units of the collider's finest texel
 
-// The particle of the i-th sprite; -1: none.
+// Returns the particle of the i-th sprite; -1: none.
 int particleOf(int i) {
     int width = textureSize(u_order, 0).x;
     uvec4 rank = texelFetch(u_order, ivec2(i % width, i / width), 0);
     return rank.y != 0u ? int(min(rank.x, 2147483647u)) : -1;
 }
 
-// The light that falls on the particle. A little above it: on a surface it would be half inside.
+// Computes the light on the particle, slightly above it: on a surface the point would be half inside.
 void receiveLight(vec3 position, float size, float id, inout Shading shading) {
 #ifdef RELIEF_LIT
     if (shading.lit) {
@@ -42,7 +42,7 @@ void receiveLight(vec3 position, float size, float id, inout Shading shading) {
 #endif
 }
 
-// Smaller sprites, in pixels, have one light all over: that of the middle of their half ball.
+// Smaller sprites, in pixels, are lit uniformly, with the normal at the middle of their hemisphere.
 const float SPRITE_FLAT_PIXELS = 4.0;
 const vec3 SPRITE_FLAT_NORMAL = vec3(0.0, 0.0, 0.75);
 
@@ -52,15 +52,15 @@ struct Sprite {
     float distance;  // view distance, > 0
     float pixels;
     float rotation;
-    float cell;      // of the atlas; -1: a soft disc
+    float cell;      // atlas cell; -1: a soft disc
     Shading shading;
 #ifdef RELIEF_STRETCH
-    vec3 tail;       // view space, from the center: where a stretched sprite's other end is
+    vec3 tail;       // view space, relative to the center: the other end of a stretched sprite
     bool stretched;
 #endif
 };
 
-// The i-th sprite; false where there is none.
+// Computes the i-th sprite; returns false if there is none.
 bool spriteOf(int rank, out Sprite sprite) {
     int index = u_ordered ? particleOf(rank) : rank;
     if (index < 0 || index >= u_extent) {
@@ -78,11 +78,11 @@ bool spriteOf(int rank, out Sprite sprite) {
     sprite.distance = max(-sprite.center.z, 1e-6);
     sprite.rotation = look.rotation;
     sprite.cell = look.cell;
-    // Below the least size a sprite keeps its light by losing opacity instead.
+    // Below the minimum size, a sprite keeps its total light by reducing opacity.
     float wanted = look.size * u_pixels_per_unit / sprite.distance;
     sprite.pixels = clamp(wanted, u_pixels.x, u_pixels.y);
     float cover = min(wanted / sprite.pixels, 1.0);
-    // The edge falls off over a third of the radius, and over a pixel at least.
+    // The edge fades over a third of the radius, but at least over a pixel.
     float per_edge = min(1.0 / SPRITE_EDGE, 0.5 * sprite.pixels);
     sprite.shading = Shading(look.color, look.opacity * cover * cover, 1.0, 1.0, per_edge, look.lit > 0.5);
 #ifdef RELIEF_STRETCH

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The light on a sprite: on the half of a ball that faces the viewer, where its normal in view space is n.
+// The light on a sprite: on the hemisphere that faces the viewer, with the view-space normal n.
 //!include picture/sky.glsl
 
 uniform vec3 u_sun_view;  // unit vectors in view space
 uniform vec3 u_up_view;
 
-// `sun`, `sky`: the visible shares of them.
+// `sun`, `sky`: their visible fractions.
 vec3 spriteLight(vec3 n, float sun, float sky) {
-    // Snow scatters: the terminator is soft, and no side is dark.
+    // Snow scatters light: the terminator is soft, and no side is dark.
     float key = 0.72 * sun * (0.42 + 0.58 * max((dot(n, u_sun_view) + 0.5) / 1.5, 0.0));
 #ifdef RELIEF_LIT
     vec3 above = mix(SKY_HIDDEN, 1.0, sky) * skylightOpen();

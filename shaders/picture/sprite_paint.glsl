@@ -6,17 +6,17 @@
 
 uniform float u_soft;             // object units; 0: hard edges
 uniform vec2 u_depth;             // window depth of view distance t: x + y / t
-uniform bool u_srgb;              // the target holds sRGB values
+uniform bool u_srgb;              // the target stores sRGB values
 
 #ifdef RELIEF_CELLS
 uniform highp sampler2D u_atlas;  // linear, premultiplied by alpha
 uniform ivec2 u_cells;            // columns, rows
-uniform float u_levels_max;       // above it cells would run into each other
+uniform float u_levels_max;       // at higher levels, cells would bleed into each other
 
-// A cell of the atlas at a place of it, -1…1, y upwards, where it is so many pixels wide.
+// Samples a cell of the atlas at a position in -1…1, y upwards; pixels: width of the cell on screen.
 vec4 cellAt(vec2 at, float number, float pixels) {
     vec2 size = vec2(textureSize(u_atlas, 0)) / vec2(u_cells);
-    // The level at which a texel is a pixel: known, as the sprite's size is.
+    // The level at which a texel covers a pixel follows from the sprite's size.
     float level = clamp(floor(log2(max(size.x, size.y) / pixels) + 0.5), 0.0, u_levels_max);
     vec2 edge = 0.5 * exp2(level) / size;  // half a texel: filtering must not reach the next cell
     int cell = int(number) % (u_cells.x * u_cells.y);
@@ -25,19 +25,19 @@ vec4 cellAt(vec2 at, float number, float pixels) {
 }
 #endif
 
-// A round sprite, by the share of its radius: its edge is a smooth step.
+// Returns the coverage of a round sprite by the fraction of its radius: its edge is a smooth step.
 vec4 bodyAt(vec2 at, float radius, float per_edge) {
     float inside = clamp((1.0 - radius) * per_edge, 0.0, 1.0);
     return vec4(inside * inside * (3.0 - 2.0 * inside));
 }
 
 #ifdef RELIEF_CELLS
-// The sprite at a place in the picture's frame: colour times alpha, and alpha.
-// `cell`: cosine and sine of its rotation; cell, -1: a soft disc; pixels
+// Samples the sprite at a position in the picture's frame: premultiplied colour, and alpha.
+// `cell`: cosine and sine of its rotation; atlas cell, -1: a soft disc; pixels
 vec4 bodyAt(vec2 at, float radius, float per_edge, vec4 cell) {
     if (cell.z >= 0.0) {
         vec2 own = vec2(cell.x * at.x + cell.y * at.y, cell.x * at.y - cell.y * at.x);
-        // The corners of a turned cell stand out of its point.
+        // The corners of a rotated cell extend beyond its point.
         return max(abs(own.x), abs(own.y)) > 1.0 ? vec4(0.0) : cellAt(own, cell.z, cell.w);
     }
     return bodyAt(at, radius, per_edge);
@@ -48,13 +48,13 @@ float distanceOf(float depth) {
     return u_depth.y / (depth - u_depth.x);
 }
 
-// The share of a sprite, at the window depth of its front, that is left before the depth `behind`.
+// Returns the fraction of a sprite, with its front at window depth `depth`, that remains visible in front of `behind`.
 float softShare(float behind, float depth) {
     return clamp((distanceOf(behind) - distanceOf(depth)) / u_soft, 0.0, 1.0);
 }
 
-// Colour times alpha, and alpha, at a place of the sprite, -1…1; alpha 0 where nothing is seen.
-// `body`: the sprite there, premultiplied; `shown`: its opacity.
+// Returns premultiplied colour, and alpha, at a position of the sprite in -1…1; alpha is 0 if invisible. `body`: the
+// sprite there, premultiplied; `shown`: its opacity.
 vec4 paintOf(Shading shading, vec2 at, float radius, vec4 body, float shown) {
     float alpha = shown * body.a;
     if (alpha <= SPRITE_UNSEEN) {

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// The place of a sprite in the picture. Needs sprite.glsl.
+// The position of a sprite in the picture. Needs sprite.glsl.
 uniform mat4 u_projection;
 uniform vec2 u_target;            // pixels
 uniform vec2 u_depth;             // window depth of view distance t: x + y / t
 
-// The distance of a sprite's front, as a share of that of its centre. The depth is that of the front, so that sprites on a
-// surface are not half sunk into it; the place in the picture that of the centre. A large sprite's front does not pass the
-// near plane before its centre does.
+// Returns the distance of a sprite's front as a fraction of that of its centre. Depth uses the front, so that sprites
+// on a surface are not half hidden by it; the position in the picture uses the centre. A large sprite's front does not
+// pass the near plane before its centre does.
 float nearerShare(float size, float distance) {
     float near = -u_depth.y / u_depth.x;
     return max(1.0 - 0.5 * size / distance, clamp(1.01 * near / distance, 0.05, 1.0));
 }
 
-// In clip space: the centre, at the depth of the front.
+// Returns the clip-space position of the centre, at the depth of the front.
 vec4 placeOf(Sprite sprite) {
     vec4 place = u_projection * vec4(sprite.center, 1.0);
     float nearer = nearerShare(sprite.size, sprite.distance);
@@ -22,7 +22,7 @@ vec4 placeOf(Sprite sprite) {
 }
 
 #ifdef RELIEF_STRETCH
-// Pixels from a sprite's centre to its tail, as far as that is in front of the viewer.
+// Returns the pixels from a sprite's centre to its tail, clipped in front of the viewer.
 vec2 tailOf(Sprite sprite) {
     if (!sprite.stretched) {
         return vec2(0.0);
@@ -35,7 +35,7 @@ vec2 tailOf(Sprite sprite) {
 }
 #endif
 
-// Cosine and sine of a sprite's rotation in the picture. A stretched one's right side is its head.
+// Returns cosine and sine of a sprite's rotation in the picture. The right side of a stretched sprite is its head.
 vec2 turnOf(Sprite sprite, vec2 tail) {
 #ifdef RELIEF_STRETCH
     if (sprite.stretched) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shading of a sprite, passed from vertices to fragments. Setting up flat varyings for each small point, and unpacking
-// them in each fragment, is most of its cost. So all is packed into three words, and light that is constant over a sprite is
-// already in its colour:
+// The shading of a sprite, passed from vertices to fragments. Setting up flat varyings for each small point, and
+// unpacking them in each fragment, is most of a sprite's cost. The shading is therefore packed into three words, and
+// light that is constant over a sprite is multiplied into its colour:
 //
 //     bits   0…15          16…31
 //     x      red           green          half of the colour, linear
@@ -10,14 +10,14 @@
 struct Shading {
     vec3 color;      // 0…2
     float opacity;
-    float sun;       // visible share of the sun's disc
-    float sky;       // of the sky
-    float per_edge;  // 1 / the share of the radius over which it fades, 0…1 / SPRITE_EDGE
-    bool lit;        // fragment by fragment, by sun and sky
+    float sun;       // visible fraction of the sun's disc
+    float sky;       // visible fraction of the sky
+    float per_edge;  // 1 / the fraction of the radius over which it fades, 0…1 / SPRITE_EDGE
+    bool lit;        // lit per fragment by sun and sky
 };
 
-const float SPRITE_EDGE = 0.35;  // the least
-const float SPRITE_UNSEEN = 0.003;  // less opaque ones are left out
+const float SPRITE_EDGE = 0.35;  // minimum fade
+const float SPRITE_UNSEEN = 0.003;  // less opaque sprites are skipped
 
 uint quantized(float value, float steps) {
     return uint(clamp(value, 0.0, 1.0) * steps + 0.5);

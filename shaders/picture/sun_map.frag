@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The collider seen from the sun, along parallel rays from a plane beyond it, in two passes (trace.glsl), for
-// particle_light.glsl. Parts thinner than four texels across the rays may be missed.
+// Renders the collider seen from the sun, along parallel rays from a plane beyond it, in two passes (trace.glsl), for
+// particle_light.glsl. Parts thinner than four texels perpendicular to the rays may be missed.
 //!include picture/trace.glsl
 
 in vec2 v_uv;
 
-uniform vec3 u_corner;  // of the map's texel (0, 0), on the plane where the rays start
+uniform vec3 u_corner;  // corner of texel (0, 0), on the plane where the rays start
 uniform vec3 u_across;  // from there to the other corners, object units
 uniform vec3 u_along;
 
-layout(location = 0) out float o_distance;  // from the plane to the collider. Coarse: -1 where there is none
+layout(location = 0) out float o_distance;  // from the plane to the collider. Coarse pass: -1 for no hit
 
 void main() {
     vec3 origin = u_corner + v_uv.x * u_across + v_uv.y * u_along;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds each tile's entries among all. A work group paints those of its tile one by one, so that a whole cloud in a few
-// tiles would take longer than drawing its points: then these are drawn.
+// Finds the range of entries of each tile. A work group paints the entries of its tile one by one. If a whole cloud
+// lies in a few tiles, that would take longer than drawing the points, which are then drawn instead.
 layout(local_size_x = RELIEF_RADIX_DIGITS) in;
 //!include picture/tile.glsl
 layout(std430, binding = 0) readonly buffer Entries { uvec2 b_entries[]; };
 layout(std430, binding = 2) writeonly buffer Bounds { uvec2 b_bounds[]; };
 layout(std430, binding = 3) buffer Work { uint b_work[RELIEF_TILE_WORDS]; };
 
-// The number of entries of higher tiles, which come first.
+// Returns the number of entries of higher tiles, which come first.
 uint entriesAbove(int tile) {
     uint low = 0u;
     uint high = b_work[0];

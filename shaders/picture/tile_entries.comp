@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes an entry for each tile of each sprite.
+// Writes an entry for each tile of each sprite.
 //!include picture/radix.glsl
 //!include picture/tile.glsl
 layout(std430, binding = 0) readonly buffer Sprites { uvec4 b_sprites[]; };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A work group paints a tile: its sprites from the last to the first, which is the nearest to the farthest where they are
-// sorted, until nothing behind is visible.
+// Paints a tile per work group: its sprites from the last to the first, which is from the nearest to the farthest if
+// they are sorted, until the background is no longer visible.
 layout(local_size_x = RELIEF_TILE_SIDE, local_size_y = RELIEF_TILE_SIDE) in;
 //!include picture/sprite_paint.glsl
 //!include picture/tile.glsl
@@ -12,21 +12,21 @@ layout(std430, binding = 3) readonly buffer Work { uint b_work[RELIEF_TILE_WORDS
 layout(rgba16f, binding = 0) writeonly uniform highp image2D u_layer;
 
 uniform highp sampler2D u_hides;   // window depth of the target
-uniform bool u_hidden;             // it has one
+uniform bool u_hidden;             // u_hides is valid
 uniform highp sampler2D u_behind;  // window depth behind the sprites
-uniform bool u_adds;               // sprites are added, and hide nothing
+uniform bool u_adds;               // additive sprites, which hide nothing
 
 const uint BATCH = uint(RELIEF_TILE_SIDE * RELIEF_TILE_SIDE);
-// Below 1/1024, invisible in 8 bits a channel.
+// Below 1/1024, the background is invisible at 8 bits per channel.
 const float CLEAR = 1.0 / 1024.0;
-// Of the squared radius: the corners of a cell count, those of a disc do not.
+// Limit of the squared radius: includes the corners of a cell, but not those of a disc.
 #ifdef RELIEF_CELLS
 const float MOST_SQUARE = 2.01;
 #else
 const float MOST_SQUARE = 1.0;
 #endif
 
-shared uint s_open;       // some invocation still sees the background
+shared uint s_open;       // an invocation still sees the background
 shared uvec4 s_place[RELIEF_TILE_SIDE * RELIEF_TILE_SIDE];
 shared uvec4 s_paint[RELIEF_TILE_SIDE * RELIEF_TILE_SIDE];
 #if defined(RELIEF_CELLS) || defined(RELIEF_STRETCH)
@@ -34,8 +34,8 @@ shared uvec4 s_paint[RELIEF_TILE_SIDE * RELIEF_TILE_SIDE];
 shared uvec2 s_turn[RELIEF_TILE_SIDE * RELIEF_TILE_SIDE];
 #endif
 
-// The place within a sprite of a pixel whose centre is `away` from its middle: in the picture's frame, -1…1 where it does not
-// turn. Beyond 2: outside.
+// Returns the position within a sprite of a pixel whose centre is offset by `away` from the sprite's: in the picture's
+// frame, -1…1 for an unrotated sprite. Values beyond 2 are outside.
 vec2 placeIn(uint i, vec2 away, float pixels) {
 #if defined(RELIEF_QUADS) && defined(TURNS)
     vec2 turn = unpackSnorm2x16(s_turn[i].x);
@@ -57,7 +57,7 @@ void main() {
     float hides = u_hidden ? texelFetch(u_hides, known, 0).r : 1.0;
     float behind = u_soft > 0.0 ? texelFetch(u_behind, known, 0).r : 1.0;
     vec4 sum = vec4(0.0);
-    float clear = known == pixel ? 1.0 : 0.0;  // visible share of the background
+    float clear = known == pixel ? 1.0 : 0.0;  // visible fraction of the background
     for (uint end = b_work[6] == 0u ? bounds.y : first; end > first;) {
         uint count = min(end - first, BATCH);
         if (self < count) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// One work group: the first entry of each group of sprites, and whether there is room for all.
+// In one work group: computes the first entry of each group of sprites, and whether there is room for all.
 //!include picture/radix.glsl
-layout(std430, binding = 2) buffer Counts { uint b_counts[]; };  // of u_blocks groups
+layout(std430, binding = 2) buffer Counts { uint b_counts[]; };  // for u_blocks groups
 layout(std430, binding = 3) writeonly buffer Work { uint b_work[RELIEF_TILE_WORDS]; };
 
 uniform uint u_room;      // entries, less than MOST
-uniform uint u_vertices;  // of a sprite
+uniform uint u_vertices;  // per sprite
 
-// An invocation counts no further, so that all sums fit 32 bits; there is no room for so many anyway.
+// Each invocation stops counting here, so that all sums fit into 32 bits; there is no room for that many anyway.
 const uint MOST = 0xffffffu;
 
 void main() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes the sprites, each once, and counts the tiles of each group of them.
+// Computes each sprite once, and counts the tiles of each group of sprites.
 //!include picture/radix.glsl
 //!include picture/sprite.glsl
 //!include picture/sprite_place.glsl
@@ -7,7 +7,7 @@
 layout(std430, binding = 0) writeonly buffer Sprites { uvec4 b_sprites[]; };
 layout(std430, binding = 2) writeonly buffer Counts { uint b_counts[]; };
 
-// Larger sprites, or farther away from the picture, are left out.
+// Sprites that are larger, or farther outside the picture, are skipped.
 const float MOST_PIXELS = 1e20;
 
 shared uint s_count;
@@ -25,7 +25,8 @@ void main() {
     Sprite sprite;
     if (rank < u_count && spriteOf(int(rank), sprite)) {
         vec4 clip = placeOf(sprite);
-        // Between the near and the far plane. Its centre may be out of the picture. Packing rounds its opacity.
+        // Keep sprites between the near and far planes; their centre may be outside the picture. Packing rounds the
+        // opacity.
         if (clip.w > 0.0 && abs(clip.z) <= clip.w && sprite.shading.opacity > SPRITE_UNSEEN - 1e-4) {
             vec3 window = 0.5 * clip.xyz / clip.w + 0.5;
             vec2 at = window.xy * u_target;
