@@ -5,8 +5,8 @@
 // An orthographic map looks along +z of its map coordinates. T = object_to_map maps the map's volume to the unit cube.
 // In the texture, x runs to the right and y upwards (row 0 is y = 0); z runs from near to far:
 //
-//          y                         the outermost ring of texels is an empty border: the volume that the
-//          ^   +--+--+--+--+         map speaks for is inside it
+//          y                         the outermost ring of texels is an empty border; the map only represents the
+//          ^   +--+--+--+--+         volume inside it
 //        1 |   |  |  |  |  |
 //          |   |  |##|##|  |         texel (i, j) is centred on ((i + ½)/width, (j + ½)/height)
 //        0 +   +--+--+--+--+--> x
@@ -74,7 +74,7 @@ inline constexpr float kFarOutside = 1e30F;
 inline constexpr float kFarInside = -16777215.0F * 2.028240960365167e31F;
 
 /// Map size limit, along with kMapSizeMax; `container.h` rejects files beyond them.
-inline constexpr std::uint32_t kMapSizeMin = 3;  ///< orthographic: one texel inside the border
+inline constexpr std::uint32_t kMapSizeMin = 3;  ///< for orthographic maps: one texel inside the border
 
 struct DepthMap {
     MapFormat format = MapFormat::kFixed8;

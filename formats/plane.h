@@ -18,6 +18,7 @@ struct TexelRay {
     [[nodiscard]] glm::dvec3 at(double depth) const { return origin + depth * direction; }
 };
 
+/// Returns the ray through the centre of a texel.
 /// \param map   a valid frame (validate.h); texels may be missing.
 /// \param face  0 for an orthographic map.
 [[nodiscard]] TexelRay texelRay(const DepthMap& map, std::uint32_t face, std::uint32_t x, std::uint32_t y);

@@ -6,9 +6,9 @@
 //     fixed8              4    R = normal s   G = normal t   B = depth high byte   A = depth low byte
 //     front-back half     8    R = packed normal of the front   G = of the back     four little-endian uint16
 //                              B = half-float depth of the front   A = of the back
-//     front-back fixed    8    the same with 16-bit fixed-point depths, as fixed8's
+//     front-back fixed    8    likewise with 16-bit fixed-point depths as in fixed8
 //     cube8               4    as fixed8, in six faces
-//     patches             8    a record of a tree, or heights: patch_tree.h; the functions below are for the others
+//     patches             8    a record of a tree, or heights: see patch_tree.h. The functions below exclude this format
 //
 // With the 11 significant bits of a half, depths over a box of length 2 are off by 2·10^-4 on average. Fixed point is
 // 32 times finer in the far half of the volume. Half floats are the paper's choice.

@@ -4,7 +4,7 @@
 //
 //     clip ── keys ──▶ nodes' transforms, weights of targets          (MeshPose)
 //                          │                   │
-//     position + Σ weight · delta  ──▶  Σ weight · joint · that        glTF 2.0, 3.7.2.2 and 3.7.3.1
+//     position + Σ weight · delta  ──▶  Σ weight · joint · position     glTF 2.0, 3.7.2.2 and 3.7.3.1
 //
 // Nodes that place a mesh without a skin also count as joints, of weight 1. Machines and characters share one path.
 #pragma once

@@ -78,7 +78,7 @@ struct FieldType {
     const FieldCustom* custom = nullptr;
 
     void* (*blank)() = nullptr;                  ///< a default value; read-only
-    FieldItems (*items)(void* value) = nullptr;  ///< of a list or an optional
+    FieldItems (*items)(void* value) = nullptr;  ///< list or optional
     void* (*add)(void* value) = nullptr;   ///< appends an element to a list, or emplaces an optional's value
     void (*clear)(void* value) = nullptr;  ///< of a list
     FieldRef (*chosen)(void* value) = nullptr;  ///< of a variant

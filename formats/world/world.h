@@ -85,7 +85,7 @@ struct World {
     std::string unit;
     std::vector<WorldCollider> colliders;
     std::vector<WorldBody> bodies;
-    std::vector<MaterialResponse> materials;  ///< responses by name, of all colliders
+    std::vector<MaterialResponse> materials;  ///< responses by name, for all colliders
 };
 
 inline constexpr std::array<std::string_view, 2> kWorldUnits{"m", ""};

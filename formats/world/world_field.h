@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The field of a world at a point: the union of its bodies, as shaders make it of theirs.
+// The field of a world at a point: the union of its bodies, as in the shaders.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,10 @@
 namespace relief {
 
 struct WorldSample {
-    /// Signed distance in world units, as that of a FieldSample times the body's scale; meaningless where body is −1.
+    /// Signed distance in world units: that of a FieldSample times the body's scale. Undefined if body is −1.
     float distance = 0.0F;
-    glm::vec3 normal{0.0F};  ///< world space; zero where it is unknown
-    int body = -1;           ///< the deepest or nearest; the first of equals; −1 where every body abstains
+    glm::vec3 normal{0.0F};  ///< world space; zero if unknown
+    int body = -1;           ///< deepest or nearest body, the first of equals; −1 if every body abstains
 
     [[nodiscard]] bool inside() const { return body >= 0 && distance < 0.0F; }
 };
@@ -31,24 +31,23 @@ class WorldField {
         return loaded_.colliders[world().bodies[body].collider];
     }
 
-    /// The least distance of all bodies.
+    /// Returns the minimum distance to all bodies.
     [[nodiscard]] WorldSample evaluate(const glm::vec3& p) const;
-    /// The least distance of some bodies. \param bodies  in rising order.
+    /// Returns the minimum distance to some bodies. \param bodies  in ascending order.
     [[nodiscard]] WorldSample evaluate(const glm::vec3& p, std::span<const std::uint32_t> bodies) const;
-    /// The bodies that may hold a point of a box: of any other the point is outside. In rising order.
+    /// Returns the bodies that may contain a point of a box; the box is outside all others. In ascending order.
     [[nodiscard]] std::vector<std::uint32_t> bodiesIn(const Bounds& box) const;
 
     [[nodiscard]] glm::vec3 toObject(std::size_t body, const glm::vec3& p) const;
-    /// \param v  a vector of object space; its length is multiplied by the scale.
+    /// Transforms a vector to world space; its length is multiplied by the scale. \param v  in object space.
     [[nodiscard]] glm::vec3 turn(std::size_t body, const glm::vec3& v) const;
 
   private:
     void addSample(std::size_t body, const glm::vec3& p, WorldSample& best) const;
 
     LoadedWorld loaded_;
-    std::vector<Bounds> boxes_;  ///< of the bodies, in the world, with room
-    std::vector<char>
-        local_;  ///< 1: all that the body knows of a point beyond its box is that it is far outside
+    std::vector<Bounds> boxes_;  ///< world-space boxes of the bodies, with a margin
+    std::vector<char> local_;    ///< 1: the body is far outside beyond its box
 };
 
 }  // namespace relief

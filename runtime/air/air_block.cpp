@@ -77,7 +77,7 @@ Result<AirBlock> AirBlock::create(const AirSettings& air) {
         }
     }
 
-    const PassState state;  // texels are tightly packed
+    const PassState state;  // so that texels are tightly packed
     forgetGlErrors();
     if (air.flow) {
         const FlowField& flow = *air.flow;

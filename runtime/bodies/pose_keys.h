@@ -11,7 +11,7 @@ namespace relief {
 
 struct PoseKey {
     double time = 0.0;  ///< equal for all keys
-    Pose pose;          ///< its scale is that of every other key
+    Pose pose;          ///< all keys have the same scale
     friend bool operator==(const PoseKey&, const PoseKey&) = default;
 };
 

@@ -48,6 +48,7 @@ class EventList {
         std::uint64_t number = 0;
     };
 
+    /// Creates the textures and programs of the lists.
     /// \param lists     1 to kEventLists. \param capacity  of the particle system.
     /// Errors: kUsage (invalid options), kLimit, kUnsupported, kFailure.
     [[nodiscard]] static Result<EventList> create(std::span<const EventOptions> lists,

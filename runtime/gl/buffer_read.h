@@ -14,7 +14,7 @@ namespace relief {
 /// waits instead.
 [[nodiscard]] bool waitToRead(const GlFence& fence, GLuint64 nanoseconds);
 
-/// Copies bytes of a buffer from `offset` on, as GL_PIXEL_PACK_BUFFER; at least one. Waits for the GPU.
+/// Copies at least one byte of a buffer from `offset` on, through GL_PIXEL_PACK_BUFFER. Waits for the GPU.
 /// \return false if its memory was lost.
 [[nodiscard]] bool readBuffer(const GlBuffer& buffer, std::size_t offset, std::span<std::byte> out);
 

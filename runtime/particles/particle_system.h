@@ -40,7 +40,7 @@ namespace relief {
 /// Velocity integration; both methods are first-order and differ only by rounding.
 enum class Integrator : std::uint8_t {
     kEuler,  ///< semi-implicit: v' = v + dt a, P' = P + dt v'
-    kVerlet,  ///< P' = P + dt/dt_before (P − P_before) + dt² a: the velocity is the last step's displacement
+    kVerlet,  ///< P' = P + dt/dt_before (P − P_before) + dt² a; the velocity is the displacement of the last step
 };
 template <>
 inline constexpr std::array<std::string_view, 2> kWordsOf<Integrator>{"euler", "verlet"};
@@ -70,7 +70,7 @@ struct ParticleState {
     float age = 0.0F;       ///< seconds
     float lifetime = 0.0F;  ///< seconds
     std::uint32_t type = 0;
-    std::uint32_t collisions = 0;      ///< steps in contact so far
+    std::uint32_t collisions = 0;      ///< number of steps in contact
     Contact contact = Contact::kNone;  ///< in the last step
 };
 

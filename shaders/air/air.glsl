@@ -12,7 +12,7 @@
 layout(std140) uniform ReliefAir {
     vec4 air_wind;         // xyz
     ivec4 air_count;       // attractors, vortices, octaves of noise, the noise's seed as bits
-    vec4 air_curl;         // gain, lattice units per object unit, patterns a second, 1
+    vec4 air_curl;         // gain, lattice units per object unit, patterns per second, 1
     vec4 air_flow_min;     // xyz; w: gain
     vec4 air_flow_max;     // xyz; w: 1 to extend the edge values outside, else 0
     vec4 air_flow_scale;   // xyz: nodes per object unit

@@ -2,7 +2,7 @@
 // The cheapest way to draw particles, as points with the size of their sprites: the baseline of `relief-bench picture`.
 uniform highp sampler2D u_position;
 uniform mat4 u_clip;
-uniform float u_pixels;  // of a sprite at view distance 1
+uniform float u_pixels;  // size of a sprite at view distance 1
 uniform float u_pixels_min;
 
 void main() {

@@ -17,7 +17,7 @@ float reliefEmpty(ivec4 info) {
 struct ReliefSight {
     int texel;    // texel index
     float z;      // depth of the point
-    bool plane;   // the map decodes planes
+    bool plane;   // set if the map decodes planes
     vec3 from;    // see reliefPlane(); likewise ray
     vec3 ray;
     float scale;  // z_scale

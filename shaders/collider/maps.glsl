@@ -13,12 +13,12 @@ struct ReliefMap {
                            // in u_relief_float, whose rows are as wide as that texture
 };
 
-// 1: a world of bodies with poses of their own; 0: one collider, in its own object space.
+// 1: a world of bodies with their own poses; 0: one collider, in its own object space.
 #if !defined(RELIEF_BODIES)
 #define RELIEF_BODIES 0
 #endif
 
-// 1: some body is live. Its maps are drawn anew before each step, with the motion of the surface beside them.
+// 1: a body is live. Its maps are rendered before each step, together with the motion of the surface.
 #if !defined(RELIEF_LIVE)
 #define RELIEF_LIVE 0
 #endif

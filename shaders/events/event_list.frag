@@ -6,7 +6,7 @@
 //               w       seconds from the start of the step to the event
 //     surface   x y z   normal, outwards from the body; 0 for a death by age
 //               w       approach speed along it, relative to the surface
-//     velocity  x y z   of the particle before the event
+//     velocity  x y z   velocity of the particle before the event
 //               w       body; -1 for the floor
 //     identity  x       index     y  id modulo 2^24     z  type    w  flags (EventFlag) + RELIEF_EVENT_FLAGS * m, where
 //               m is the index of the material's name + 1, or 0 without a material
@@ -16,7 +16,7 @@ uniform highp sampler2D u_position_before;
 uniform highp sampler2D u_count_1;  // of particles
 uniform highp sampler2D u_count_2;  // of the entries of u_count_1
 uniform highp sampler2D u_count_3;
-uniform highp sampler2D u_count_4;  // of all
+uniform highp sampler2D u_count_4;  // of all particles
 uniform int u_width;                          // width of the particles' textures
 uniform int u_first_row[RELIEF_EVENT_LISTS];  // for each list
 uniform float u_radius[RELIEF_TYPES];

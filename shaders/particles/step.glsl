@@ -22,7 +22,7 @@ struct ParticleType {
     float slip;       // 1 - friction
     float threshold;  // no friction below this speed
     float drag;       // 1/s
-    float behaviour;  // RELIEF_ON_COLLISION_BOUNCE, RELIEF_ON_COLLISION_STOP, RELIEF_ON_COLLISION_SLIDE or RELIEF_ON_COLLISION_DIE
+    float behaviour;  // RELIEF_ON_COLLISION_BOUNCE, _STOP, _SLIDE or _DIE
     float loss;       // seconds of life that a step in contact costs
     float gravity;    // factor of u_gravity
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Blends the layer of the tiles over the target, as one sprite.
+// Blends the painted layer of tiles over the target as one sprite.
 uniform highp sampler2D u_layer;
 
 layout(location = 0) out vec4 o_color;  // premultiplied by alpha
