@@ -21,7 +21,7 @@ Result<std::vector<std::byte>> compress(std::span<const std::byte> raw, int leve
 
 Result<std::vector<std::byte>> decompress(std::span<const std::byte> stored, std::uint64_t raw_size) {
     if (ZSTD_getFrameContentSize(stored.data(), stored.size()) != raw_size) {
-        return invalidInput("its payload is no zstd frame that states a content of " +
+        return invalidInput("its payload is not a zstd frame with a content size of " +
                             std::to_string(raw_size) + " bytes");
     }
     if (ZSTD_findFrameCompressedSize(stored.data(), stored.size()) != stored.size()) {
@@ -30,7 +30,7 @@ Result<std::vector<std::byte>> decompress(std::span<const std::byte> stored, std
     std::vector<std::byte> raw(static_cast<std::size_t>(raw_size));
     const std::size_t size = ZSTD_decompress(raw.data(), raw.size(), stored.data(), stored.size());
     if (ZSTD_isError(size) != 0) {
-        return invalidInput(std::string("its payload does not decompress: ") + ZSTD_getErrorName(size));
+        return invalidInput(std::string("its payload cannot be decompressed: ") + ZSTD_getErrorName(size));
     }
     if (size != raw_size) {
         return invalidInput("its payload decompresses to " + std::to_string(size) + " bytes, not " +

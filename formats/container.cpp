@@ -272,8 +272,9 @@ Result<void> saveCollider(const std::filesystem::path& path, const Collider& col
 Result<void> refuseMeshName(const std::filesystem::path& path) {
     const std::string extension = lowerCase(path.extension().native());
     if (extension == ".json") {
-        return fail(ErrorCode::kInvalidInput,
-                    quotedPath(path) + " is no collider; of a world name a container, which lies beside it");
+        return fail(
+            ErrorCode::kInvalidInput,
+            quotedPath(path) + " is not a collider but a world; name one of the containers next to it");
     }
     if (std::find(kMeshExtensions.begin(), kMeshExtensions.end(), extension) == kMeshExtensions.end()) {
         return {};
@@ -281,7 +282,7 @@ Result<void> refuseMeshName(const std::filesystem::path& path) {
     std::filesystem::path baked = path;
     baked.replace_extension(".relief");
     return fail(ErrorCode::kInvalidInput, quotedPath(path) +
-                                              " is a mesh, and no collider; bake it first: relief bake " +
+                                              " is a mesh, not a collider; bake it first: relief bake " +
                                               quotedPath(path) + " -o " + quotedPath(baked));
 }
 

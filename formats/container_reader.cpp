@@ -51,8 +51,7 @@ DepthMap readFrame(const fb::Map& map) {
 std::optional<std::string> texelsBeyond(const ContainerLimits& limits, std::uint64_t texel_bytes,
                                         std::uint64_t file_size) {
     if (texel_bytes > limits.texel_bytes) {
-        return "with it, the texels take more than the limit of " + std::to_string(limits.texel_bytes) +
-               " bytes";
+        return "with it, the texels exceed the limit of " + std::to_string(limits.texel_bytes) + " bytes";
     }
     const std::uint64_t worth = kUnpackedPerStored * std::min(file_size, limits.texel_bytes);
     if (texel_bytes > std::max(limits.memory, worth)) {
@@ -72,18 +71,18 @@ Result<void> validatePayloadSizes(const StoredMap& map) {
     }
     if (info.raw_size != map.frame.texelBytes()) {
         return invalidInput("its raw_size is " + std::to_string(info.raw_size) +
-                            " where its size and format need " + std::to_string(map.frame.texelBytes()) +
+                            " but its size and format require " + std::to_string(map.frame.texelBytes()) +
                             " bytes");
     }
     const bool packed = info.packing != Packing::kNone;
     if (packed ? info.stored_size >= info.raw_size : info.stored_size != info.raw_size) {
         return invalidInput("its stored_size " + std::to_string(info.stored_size) +
-                            " does not go with its raw_size " + std::to_string(info.raw_size) +
+                            " does not match its raw_size " + std::to_string(info.raw_size) +
                             " and its compression");
     }
     if (packed && info.raw_size / kZstdRatioMax > info.stored_size) {
         return invalidInput("its " + std::to_string(info.stored_size) + " stored bytes cannot hold the " +
-                            std::to_string(info.raw_size) + " that they claim");
+                            std::to_string(info.raw_size) + " that they declare");
     }
     return {};
 }
@@ -129,7 +128,7 @@ Result<Materials> readMaterials(const fb::Materials& stored) {
     if (size > kMaterialNodesMax * sizeof(MaterialNode) || size % sizeof(MaterialNode) != 0 ||
         (packing == Packing::kNone ? size != bytes.size()
                                    : packing != Packing::kZstd || size <= bytes.size())) {
-        return invalidInput("the nodes of the materials have a size that does not go with their bytes");
+        return invalidInput("the size of the material nodes does not match their bytes");
     }
     std::vector<std::byte> nodes(bytes.begin(), bytes.end());
     if (packing == Packing::kZstd) {
@@ -150,9 +149,9 @@ bool isLimit(IssueCode code) {
 std::string cureOf(IssueCode code, std::uint16_t major) {
     switch (code) {
         case IssueCode::kTooShort:
-            return "; it is truncated, or no .relief container";
+            return "; it is truncated, or not a .relief container";
         case IssueCode::kSignature:
-            return "; it is no .relief container, or a transfer as text has changed it";
+            return "; it is not a .relief container, or a text-mode transfer has damaged it";
         case IssueCode::kMajorVersion:
             return major < kContainerMajor ? ": bake the mesh again" : "; use a newer Relief";
         default:
@@ -184,7 +183,7 @@ void ContainerReader::readDescription() {
 /// \return whether the rest of the header can be interpreted.
 bool ContainerReader::readHeader() {
     if (bytes_.size() < sizeof(header)) {
-        add(IssueCode::kTooShort, std::to_string(bytes_.size()) + " bytes, where the header alone has " +
+        add(IssueCode::kTooShort, std::to_string(bytes_.size()) + " bytes, but the header alone has " +
                                       std::to_string(sizeof(header)));
         return false;
     }
@@ -199,13 +198,13 @@ bool ContainerReader::readHeader() {
     // Another major version may have a different layout and checksum.
     if (header.major != expected.major) {
         add(IssueCode::kMajorVersion, "container version " + std::to_string(header.major) + "." +
-                                          std::to_string(header.minor) + ", this program reads version " +
+                                          std::to_string(header.minor) + "; this program reads version " +
                                           std::to_string(kContainerMajor));
         return false;
     }
     header_intact_ = header.header_hash == header.computeHash();
     if (!header_intact_) {
-        add(IssueCode::kHeaderChecksum, "the checksum of the header is wrong", 56);
+        add(IssueCode::kHeaderChecksum, "the checksum of the header does not match", 56);
     }
     if (header.header_size != expected.header_size || header.reserved != expected.reserved ||
         header.metadata_offset != expected.metadata_offset) {
@@ -226,12 +225,12 @@ bool ContainerReader::checkSizes() {
             24);
     } else if (header.file_size < bytes_.size()) {
         add(IssueCode::kTrailingBytes,
-            std::to_string(bytes_.size() - header.file_size) + " bytes more than the header says", 24);
+            std::to_string(bytes_.size() - header.file_size) + " bytes more than stated in the header", 24);
     }
     if (header_intact_ && header.minor > kContainerMinor) {
         add(IssueCode::kLaterMinor,
             "container version " + std::to_string(header.major) + "." + std::to_string(header.minor) +
-                ", this program knows " + std::to_string(kContainerMajor) + "." +
+                "; this program supports " + std::to_string(kContainerMajor) + "." +
                 std::to_string(kContainerMinor),
             14);
     }
@@ -244,7 +243,7 @@ bool ContainerReader::checkSizes() {
     }
     if (header.metadata_size > bytes_.size() - sizeof(header)) {
         add(IssueCode::kMetadataPlace,
-            "the metadata of " + std::to_string(header.metadata_size) + " bytes reaches beyond the end", 40);
+            "the metadata of " + std::to_string(header.metadata_size) + " bytes extends beyond the end", 40);
         return false;
     }
     return true;
@@ -256,7 +255,7 @@ bool ContainerReader::readMetadata() {
     // A valid checksum confirms the metadata even if the header is damaged.
     metadata_intact = header.metadata_hash == xxh3_64(bytes);
     if (!metadata_intact) {
-        add(IssueCode::kMetadataChecksum, "the checksum of the metadata is wrong", 48);
+        add(IssueCode::kMetadataChecksum, "the checksum of the metadata does not match", 48);
     }
     const std::size_t before = issues.size();
     // Accessors require an alignment that the file has but `bytes_` may lack.
@@ -267,7 +266,7 @@ bool ContainerReader::readMetadata() {
     if (!fb::VerifyColliderBuffer(verifier)) {
         add(IssueCode::kMetadataTable,
             "the metadata at byte " + std::to_string(sizeof(header)) +
-                " is no FlatBuffers table of a collider",
+                " is not a FlatBuffers table of a collider",
             header.metadata_offset);
         return false;
     }
@@ -333,17 +332,17 @@ void ContainerReader::checkDescription() {
     issues.insert(issues.end(), invalid.begin(), invalid.end());
     const Provenance& from = collider.provenance;
     if (from.mesh_hash.empty()) {
-        add(IssueCode::kNoMeshHash, "provenance.mesh_hash is empty: nobody can tell which mesh it is of");
+        add(IssueCode::kNoMeshHash, "provenance.mesh_hash is empty: the source mesh is unknown");
     }
     if (from.tool_version.empty() || from.options.empty()) {
         add(IssueCode::kNoToolVersion,
-            "provenance.tool_version or .options is empty: nobody can tell how it was made");
+            "provenance.tool_version or .options is empty: the bake cannot be reproduced");
     }
     if (from.triangles == 0) {
         add(IssueCode::kNoTriangles, "provenance.triangles is 0");
     }
     if (maps.empty()) {
-        add(IssueCode::kNoMap, "there is no map");
+        add(IssueCode::kNoMap, "there are no maps");
     }
 }
 
@@ -400,13 +399,13 @@ bool ContainerReader::checkPlace(const PayloadInfo& payload, int index, std::uin
     const std::uint64_t expected = alignPayload(end);
     if (payload.offset != expected) {
         add(IssueCode::kPayloadPlace,
-            "its payload's offset is " + std::to_string(payload.offset) + " where the layout has " +
+            "its payload's offset is " + std::to_string(payload.offset) + " instead of " +
                 std::to_string(expected),
             {}, index);
     }
     if (payload.offset > bytes_.size() || payload.stored_size > bytes_.size() - payload.offset) {
         add(IssueCode::kPayloadEnd,
-            "its payload of " + std::to_string(payload.stored_size) + " bytes reaches beyond the end",
+            "its payload of " + std::to_string(payload.stored_size) + " bytes extends beyond the end",
             payload.offset, index);
         return false;
     }
@@ -429,7 +428,8 @@ bool ContainerReader::readTexels(std::size_t index) {
     const auto stored = part(map.payload.offset, map.payload.stored_size);
     map.intact = map.hash == xxh3_64(stored);
     if (!map.intact) {
-        add(IssueCode::kPayloadChecksum, "the checksum of its payload is wrong", map.payload.offset, at);
+        add(IssueCode::kPayloadChecksum, "the checksum of its payload does not match", map.payload.offset,
+            at);
     }
     Result<std::vector<std::byte>> unpacked = unpackPayload(stored, map.payload);
     if (!unpacked) {

@@ -69,7 +69,7 @@ class Inspector {
             if (map.intact) {  // otherwise the damage would cause warnings
                 state.state = PartState::kSound;
                 if (state.coverage == 0.0) {
-                    reader_.add(IssueCode::kNothingCovered, "no texel holds a surface; the map sees nothing",
+                    reader_.add(IssueCode::kNothingCovered, "no texel contains a surface; the map is empty",
                                 {}, index);
                 }
             }

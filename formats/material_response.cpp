@@ -47,11 +47,11 @@ std::optional<std::string> MaterialResponses::faultOf(const std::string& name) c
         return std::nullopt;
     }
     if (names_.empty()) {
-        return "is the name of no material: the colliders have none; bake a mesh with several, or with "
+        return "is not the name of a material: the colliders have none; bake a mesh with several, or with "
                "--materials keep";
     }
     const std::vector<std::string_view> known(names_.begin(), names_.end());
-    std::string text = "is the name of no material" + didYouMean(name, known);
+    std::string text = "is not the name of a material" + didYouMean(name, known);
     text += text.back() == '?' ? " There are " : "; there are ";
     for (std::size_t i = 0; i < std::min(known.size(), kListedMax); ++i) {
         text += (i == 0 ? "'" : ", '") + cleanUtf8(known[i], kMaterialNameMax) + "'";
@@ -63,17 +63,15 @@ void fields(FieldVisitor& visit, MaterialResponse& response) {
     visit("name", response.name,
           {.help = "Name of a material of the colliders, as in relief info", .rules = kRequired});
     visit("restitution", response.restitution,
-          leftOut({.help = "Factor of the particles' own restitution, on top of the collider's",
+          leftOut({.help = "Multiplies the restitution of particles and colliders",
                    .range = kShareRange,
                    .fallback = "that of the container: the mesh's, or 1"}));
-    visit(
-        "friction", response.friction,
-        leftOut(
-            {.help = "1 − friction is a factor of the particles' own 1 − friction, on top of the collider's",
-             .range = kShareRange,
-             .fallback = "that of the container: the mesh's, or 0"}));
+    visit("friction", response.friction,
+          leftOut({.help = "1 − friction multiplies 1 − friction of particles and colliders",
+                   .range = kShareRange,
+                   .fallback = "that of the container: the mesh's, or 0"}));
     visit("lifetime_loss", response.lifetime_loss,
-          leftOut({.help = "Lifetime that each step in contact with it costs, on top of the type's",
+          leftOut({.help = "Lifetime lost in each step in contact, in addition to the particle type's",
                    .unit = "s",
                    .range = {0.0, double{kMaterialLossMax}},
                    .fallback = "0"}));

@@ -26,14 +26,14 @@ std::string faultOfList(const Materials& materials) {
         const Material& one = materials.list[i];
         const std::string place = "materials[" + std::to_string(i) + "]";
         if (one.name.size() > kMaterialNameMax || cleanUtf8(one.name) != one.name) {
-            return place + " has a name that is no UTF-8 without control characters, or longer than " +
+            return place + " has a name that is not clean UTF-8, or longer than " +
                    std::to_string(kMaterialNameMax) + " bytes";
         }
         if (!names.insert(one.name).second) {
-            return place + " has the name '" + one.name + "' of one before it";
+            return place + " has the name '" + one.name + "' of an earlier one";
         }
         if (!isShare(one.restitution) || !isShare(one.friction) || !isShare(one.area_share)) {
-            return place + " has a restitution, a friction or a share of the area that is not in 0...1";
+            return place + " has a restitution, friction or area fraction that is not in 0...1";
         }
         if (!(one.lifetime_loss >= 0.0F && one.lifetime_loss <= kMaterialLossMax)) {
             return place + " has a lifetime_loss that is not in 0...1000000";
@@ -45,14 +45,14 @@ std::string faultOfList(const Materials& materials) {
 std::string faultOfSides(const Materials& materials) {
     if (materials.list.size() + materials.sides.size() > kMaterialSidesMax + 1) {
         return "there are " + std::to_string(materials.sides.size()) +
-               " pairs of sides; with the materials more than 256";
+               " pairs of sides; together with the materials, more than 256";
     }
     const bool valid =
         std::all_of(materials.sides.begin(), materials.sides.end(), [&](const MaterialSides& pair) {
             return pair.axis < kMaterialAxes && pair.towards < materials.list.size() &&
                    pair.against < materials.list.size();
         });
-    return valid ? "" : "a pair of sides has no axis, or a material that does not exist";
+    return valid ? "" : "a pair of sides has an invalid axis or material";
 }
 
 /// Checks that the nodes are stored in breadth-first order, so that each has one parent and there are no cycles.
@@ -73,21 +73,21 @@ std::string faultOfNodes(const Materials& materials) {
         }
         const std::string place = "material node " + std::to_string(i);
         if (i >= known || level > kMaterialLevelsMax) {
-            return place + (i >= known ? " belongs to no other" : " lies too deep");
+            return place + (i >= known ? " has no parent" : " is too deep");
         }
         const std::uint32_t mask = nodes[i].head & 0xFFU;
         if ((nodes[i].head >> 8U) != (mask == 0 ? 0 : known)) {
-            return place + " has its octants at another node than the next";
+            return place + " has its octants out of order";
         }
         for (std::size_t octant = 0; octant < 8; ++octant) {
             const bool is_node = (mask >> octant & 1U) != 0;
             known += is_node ? 1 : 0;
             if (is_node ? nodes[i].leaves[octant] != 0 : nodes[i].leaves[octant] >= leaves) {
-                return place + " has an octant of a material that does not exist";
+                return place + " has an octant with an invalid material";
             }
         }
     }
-    return known == nodes.size() ? "" : "nodes of materials are missing";
+    return known == nodes.size() ? "" : "material nodes are missing";
 }
 
 }  // namespace
@@ -102,11 +102,11 @@ std::size_t Materials::bytes() const {
 
 std::string faultOfMaterials(const Materials& materials) {
     if (materials.empty()) {
-        return materials == Materials() ? "" : "there is a tree of materials, but no material";
+        return materials == Materials() ? "" : "there is a material tree, but no materials";
     }
     if (!isFinite(materials.origin) || !(materials.size >= 0.0F && std::isfinite(materials.size)) ||
         (materials.size == 0.0F && !materials.nodes.empty())) {
-        return "the cube of the materials is not finite, or has no size";
+        return "the cube of the materials is not finite, or empty";
     }
     std::string fault = faultOfList(materials);
     fault = fault.empty() ? faultOfSides(materials) : fault;

@@ -364,7 +364,7 @@ Result<void> validatePatches(PatchTexels texels) {
     const auto [roots, levels] = patchTreeSize(texels);
     const std::uint64_t root_count = std::uint64_t{roots.x} * roots.y * roots.z;
     if (root_count == 0 || levels > kPatchLevelsMax || 1 + root_count > count) {
-        return invalid(0, "of its tree of patches has no valid size");
+        return invalid(0, "of its tree of patches has an invalid size");
     }
     // Check level by level: [at, end) are the records of one level, and the next level begins at `end`.
     std::uint64_t at = 1;
@@ -378,15 +378,15 @@ Result<void> validatePatches(PatchTexels texels) {
             if (record.kind() == PatchRecord::Kind::kSplit) {
                 const auto children = static_cast<std::uint64_t>(std::popcount(record.children()));
                 if (level == levels || record.first() != next || next + children > count) {
-                    return invalid(index, "splits a cell whose children are not the next texels");
+                    return invalid(index, "is a split cell whose children are not the next texels");
                 }
                 next += children;
             } else if (record.kind() == PatchRecord::Kind::kPatch) {
                 leaves.push_back(index);
             } else if ((record.low >> 16U & 0xffU) == 0xffU || record.low >> 24U == 0xffU) {
-                return invalid(index, "has the index 255 of a normal, which none has");
+                return invalid(index, "has the invalid normal index 255");
             } else if (!std::isfinite(floatOf(record.high))) {
-                return invalid(index, "holds a number that is not finite");
+                return invalid(index, "contains a number that is not finite");
             }
         }
         end = next;
@@ -400,10 +400,10 @@ Result<void> validatePatches(PatchTexels texels) {
         const std::uint32_t side = record.side();
         if (record.kind() != PatchRecord::Kind::kPatch || side == 0 || frame.diagonal > 2 ||
             frame.first > 2) {
-            return invalid(index, "is a patch of no known kind");
+            return invalid(index, "is a patch of an unknown kind");
         }
         if (side > 2 && !behind(record, heightTexels(side))) {
-            return invalid(index, "is a patch whose heights lie elsewhere");
+            return invalid(index, "is a patch whose heights are out of place");
         }
         return {};
     };
@@ -414,7 +414,7 @@ Result<void> validatePatches(PatchTexels texels) {
             continue;
         }
         if (!behind(record, 2)) {
-            return invalid(index, "is a pair whose patches lie elsewhere");
+            return invalid(index, "is a pair whose patches are out of place");
         }
         RELIEF_TRY(check(record.first()));
         RELIEF_TRY(check(record.first() + 1));

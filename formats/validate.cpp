@@ -44,14 +44,14 @@ std::string faultOfBounds(const Bounds& bounds) {
         return "bounds are not finite";
     }
     if (bounds.min.x > bounds.max.x || bounds.min.y > bounds.max.y || bounds.min.z > bounds.max.z) {
-        return "bounds.min " + words(bounds.min) + " lies beyond bounds.max " + words(bounds.max);
+        return "bounds.min " + words(bounds.min) + " exceeds bounds.max " + words(bounds.max);
     }
     return {};
 }
 
 std::string faultOfName(const std::string& name) {
     return name.find('/') != std::string::npos
-               ? "provenance.mesh_name has a '/': it is a name without its folder"
+               ? "provenance.mesh_name contains '/': it must be a name without a folder"
                : faultOfText("provenance.mesh_name", name, kMeshNameMax);
 }
 
@@ -73,8 +73,8 @@ std::string faultOfOptions(const std::vector<RecordedOption>& options) {
 Result<void> validateSize(const DepthMap& map) {
     const std::string size = std::to_string(map.width) + "x" + std::to_string(map.height);
     if (map.width > kMapSizeMax || map.height > kMapSizeMax) {
-        return fail(ErrorCode::kLimit, "its size " + size + " is beyond " + std::to_string(kMapSizeMax) +
-                                           "x" + std::to_string(kMapSizeMax));
+        return fail(ErrorCode::kLimit, "its size " + size + " exceeds " + std::to_string(kMapSizeMax) + "x" +
+                                           std::to_string(kMapSizeMax));
     }
     const bool cube = map.projection() == Projection::kCube;
     const std::uint32_t smallest = map.projection() == Projection::kOrthographic ? kMapSizeMin : 1;
@@ -83,7 +83,7 @@ Result<void> validateSize(const DepthMap& map) {
                             std::to_string(smallest));
     }
     if (cube && map.width != map.height) {
-        return invalidInput("its size " + size + " is not square, as the faces of a cube are");
+        return invalidInput("its size " + size + " is not square, as required for cube faces");
     }
     return {};
 }
@@ -109,7 +109,7 @@ Result<void> validateTransform(const DepthMap& map) {
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t next = (i + 1) % 3;
         if (!(std::abs(glm::dot(row[i], row[next])) <= kFrameCosineMax)) {
-            return invalidInput("object_to_map is no rotation and scale: rows " +
+            return invalidInput("object_to_map is not a rotation with scale: rows " +
                                 std::to_string(std::min(i, next)) + " and " +
                                 std::to_string(std::max(i, next)) + " are not orthogonal");
         }
@@ -123,7 +123,7 @@ Result<void> validateTransform(const DepthMap& map) {
         }
         if (!(std::abs(given - expected) <= kObjectPerMapTolerance * expected)) {
             return invalidInput("object_per_map." + std::string(1, "xyz"[i]) + " is " + number(given) +
-                                " where object_to_map gives " + number(expected));
+                                " but object_to_map gives " + number(expected));
         }
     }
     return {};
@@ -136,7 +136,7 @@ const char* faultOfFloat(std::span<const std::byte> texel) {
     const glm::vec3 normal(channels[0], channels[1], channels[2]);
     const float depth = channels[3];
     if (!isFinite(normal) || !std::isfinite(depth)) {
-        return "holds a number that is not finite";
+        return "contains a number that is not finite";
     }
     if (depth == -1.0F) {
         return normal == glm::vec3(0.0F) ? nullptr : "is empty (depth -1) but has a normal";
@@ -199,18 +199,17 @@ Result<void> validateFrame(const DepthMap& map) {
     }
     if ((map.compare == Compare::kBoth) != isFrontBack(map.format)) {
         return invalidInput(std::string("its compare \"") + compareName(map.compare) +
-                            "\" does not go with its format \"" + mapFormatName(map.format) + "\"");
+                            "\" does not match its format \"" + mapFormatName(map.format) + "\"");
     }
     if (static_cast<int>(map.decode) > static_cast<int>(Decode::kPlane)) {
         return invalidInput("its decode " + std::to_string(static_cast<int>(map.decode)) + " is unknown");
     }
     if (map.format == MapFormat::kPatches && map.decode != Decode::kPlane) {
-        return invalidInput("a map of patches decodes planes");
+        return invalidInput("a map of patches must decode planes");
     }
     if (const glm::vec3& s = map.object_per_map;
         map.format == MapFormat::kPatches && (s.x != s.y || s.x != s.z)) {
-        return invalidInput("object_per_map " + words(s) +
-                            " has several lengths; the cells of patches are cubes");
+        return invalidInput("object_per_map " + words(s) + " is not uniform; the cells of patches are cubes");
     }
     return validateSize(map).and_then([&] { return validateTransform(map); });
 }
@@ -218,7 +217,7 @@ Result<void> validateFrame(const DepthMap& map) {
 Result<void> validateTexels(const DepthMap& map) {
     if (map.texels.size() != map.texelBytes()) {
         return invalidInput("it has " + std::to_string(map.texels.size()) +
-                            " bytes of texels where its size needs " + std::to_string(map.texelBytes()));
+                            " bytes of texels but its size requires " + std::to_string(map.texelBytes()));
     }
     if (map.format == MapFormat::kPatches) {
         return validatePatches(map.texels);
@@ -244,7 +243,7 @@ Result<void> validate(const Collider& collider) {
         return invalidInput(issues.front().message);
     }
     if (collider.maps.empty()) {
-        return invalidInput("there is no map");
+        return invalidInput("there are no maps");
     }
     for (std::size_t i = 0; i < collider.maps.size(); ++i) {
         const DepthMap& map = collider.maps[i];

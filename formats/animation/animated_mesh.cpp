@@ -26,7 +26,7 @@ Result<void> atMost(const char* list, std::size_t count, std::size_t most) {
         return {};
     }
     return fail(ErrorCode::kLimit, "animation." + std::string(list) + " has " + std::to_string(count) +
-                                       " entries, and at most " + std::to_string(most) + " may be");
+                                       " entries; at most " + std::to_string(most) + " are allowed");
 }
 
 bool hasNumbers(const Affine& affine) {
@@ -52,7 +52,7 @@ bool areStarts(const std::vector<std::uint32_t>& begin, std::size_t vertices, st
 Result<void> checkTriangles(const AnimatedMesh& mesh) {
     RELIEF_TRY(atMost("positions", mesh.positions.size(), kAnimatedVerticesMax));
     if (mesh.positions.empty() || mesh.triangles.empty()) {
-        return invalidInput("animation has no triangle");
+        return invalidInput("animation has no triangles");
     }
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
         if (!isFinite(mesh.positions[i])) {
@@ -73,15 +73,15 @@ Result<void> checkMaterials(const AnimatedMesh& mesh) {
     std::set<std::string> names;
     for (std::size_t i = 0; i < mesh.materials.size(); ++i) {
         if (!isName(mesh.materials[i]) || !names.insert(mesh.materials[i]).second) {
-            return wrong("materials", i, "has a name that is too long, no clean text, or that of another");
+            return wrong("materials", i, "has a name that is too long, not clean UTF-8, or not unique");
         }
     }
     if (mesh.triangle_materials.size() != (mesh.materials.empty() ? 0 : mesh.triangles.size())) {
-        return invalidInput("animation.triangle_materials are not as many as the triangles");
+        return invalidInput("animation.triangle_materials does not have one entry per triangle");
     }
     for (std::size_t i = 0; i < mesh.triangle_materials.size(); ++i) {
         if (mesh.triangle_materials[i] >= mesh.materials.size()) {
-            return wrong("triangle_materials", i, "is no such material");
+            return wrong("triangle_materials", i, "is not the index of a material");
         }
     }
     return {};
@@ -89,7 +89,7 @@ Result<void> checkMaterials(const AnimatedMesh& mesh) {
 
 Result<void> checkInfluences(const AnimatedMesh& mesh) {
     if (!areStarts(mesh.influence_begin, mesh.positions.size(), mesh.influences.size())) {
-        return invalidInput("animation.influence_begin does not rise from 0 to the number of influences");
+        return invalidInput("animation.influence_begin does not ascend from 0 to the number of influences");
     }
     for (std::size_t vertex = 0; vertex < mesh.positions.size(); ++vertex) {
         const std::uint32_t begin = mesh.influence_begin[vertex];
@@ -102,12 +102,13 @@ Result<void> checkInfluences(const AnimatedMesh& mesh) {
         for (std::uint32_t i = begin; i < end; ++i) {
             const VertexInfluence& by = mesh.influences[i];
             if (by.joint >= mesh.joints.size() || !(by.weight > 0.0F)) {
-                return wrong("influences", i, "has no such joint, or a weight that is not above 0");
+                return wrong("influences", i,
+                             "refers to a missing joint, or has a weight that is not above 0");
             }
             sum += double{by.weight};
         }
         if (!(std::abs(sum - 1.0) <= double{kWeightSumTolerance})) {
-            return wrong("positions", vertex, "has weights whose sum is not 1");
+            return wrong("positions", vertex, "has weights that do not sum to 1");
         }
     }
     return {};
@@ -120,16 +121,16 @@ Result<void> checkWeights(const AnimatedMesh& mesh) {
 
 Result<void> checkDeltas(const AnimatedMesh& mesh) {
     if (!areStarts(mesh.delta_begin, mesh.positions.size(), mesh.deltas.size())) {
-        return invalidInput("animation.delta_begin does not rise from 0 to the number of deltas");
+        return invalidInput("animation.delta_begin does not ascend from 0 to the number of deltas");
     }
     for (std::size_t vertex = 0; vertex < mesh.positions.size(); ++vertex) {
         for (std::uint32_t i = mesh.delta_begin[vertex]; i < mesh.delta_begin[vertex + 1]; ++i) {
             const MorphDelta& by = mesh.deltas[i];
             if (by.target >= mesh.weights.size() || !isFinite(by.delta)) {
-                return wrong("deltas", i, "has no such target, or is not finite");
+                return wrong("deltas", i, "refers to a missing target, or is not finite");
             }
             if (i > mesh.delta_begin[vertex] && by.target <= mesh.deltas[i - 1].target) {
-                return wrong("deltas", i, "does not follow the target before it");
+                return wrong("deltas", i, "is not in ascending order of targets");
             }
         }
     }
@@ -144,14 +145,14 @@ Result<void> checkNodes(const AnimatedMesh& mesh) {
             return wrong("nodes", i, "has a parent that does not come before it");
         }
         if (!isName(node.name)) {
-            return wrong("nodes", i, "has a name that is too long or no clean text");
+            return wrong("nodes", i, "has a name that is too long or not clean UTF-8");
         }
         const double length = std::sqrt(double{glm::dot(node.rotation, node.rotation)});
         if (!isFinite(node.translation) || !isFinite(node.scale) ||
             !(std::abs(length - 1.0) <= double{kUnitTolerance}) ||
             (node.matrix && !hasNumbers(*node.matrix))) {
             return wrong("nodes", i,
-                         "has a transform that is not finite, or whose rotation is no unit quaternion");
+                         "has a transform that is not finite, or whose rotation is not a unit quaternion");
         }
         if (node.first_weight > mesh.weights.size() ||
             node.weights > mesh.weights.size() - node.first_weight) {
@@ -165,7 +166,7 @@ Result<void> checkJoints(const AnimatedMesh& mesh) {
     RELIEF_TRY(atMost("joints", mesh.joints.size(), kMeshJointsMax));
     for (std::size_t i = 0; i < mesh.joints.size(); ++i) {
         if (mesh.joints[i].node >= mesh.nodes.size() || !hasNumbers(mesh.joints[i].bind)) {
-            return wrong("joints", i, "has no such node, or a transform that is not finite");
+            return wrong("joints", i, "refers to a missing node, or has a transform that is not finite");
         }
     }
     return {};
@@ -175,16 +176,16 @@ Result<void> checkJoints(const AnimatedMesh& mesh) {
 std::string faultOf(const AnimatedMesh& mesh, const MeshClip& clip, const ClipChannel& channel) {
     if (channel.node >= mesh.nodes.size() || channel.member > NodeMember::kWeights ||
         channel.curve > KeyCurve::kCubic) {
-        return "has no such node, member or curve";
+        return "refers to an unknown node, member or curve";
     }
     const MeshNode& node = mesh.nodes[channel.node];
     if (channel.member == NodeMember::kWeights ? node.weights == 0 : node.matrix.has_value()) {
-        return "moves a node that has no such member";
+        return "animates a member that the node does not have";
     }
     const std::size_t numbers = keyNumbers(mesh, channel) * (channel.curve == KeyCurve::kCubic ? 3 : 1);
     if (channel.times.empty() || channel.values.size() / numbers != channel.times.size() ||
         channel.values.size() % numbers != 0) {
-        return "has no key, or not as many values as times";
+        return "has no keys, or values that do not match its times";
     }
     if (!areFinite(channel.times) || !areFinite(channel.values) || !(channel.times.front() >= 0.0F) ||
         !(channel.times.back() <= clip.seconds)) {
@@ -192,7 +193,7 @@ std::string faultOf(const AnimatedMesh& mesh, const MeshClip& clip, const ClipCh
     }
     if (std::adjacent_find(channel.times.begin(), channel.times.end(), std::greater_equal<>()) !=
         channel.times.end()) {
-        return "has times that do not rise";
+        return "has times that do not ascend";
     }
     return "";
 }
@@ -203,16 +204,16 @@ Result<void> checkClips(const AnimatedMesh& mesh) {
     for (std::size_t i = 0; i < mesh.clips.size(); ++i) {
         const MeshClip& clip = mesh.clips[i];
         if (clip.name.empty() || !isName(clip.name) || !names.insert(clip.name).second) {
-            return wrong("clips", i, "has a name that is empty, too long, no clean text, or that of another");
+            return wrong("clips", i, "has a name that is empty, too long, not clean UTF-8, or not unique");
         }
         if (!(clip.seconds > 0.0F && clip.seconds <= kClipSecondsMax)) {
-            return wrong("clips", i, "has no length, or one of more than a day");
+            return wrong("clips", i, "has a duration of 0 or of more than a day");
         }
         std::set<std::pair<std::uint32_t, NodeMember>> moved;
         for (const ClipChannel& channel : clip.channels) {
             std::string fault = faultOf(mesh, clip, channel);
             if (fault.empty() && !moved.emplace(channel.node, channel.member).second) {
-                fault = "moves what another one moves";
+                fault = "animates the same member as another channel";
             }
             if (!fault.empty()) {
                 return wrong("clips", i, "has a channel that " + fault);

@@ -143,12 +143,12 @@ Result<AnimatedMesh> unpack(std::span<const std::byte> bytes) {
     const auto* data = reinterpret_cast<const std::uint8_t*>(aligned.get());
     flatbuffers::Verifier verifier(data, bytes.size(), kDepthMax, kTablesMax);
     if (bytes.empty() || !fb::VerifyAnimatedMeshBuffer(verifier)) {
-        return invalidInput("its animation is no FlatBuffers table of an animated mesh; bake it again");
+        return invalidInput("its animation is not a FlatBuffers table of an animated mesh; bake it again");
     }
     const fb::AnimatedMesh& from = *fb::GetAnimatedMesh(data);
     if (!fits(from, bytes.size())) {
         return fail(ErrorCode::kLimit,
-                    "its animation has more nodes, clips or keys than such a file holds; bake it again");
+                    "its animation declares more nodes, clips or keys than fit into the file; bake it again");
     }
     AnimatedMesh mesh;
     mesh.positions = takeAll<glm::vec3>(*from.positions());

@@ -109,7 +109,7 @@ Result<void> FileGuard::refusal(const File& file, const File& other) {
                                            "; choose another place for " + output.option);
     }
     const bool same = file.path.lexically_normal() == other.path.lexically_normal();
-    return fail(ErrorCode::kUsage, "two outputs are one: " + other.option + " and " + file.option +
+    return fail(ErrorCode::kUsage, "two outputs are the same file: " + other.option + " and " + file.option +
                                        " would both write " + shown(file.path, "standard output") +
                                        (same ? "" : ", which is " + shown(other.path, "standard output")) +
                                        "; choose another place for one of them");

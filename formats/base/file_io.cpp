@@ -32,7 +32,7 @@ const char* cure(int code, bool reads) {
     switch (code) {
         case ENOENT:
         case ENOTDIR:
-            return reads ? "check the path" : "check the path; a folder is not created for you";
+            return reads ? "check the path" : "check the path; folders are not created";
         case EISDIR:
             return "name a file, not a folder";
         case EACCES:
@@ -169,7 +169,7 @@ Result<void> replaceFile(const fs::path& target, const std::string& name, std::s
     // A folder that is writable but not readable cannot be synced; the file is complete nevertheless.
     if (const Descriptor opened(openRetry(folder.c_str(), O_RDONLY | O_DIRECTORY)); opened) {
         if (const int sync_code = syncToDisk(opened.get())) {
-            return ioError("make sure that the disk holds (though it is in place)", name, sync_code);
+            return ioError("sync (although it is in place)", name, sync_code);
         }
     }
     return {};
@@ -298,17 +298,17 @@ Result<void> preflightFile(const fs::path& path, std::string_view option) {
     }
     if (fs::exists(path, error) && !fs::is_regular_file(path, error)) {
         if (::access(path.c_str(), W_OK) != 0) {
-            return refuse("no permission; choose another file");
+            return refuse("permission denied; choose another file");
         }
         return {};
     }
     const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
     if (!fs::is_directory(folder, error)) {
-        return refuse("its folder does not exist; make the folder first");
+        return refuse("its folder does not exist; create it first");
     }
     // Files are replaced by renaming, so the folder must be writable.
     if (!fs::is_symlink(path, error) && ::access(folder.c_str(), W_OK | X_OK) != 0) {
-        return refuse("its folder cannot be written; change its permissions or choose another");
+        return refuse("its folder is not writable; change its permissions or choose another");
     }
     return {};
 }
@@ -318,8 +318,8 @@ Result<void> preflightFolder(const fs::path& path, std::string_view option) {
     std::error_code error;
     fs::create_directories(path, error);
     if (error || !fs::is_directory(path, error)) {
-        return fail(ErrorCode::kIo, "cannot make the folder " + name + ": " +
-                                        (error ? error.message() : "a file of that name is in the way") +
+        return fail(ErrorCode::kIo, "cannot create the folder " + name + ": " +
+                                        (error ? error.message() : "a file with that name exists") +
                                         "; choose another");
     }
     if (::access(path.c_str(), W_OK | X_OK) != 0) {

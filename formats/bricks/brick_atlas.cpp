@@ -76,9 +76,9 @@ void append(std::vector<std::byte>& bytes, const Value* values, std::size_t coun
 Result<BrickAtlas> loadBrickAtlas(const std::filesystem::path& path) {
     const std::vector<std::byte> bytes = RELIEF_TRY(readFile(path));
     const auto wrong = [&] {
-        return fail(
-            ErrorCode::kInvalidInput,
-            quotedPath(path) + " holds no bricks of this version; write it with relief-accuracy --atlas");
+        return fail(ErrorCode::kInvalidInput,
+                    quotedPath(path) +
+                        " is not a brick atlas of this version; write it with relief-accuracy --atlas");
     };
     Header header;
     BrickAtlas atlas;

@@ -29,23 +29,23 @@ Result<fs::path> resolveInside(const fs::path& folder, std::string_view text, st
         return refuse("names no file; name one in the " + whose + "'s folder");
     }
     if (text.find('\0') != std::string_view::npos) {
-        return refuse("holds a zero byte; remove it");
+        return refuse("contains a zero byte; remove it");
     }
     if (path.is_absolute()) {
-        return refuse("is an absolute path; put the file into the " + whose +
-                      "'s folder and name it from there");
+        return refuse("is an absolute path; move the file into the " + whose +
+                      "'s folder and use a relative path");
     }
     std::error_code error;
     const fs::path own = destination(folder.empty() ? fs::path(".") : folder, error);
     const fs::path target = error ? fs::path() : destination(own / path, error);
     const fs::path other = error || root.empty() ? fs::path() : destination(root, error);
     if (error) {
-        return refuse("cannot be followed: " + error.message() + "; mend the path");
+        return refuse("cannot be followed: " + error.message() + "; fix the path");
     }
     if (!liesIn(own, target) && !(!root.empty() && liesIn(other, target))) {
         return refuse("leads out of the " + whose + "'s folder" +
                       (root.empty() ? "" : " and of --root " + quotedPath(root)) +
-                      "; put the file there, or the " + whose + " beside the file");
+                      "; move the file there, or the " + whose + " next to the file");
     }
     // "-" by itself would mean standard input.
     return text == "-" ? folder / "./-" : folder / path;
@@ -54,7 +54,7 @@ Result<fs::path> resolveInside(const fs::path& folder, std::string_view text, st
 Result<void> checkRoot(const fs::path& root) {
     std::error_code error;
     if (!fs::is_directory(root, error)) {
-        return fail(ErrorCode::kIo, "--root " + quotedPath(root) + " is no folder; name one that exists");
+        return fail(ErrorCode::kIo, "--root " + quotedPath(root) + " is not a folder; name an existing one");
     }
     return {};
 }

@@ -176,7 +176,7 @@ std::int64_t TomlValue::indexOf(std::string_view key, const FieldRange& range) c
     if (node_->is_integer()) {
         const std::int64_t value = whole(range);
         if (count > 0 && value >= static_cast<std::int64_t>(count)) {
-            fail(name_ + " = " + std::to_string(value) + " is none of the " + std::to_string(count) + " " +
+            fail(name_ + " = " + std::to_string(value) + " is not one of the " + std::to_string(count) + " " +
                  std::string(key) + "s; the first is 0");
         }
         return value;
@@ -196,7 +196,7 @@ std::int64_t TomlValue::indexOf(std::string_view key, const FieldRange& range) c
     if (wanted.empty() || found == known.end()) {
         const std::string hint = didYouMean(wanted, known);
         fail(name_ + " = '" + oneLine(wanted) + "' is " + (wanted.empty() ? "an empty name" : "unknown") +
-             (hint.empty() ? "; name one of this file" : hint));
+             (hint.empty() ? "; use a name from this file" : hint));
     }
     return found - known.begin();
 }
@@ -279,7 +279,7 @@ void TableRules::refuseUnknown(const TomlValue& table) const {
             throw TomlError{placeIn(table.file(), key->source()) + ": unknown " +
                             (table.name().empty() ? "table" : "key") + " '" +
                             oneLine(table.full(key->str())) + "'" +
-                            (hint.empty() ? "; known are " + listed(known) : hint)};
+                            (hint.empty() ? "; valid names: " + listed(known) : hint)};
         }
     }
 }
@@ -321,13 +321,13 @@ void TableRules::checkTable(const TomlValue& table, std::string_view selected) c
         }
         const std::string name = table.full(field.name);
         if (field.info.rules.only.empty()) {
-            table.fail(name + " is missing; give it: " + std::string(field.info.help) +
+            table.fail(name + " is missing; add it: " + std::string(field.info.help) +
                        (field.info.unit.empty() ? "" : ", " + std::string(field.info.unit)));
         }
         if (listHas(field.info.rules.only, selected)) {
             const std::string_view by = selector();
             table.find(by).value_or(table).fail(table.full(by) + " = \"" + std::string(selected) +
-                                                "\" needs " + name + " beside it");
+                                                "\" also requires " + name);
         }
     }
 }
@@ -348,7 +348,7 @@ void TableRules::checkUse(const TomlValue& table, const Field& field, std::strin
         for (const std::string_view other : needs) {
             names += (names.empty() ? "" : " or ") + table.full(other);
         }
-        at.fail(at.name() + " does nothing without " + names + "; give that too, or remove this");
+        at.fail(at.name() + " does nothing without " + names + "; add that, or remove this");
     }
 }
 
@@ -409,7 +409,7 @@ void readNumber(const TomlValue& from, FieldRef value, const FieldInfo& info) {
     value.setReal(value.type().size == sizeof(float) ? double{narrowed<float>(number, info.range)}
                                                      : narrowed<double>(number, info.range));
     if (info.rules.not_zero && value.number() == 0.0) {
-        from.fail(from.name() + " does nothing as 0; raise it or remove it");
+        from.fail(from.name() + " does nothing if it is 0; raise it or remove it");
     }
 }
 
@@ -430,7 +430,7 @@ void readNumbers(const TomlValue& from, FieldRef value, const FieldInfo& info) {
     auto& vector = value.as<glm::vec3>();
     const float longest = std::max({std::abs(vector.x), std::abs(vector.y), std::abs(vector.z)});
     if ((info.rules.not_zero || info.rules.unit_length) && !(longest >= 1e-30F)) {
-        from.fail(from.name() + " has no direction; give one, as [0, 1, 0]");
+        from.fail(from.name() + " has no direction; use a nonzero vector such as [0, 1, 0]");
     }
     if (info.rules.unit_length) {
         vector = glm::normalize(vector / longest);
@@ -467,7 +467,7 @@ void readSpan(const TomlValue& from, const FieldSpan& span, const FieldInfo& inf
     readNumber(both == nullptr ? from : from[0], least.ref(), info);
     readNumber(both == nullptr ? from : from[1], most.ref(), info);
     if (least.ref().number() > most.ref().number()) {
-        from.fail(from.name() + " has its least above its most; swap them");
+        from.fail(from.name() + " has a minimum above its maximum; swap them");
     }
     least.give(span.least);
     most.give(span.most);

@@ -66,7 +66,7 @@ class JsonValue {
 
 void JsonValue::fail(const std::string& what) const {
     throw JsonError{(place_.empty() ? "the document" : place_) + " " + what +
-                    (what.find(';') == std::string::npos ? "; mend it" : "")};
+                    (what.find(';') == std::string::npos ? "; fix it" : "")};
 }
 
 std::optional<JsonValue> JsonValue::find(std::string_view key) const {
@@ -131,7 +131,7 @@ void JsonValue::needArray(const FieldRange& count) const {
                   : std::string()));
     }
     if (static_cast<double>(json_->size()) > count.high) {
-        fail("has " + std::to_string(json_->size()) + " elements; give at most " + decimal(count.high));
+        fail("has " + std::to_string(json_->size()) + " elements; at most " + decimal(count.high));
     }
 }
 
@@ -140,7 +140,7 @@ void JsonValue::refuseUnknown(const std::vector<std::string_view>& fields) const
         if (std::find(fields.begin(), fields.end(), key) == fields.end()) {
             const std::string hint = didYouMean(key, fields);
             fail("has an unknown key '" + cleanUtf8(key, kShownMax) + "'" +
-                 (hint.empty() ? "; known are " + listed(fields) : hint));
+                 (hint.empty() ? "; valid keys: " + listed(fields) : hint));
         }
     }
 }
@@ -202,7 +202,7 @@ class JsonReader : public FieldVisitor {
         if (const std::optional<JsonValue> given = from_.find(name)) {
             readValue(*given, value, info);
         } else if (info.rules.required) {
-            from_.fail("has no " + std::string(name) + "; give it: " + std::string(info.help));
+            from_.fail("has no " + std::string(name) + "; add it: " + std::string(info.help));
         }
     }
     [[nodiscard]] bool fills() const override { return true; }

@@ -54,7 +54,7 @@ class Strictness : public nlohmann::detail::json_sax_acceptor<PlainJson> {
     bool begin() {
         if (keys_.size() >= limits_.depth) {
             refused = {ErrorCode::kLimit,
-                       "its JSON is nested more than " + std::to_string(limits_.depth) + " deep"};
+                       "its JSON is nested more than " + std::to_string(limits_.depth) + " levels deep"};
         }
         keys_.emplace_back();
         return count();
@@ -73,7 +73,7 @@ class Strictness : public nlohmann::detail::json_sax_acceptor<PlainJson> {
 
 Result<PlainJson> parseStrictJson(std::string_view text, const JsonLimits& limits) {
     if (text.find('\0') != std::string_view::npos) {
-        return invalidInput("it is no valid JSON: it holds a byte of 0");
+        return invalidInput("it is not valid JSON: it contains a zero byte");
     }
     Strictness strict(limits);
     PlainJson::sax_parse(text.begin(), text.end(), &strict);
@@ -84,7 +84,7 @@ Result<PlainJson> parseStrictJson(std::string_view text, const JsonLimits& limit
         return PlainJson::parse(text.begin(), text.end());
     } catch (const PlainJson::exception& error) {  // also thrown for a number out of range
         const std::string_view words(error.what());
-        return invalidInput("it is no valid JSON: " +
+        return invalidInput("it is not valid JSON: " +
                             cleanUtf8(words.substr(words.find("] ") + 2), kMessageBytesMax));
     }
 }

@@ -106,7 +106,7 @@ std::string readFloat(std::string_view word, const FieldInfo& info, float& value
     }
     if (!number || !info.range.holds(double{*number})) {
         return butMustBe(word, !info.must.empty() ? info.must
-                               : percent          ? "a share in percent, such as 1.5"
+                               : percent          ? "a percentage, such as 1.5"
                                                   : "a number");
     }
     value = *number;
@@ -124,7 +124,7 @@ std::string readDouble(std::string_view word, const FieldInfo& info, double& val
 
 std::string readText(std::string_view word, const FieldInfo& info, std::string& value) {
     if (word.empty()) {
-        return "is given without a value; leave it out, or give it one";
+        return "is empty; omit it, or give it a value";
     }
     if (!info.words.empty() && std::ranges::find(info.words, word) == info.words.end()) {
         return butMustBeOneOf(word, info.words);

@@ -134,9 +134,9 @@ std::string noNumber(std::string_view word) {
         return shown + " is hexadecimal; write it as a decimal number";
     }
     if (word.find(',') != std::string_view::npos) {
-        return shown + " has a comma; write numbers with a point, and blanks between them";
+        return shown + " contains a comma; use decimal points, and blanks between numbers";
     }
-    return shown + " is no number; repair the file or export it again";
+    return shown + " is not a number; repair the file or export it again";
 }
 
 }  // namespace relief

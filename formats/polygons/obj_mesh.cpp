@@ -79,9 +79,8 @@ class ObjReader {
     [[nodiscard]] Result<void> checkName(std::string_view name) const {
         return name.size() <= kNameMax
                    ? Result<void>()
-                   : wrongLine(text_.line(), "a name of " + std::to_string(name.size()) +
-                                                 " bytes is longer than " + std::to_string(kNameMax) +
-                                                 "; shorten it");
+                   : wrongLine(text_.line(), "a name of " + std::to_string(name.size()) + " bytes exceeds " +
+                                                 std::to_string(kNameMax) + "; shorten it");
     }
 
     void begin(std::string_view name) {
@@ -106,12 +105,12 @@ class ObjReader {
         }
         if (count < 3 || count == 5 || count > numbers.size()) {
             return wrongLine(line, "a vertex of " + std::to_string(count) +
-                                       " numbers; write three, and a weight or a colour behind them");
+                                       " numbers; write three, optionally followed by a weight or a colour");
         }
         glm::vec3 position(numbers[0], numbers[1], numbers[2]);
         if (count == 4) {
             if (numbers[3] == 0.0F) {
-                return wrongLine(line, "a vertex of weight 0 lies nowhere; leave the weight out");
+                return wrongLine(line, "a vertex has weight 0; omit the weight");
             }
             position = {numbers[0] / numbers[3], numbers[1] / numbers[3], numbers[2] / numbers[3]};
         }
@@ -140,7 +139,7 @@ class ObjReader {
         const bool whole = end == digits.data() + digits.size() && !digits.empty();
         if (!whole || (error != std::errc() && error != std::errc::result_out_of_range)) {
             return wrongLine(line,
-                             quotedWord(corner) + " names no vertex; repair the file or export it again");
+                             quotedWord(corner) + " is not a vertex; repair the file or export it again");
         }
         const auto so_far = static_cast<std::int64_t>(mesh_.positions.size());
         const std::int64_t index = number > 0 ? number - 1 : so_far + number;

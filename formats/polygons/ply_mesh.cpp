@@ -42,8 +42,7 @@ std::string unreadText(const PlyElement& element) {
     const std::string name = "its element '" + cleanUtf8(element.name, kNameMax) + "' ";
     return element.name == "face" || element.name == "tristrips"
                ? name + "has no list vertex_indices or vertex_index"
-               : name +
-                     "is not read: faces are those of 'face' and 'tristrips', by their list vertex_indices";
+               : name + "is not read: faces must be in 'face' or 'tristrips', in a list vertex_indices";
 }
 
 class PlyImport {
@@ -65,8 +64,8 @@ class PlyImport {
             return noFaces(header);
         }
         for (const PlyElement& element : unread_) {
-            mesh_.warnings.push_back("left out " + std::to_string(element.count) +
-                                     " faces or the like: " + unreadText(element));
+            mesh_.warnings.push_back("skipped " + std::to_string(element.count) +
+                                     " faces or similar: " + unreadText(element));
         }
         return std::move(mesh_);
     }
@@ -75,7 +74,7 @@ class PlyImport {
     Result<void> checkVertices(const PlyHeader& header) {
         const auto is_vertex = [](const PlyElement& element) { return element.name == "vertex"; };
         if (std::count_if(header.elements.begin(), header.elements.end(), is_vertex) != 1) {
-            return invalidInput("its header does not have the element 'vertex' once");
+            return invalidInput("its header must have exactly one element 'vertex'");
         }
         const PlyElement& element = *std::find_if(header.elements.begin(), header.elements.end(), is_vertex);
         const PlyColumns columns(element, kVertexColumns);
@@ -90,11 +89,11 @@ class PlyImport {
     static Result<void> endLine(const PlyElement& element, std::uint64_t index, PlyNumbers& numbers) {
         return !numbers.isText() || numbers.atLineEnd()
                    ? Result<void>()
-                   : invalidInput(
-                         numbers.where() + "element " + cleanUtf8(element.name, kNameMax) + " " +
-                         std::to_string(index) +
-                         " does not end with its line, by the header; correct the counts and properties "
-                         "there, or export it again");
+                   : invalidInput(numbers.where() + "element " + cleanUtf8(element.name, kNameMax) + " " +
+                                  std::to_string(index) +
+                                  " does not end with its line, according to the header; correct the counts "
+                                  "and properties "
+                                  "there, or export it again");
     }
 
     Result<void> readElement(const PlyElement& element, PlyNumbers& numbers) {
@@ -223,7 +222,7 @@ class PlyImport {
     [[nodiscard]] tl::unexpected<Error> noVertex(const char* element, std::uint64_t index, double value,
                                                  const PlyNumbers& numbers) const {
         return invalidInput(numbers.where() + "element " + element + " " + std::to_string(index) +
-                            " names the vertex " + shortest(static_cast<float>(value)) + ", but there are " +
+                            " refers to vertex " + shortest(static_cast<float>(value)) + ", but there are " +
                             std::to_string(vertices_));
     }
 
@@ -237,12 +236,12 @@ class PlyImport {
             static_cast<void>(numbers.next(PlyType::kFloat64));
             return numbers.ended()
                        ? Result<void>()
-                       : invalidInput(numbers.where() + "it holds more numbers than its header announces");
+                       : invalidInput(numbers.where() + "it contains more numbers than its header declares");
         }
         const std::string_view rest = numbers.rest();
         if (rest.find_first_not_of(std::string_view("\0 \t\r\n", 5)) != std::string_view::npos) {
             mesh_.warnings.push_back(std::to_string(rest.size()) +
-                                     " bytes behind the last element of its header are left out");
+                                     " bytes after the last element of its header were skipped");
         }
         return {};
     }
@@ -261,7 +260,7 @@ class PlyImport {
             "it has " + std::to_string(vertices_) + " vertices " + (edges ? "and edges " : "") +
             "but no faces" +
             (edges ? "; export the surface as polygons"
-                   : "; if it is a scan, make a surface of its points first, for example in MeshLab"));
+                   : "; for a scan, first reconstruct a surface from its points, for example in MeshLab"));
     }
 
     PolygonColors colors_;

@@ -44,7 +44,7 @@ std::size_t sizeOf(PlyType type) {
 Result<void> addElement(std::span<const std::string_view> words, PlyHeader& header) {
     const std::optional<std::uint64_t> count = words.size() == 3 ? parseUnsigned(words[2]) : std::nullopt;
     if (!count || header.elements.size() == kPlyElementsMax) {
-        return invalidInput("an element of its header is not understood");
+        return invalidInput("an element of its header is malformed");
     }
     header.elements.push_back({words[1], *count, {}});
     return {};
@@ -53,11 +53,11 @@ Result<void> addElement(std::span<const std::string_view> words, PlyHeader& head
 /// \param words  of the property's line.
 Result<void> addProperty(std::span<const std::string_view> words, PlyHeader& header) {
     if (header.elements.empty() || header.elements.back().properties.size() == kPlyPropertiesMax) {
-        return invalidInput("a property of its header belongs to no element, or to a crowded one");
+        return invalidInput("a property of its header belongs to no element, or its element has too many");
     }
     const bool list = words.size() == 5 && words[1] == "list";
     if (!list && words.size() != 3) {
-        return invalidInput("a property of its header is not understood");
+        return invalidInput("a property of its header is malformed");
     }
     const std::optional<PlyType> type = find(kTypes, words[words.size() - 2]);
     const std::optional<PlyType> length_type = list ? find(kTypes, words[2]) : std::nullopt;
@@ -91,7 +91,7 @@ Result<PlyHeader> takePlyHeader(std::string_view& data) {
         if (++header.lines == 1) {
             returns = taken.ends_with('\r');
             if (kind != "ply") {
-                return invalidInput("it is no PLY file");
+                return invalidInput("it is not a PLY file");
             }
         }
         if (kind == "format" && words.size() > 1) {
@@ -107,7 +107,7 @@ Result<PlyHeader> takePlyHeader(std::string_view& data) {
     }
     if (!encoding) {
         return invalidInput(
-            "its header names no format that is known: ascii, binary_little_endian or binary_big_endian");
+            "its header does not name a supported format: ascii, binary_little_endian or binary_big_endian");
     }
     header.encoding = *encoding;
     return header;
@@ -156,9 +156,9 @@ std::optional<double> PlyNumbers::nextBytes(PlyType type) {
 
 tl::unexpected<Error> plyNumberError(const PlyNumbers& numbers) {
     constexpr std::size_t kShownMax = 40;  // bytes
-    return invalidInput(numbers.where() + (numbers.ended() ? "it ends too early, by the counts of its header"
-                                                           : "'" + cleanUtf8(numbers.word(), kShownMax) +
-                                                                 "' stands among its numbers, and is none"));
+    return invalidInput(numbers.where() +
+                        (numbers.ended() ? "it ends before the counts of its header are reached"
+                                         : "'" + cleanUtf8(numbers.word(), kShownMax) + "' is not a number"));
 }
 
 Result<std::uint64_t> takePlyLength(PlyNumbers& numbers, PlyType type) {
@@ -167,7 +167,7 @@ Result<std::uint64_t> takePlyLength(PlyNumbers& numbers, PlyType type) {
         return plyNumberError(numbers);
     }
     if (!(*length >= 0.0 && *length <= 4294967295.0 && *length == std::floor(*length))) {
-        return invalidInput(numbers.where() + "a list has a length that cannot be");
+        return invalidInput(numbers.where() + "a list has an invalid length");
     }
     return static_cast<std::uint64_t>(*length);
 }

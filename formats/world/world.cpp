@@ -42,16 +42,17 @@ Result<void> checkFile(const WorldFile& file, const std::string& place, std::set
         return invalidInput(place + ".hash must be 32 digits of 0 to 9 and a to f" + kBakeAgain);
     }
     if (file.file.find('\0') != std::string::npos) {
-        return invalidInput(place + ".file holds a zero byte; remove it");
+        return invalidInput(place + ".file contains a zero byte; remove it");
     }
     const fs::path path(file.file);
     if (file.file.empty() || path.is_absolute() || std::find(path.begin(), path.end(), "..") != path.end()) {
         return invalidInput(place + ".file = " + quotedPath(path) +
-                            " must be a path inside the world's folder; put the file there");
+                            " must be a path inside the world's folder; move the file there");
     }
     if (!files.insert(path.lexically_normal().string()).second) {
-        return invalidInput(place + ".file = " + quotedPath(path) +
-                            " is that of another collider too; name each once, and place it by bodies");
+        return invalidInput(
+            place + ".file = " + quotedPath(path) +
+            " is also used by another collider; list each file once, and place it with bodies");
     }
     return {};
 }
@@ -79,7 +80,7 @@ Result<void> checkBodies(World& world) {
         WorldBody& body = world.bodies[i];
         if (body.collider >= world.colliders.size()) {
             return invalidInput(placeOf("bodies", i) + ".collider = " + std::to_string(body.collider) +
-                                " is none of the " + std::to_string(world.colliders.size()) +
+                                " is not one of the " + std::to_string(world.colliders.size()) +
                                 " colliders; the first is 0");
         }
         double square = 0.0;
@@ -88,9 +89,8 @@ Result<void> checkBodies(World& world) {
         }
         const double length = std::sqrt(square);
         if (!(std::abs(length - 1.0) <= kUnitTolerance)) {
-            return invalidInput(placeOf("bodies", i) +
-                                ".rotation is no rotation: a unit quaternion has the length 1, and not " +
-                                shortest(static_cast<float>(length)) + "; scale it, or give [0, 0, 0, 1]");
+            return invalidInput(placeOf("bodies", i) + ".rotation is not a unit quaternion: its length is " +
+                                shortest(static_cast<float>(length)) + "; normalize it, or use [0, 0, 0, 1]");
         }
         for (float& part : body.rotation) {
             part = static_cast<float>(double{part} / length);
@@ -102,7 +102,7 @@ Result<void> checkBodies(World& world) {
 /// Call it before reading the fields, which differ between versions.
 Result<void> checkVersion(const nlohmann::json& json) {
     if (!json.is_object() || !json.contains("format") || json["format"] != kWorldFormat) {
-        return invalidInput("it is no world: its format is not \"" + std::string(kWorldFormat) +
+        return invalidInput("it is not a world: its format is not \"" + std::string(kWorldFormat) +
                             "\"; name a world.json that relief bake --world wrote");
     }
     const auto version = json.find("version");
@@ -196,7 +196,7 @@ Result<World> parseWorld(std::string_view text) {
     RELIEF_TRY(checkBodies(world));
     if (const auto again = repeatedName(world.materials)) {
         return invalidInput(placeOf("materials", *again) + ".name = '" + world.materials[*again].name +
-                            "' is that of another one; join them");
+                            "' is not unique; merge the entries");
     }
     return world;
 }
@@ -227,15 +227,15 @@ Result<Collider> readWorldCollider(const World& world, std::size_t index, WorldD
     const WorldFile& from = fileOf(of, detail);
     const std::string named = placeOf(world, index, detail) + " (" + quotedPath(from.file) + ")";
     if (xxh3_128Hex(bytes) != from.hash) {
-        return invalidInput(named + " has other contents than its hash has" + kBakeAgain);
+        return invalidInput(named + " does not match its hash" + kBakeAgain);
     }
     Collider collider = RELIEF_TRY(withPrefix(named, readContainer(bytes, limits)));
     if (!(collider.bounds == of.box)) {
-        return invalidInput(named + " has another box than its min and max have" + kBakeAgain);
+        return invalidInput(named + " does not match its min and max" + kBakeAgain);
     }
     if (collider.texelBytes() != from.gpu_bytes) {
         return invalidInput(named + " takes " + std::to_string(collider.texelBytes()) +
-                            " bytes on the GPU, and not " + std::to_string(from.gpu_bytes) + kBakeAgain);
+                            " bytes on the GPU, not " + std::to_string(from.gpu_bytes) + kBakeAgain);
     }
     MaterialResponses(world.materials).apply(collider.materials);
     return collider;
@@ -272,16 +272,15 @@ Result<LoadedWorld> loadWorld(const fs::path& path, const ContainerLimits& limit
 }
 
 void fields(FieldVisitor& visit, WorldFile& file) {
-    visit("file", file.file,
-          {.help = "Its container, relative to the folder of the world and inside it", .rules = kRequired});
+    visit(
+        "file", file.file,
+        {.help = "Path of its container, relative to the world's folder and inside it", .rules = kRequired});
     visit("hash", file.hash,
-          {.help = "XXH3-128 of that file's bytes, in hexadecimal",
+          {.help = "XXH3-128 hash of that file, in hexadecimal",
            .rules = kRequired,
            .pattern = "^[0-9a-f]{32}$"});
     visit("gpu_bytes", file.gpu_bytes,
-          {.help = "Bytes that its maps take on the GPU",
-           .range = {1.0, kWorldFileBytesMax},
-           .rules = kRequired});
+          {.help = "Bytes of its maps on the GPU", .range = {1.0, kWorldFileBytesMax}, .rules = kRequired});
 }
 
 void fields(FieldVisitor& visit, WorldCollider& collider) {
@@ -298,50 +297,49 @@ void fields(FieldVisitor& visit, WorldCollider& collider) {
            .range = within(kWorldCoordinateMax),
            .rules = kRequired});
     visit("coarse", collider.coarse,
-          leftOut({.help = "The same shape in fewer bytes, for as long as the other is not on the GPU; "
-                           "without one that always "
-                           "is"}));
+          leftOut({.help = "Coarse container, used while the full one is not on the GPU; if absent, the full "
+                           "one is always resident"}));
 }
 
 void fields(FieldVisitor& visit, WorldBody& body) {
     visit("collider", body.collider, {.help = "Index of its collider, from 0", .rules = kRequired});
     visit("node", body.node, {.help = "Name of its node in the level; may be empty", .rules = kRequired});
     visit("position", body.position,
-          {.help = "Of the collider's origin",
+          {.help = "Position of the collider's origin",
            .unit = "world units",
            .range = within(kWorldCoordinateMax),
            .rules = kRequired});
     visit("rotation", body.rotation,
           {.help = "A unit quaternion [x, y, z, w]", .range = within(1.001), .rules = kRequired});
     visit("scale", body.scale,
-          {.help = "World units of an object unit", .range = {1e-9, 1e9}, .rules = kRequired});
+          {.help = "World units per object unit", .range = {1e-9, 1e9}, .rules = kRequired});
     visit("restitution", body.restitution,
-          {.help = "Factor of the particles' own restitution", .range = kShareRange, .rules = kRequired});
+          {.help = "Multiplies the restitution of particles", .range = kShareRange, .rules = kRequired});
     visit("friction", body.friction,
-          {.help = "1 − friction is a factor of the particles' own 1 − friction",
+          {.help = "1 − friction multiplies 1 − friction of particles",
            .range = kShareRange,
            .rules = kRequired});
 }
 
 void fields(FieldVisitor& visit, World& world) {
     visit("format", world.format,
-          {.help = "Tells it from other files", .rules = kRequired, .words = kWords<"relief-world">});
+          {.help = "Identifies the file format", .rules = kRequired, .words = kWords<"relief-world">});
     visit("version", world.version,
-          {.help = "Of the format", .range = {1.0, double{kWorldVersion}}, .rules = kRequired});
+          {.help = "Version of the format", .range = {1.0, double{kWorldVersion}}, .rules = kRequired});
     visit("unit", world.unit,
-          {.help = "Of lengths, of the colliders' too: m, or empty where the level does not say",
+          {.help = "Unit of length, also of the colliders: m, or empty if the level has none",
            .rules = kRequired,
            .words = kWorldUnits});
     visit("colliders", world.colliders,
-          {.help = "Each different shape once",
+          {.help = "Distinct shapes, each listed once",
            .rules = kRequired,
            .items = {1.0, double{kWorldCollidersMax}}});
     visit("bodies", world.bodies,
-          {.help = "Placed colliders; of two that are equally deep at a point the first counts",
+          {.help = "Placed colliders; if two are equally deep at a point, the first decides",
            .rules = kRequired,
            .items = {1.0, double{kWorldBodiesMax}}});
     visit("materials", world.materials,
-          leftOut({.help = "Responses of the colliders' materials, by their names",
+          leftOut({.help = "Responses of the colliders' materials, by name",
                    .items = {0.0, double{kWorldMaterialsMax}}}));
 }
 

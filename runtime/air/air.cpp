@@ -41,7 +41,7 @@ Result<void> checkNoise(const CurlNoise& noise) {
                     "curl noise needs an amplitude of 0 or more, a scale above 0 and 1 to 4 octaves");
     }
     if (!(noise.drift >= 0.0F && noise.drift / noise.scale <= CurlNoise::kRateMax)) {
-        return fail(ErrorCode::kUsage, "curl noise needs a drift of 0 to 1000 times its scale a second");
+        return fail(ErrorCode::kUsage, "curl noise needs a drift of 0 to 1000 times its scale per second");
     }
     return {};
 }
@@ -51,7 +51,7 @@ Result<void> checkNoise(const CurlNoise& noise) {
 std::optional<FieldFault> check(CurlNoise& noise, const GivenFields& /*given*/) {
     noise.scale = std::max(noise.scale, 1e-9F);  // keeps its reciprocal in the range of floats
     if (noise.drift / noise.scale > CurlNoise::kRateMax) {
-        return FieldFault{"drift", "is more than 1000 times curl_noise.scale a second; lower it"};
+        return FieldFault{"drift", "is more than 1000 times curl_noise.scale per second; lower it"};
     }
     return std::nullopt;
 }
@@ -61,13 +61,13 @@ Result<void> checkAir(const AirSettings& air) {
         return fail(ErrorCode::kUsage, "the wind must be finite");
     }
     if (air.viscosity && !(*air.viscosity >= 0.0F && std::isfinite(*air.viscosity))) {
-        return fail(ErrorCode::kUsage, "the viscosity must be 0 or more, and finite");
+        return fail(ErrorCode::kUsage, "the viscosity must be finite and at least 0");
     }
     if (air.attractors.size() > AirSettings::kAttractorsMax ||
         air.vortices.size() > AirSettings::kVorticesMax) {
         return fail(ErrorCode::kUsage, std::to_string(air.attractors.size()) + " attractors and " +
                                            std::to_string(air.vortices.size()) +
-                                           " vortices are more than 8 of one kind");
+                                           " vortices exceed the limit of 8 of each kind");
     }
     for (std::size_t i = 0; i < air.attractors.size(); ++i) {
         const Attractor& one = air.attractors[i];

@@ -86,7 +86,7 @@ Result<AirBlock> AirBlock::create(const AirSettings& air) {
         const std::uint32_t side = *std::max_element(flow.size.begin(), flow.size.end());
         if (side > static_cast<std::uint32_t>(side_max)) {
             return fail(ErrorCode::kLimit, "the flow has " + std::to_string(side) +
-                                               " nodes along an axis, this GL takes " +
+                                               " nodes along an axis; this GL supports " +
                                                std::to_string(side_max) + "; resample it");
         }
         static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
@@ -110,8 +110,9 @@ Result<void> AirBlock::update(const AirSettings& air) {
     changed.flow = nullptr;
     RELIEF_TRY(checkAir(changed));
     if (const unsigned missing = kindsOf(changed) & ~kinds_; missing != 0) {
-        return fail(ErrorCode::kUsage,
-                    "the air was made without what it is to have now; make it anew, and its programs");
+        return fail(
+            ErrorCode::kUsage,
+            "the air was created without a kind of force that is set now; recreate it and its programs");
     }
     if (!block_) {
         return {};

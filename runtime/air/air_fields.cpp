@@ -7,14 +7,13 @@ namespace relief {
 void fields(FieldVisitor& visit, Attractor& a) {
     visit("position", a.position, {"Centre of attraction", "[x, y, z]", kPointRange, {}, kRequired});
     visit("strength", a.strength,
-          {"Acceleration at the radius; below 0 it repels",
+          {"Acceleration at the radius; negative values repel",
            "1/s²",
            within(kAccelerationMax),
            {},
            {.required = true, .not_zero = true}});
-    visit("radius", a.radius, {"Distance up to which the strength grows", {}, kSizeRange, {}, kRequired});
-    visit("falloff", a.falloff,
-          {"Beyond the radius the strength falls with this power of the distance", {}, {0.0, 2.0}});
+    visit("radius", a.radius, {"Distance at which the strength peaks", {}, kSizeRange, {}, kRequired});
+    visit("falloff", a.falloff, {"Exponent of the decrease with distance beyond the radius", {}, {0.0, 2.0}});
     visit("reach", a.reach,
           {.help = "Distance beyond which there is no force",
            .range = kSizeRange,
@@ -33,9 +32,8 @@ void fields(FieldVisitor& visit, Vortex& v) {
            {},
            {.required = true, .not_zero = true}});
     visit("radius", v.radius,
-          {"Distance from the axis up to which the strength grows", {}, kSizeRange, {}, kRequired});
-    visit("falloff", v.falloff,
-          {"Beyond the radius the strength falls with this power of the distance", {}, {0.0, 2.0}});
+          {"Distance from the axis at which the strength peaks", {}, kSizeRange, {}, kRequired});
+    visit("falloff", v.falloff, {"Exponent of the decrease with distance beyond the radius", {}, {0.0, 2.0}});
 }
 
 void fields(FieldVisitor& visit, AirSettings& air) {
@@ -44,7 +42,7 @@ void fields(FieldVisitor& visit, AirSettings& air) {
            .rules = {.most = AirSettings::kAttractorsMax},
            .left_out = true});
     visit("vortex", air.vortices,
-          {.help = "Axes that particles are driven round",
+          {.help = "Axes around which particles are accelerated",
            .rules = {.most = AirSettings::kVorticesMax},
            .left_out = true});
     visit("curl_noise", air.curl_noise, {.help = "Turbulence; it needs drag", .left_out = true});
@@ -55,9 +53,9 @@ void fields(FieldVisitor& visit, CurlNoise& noise) {
           {"Mean speed of the turbulence", "1/s", {0.0, kSpeedMax, false}, {}, kRequired});
     visit("scale", noise.scale, {"Size of the largest eddies", {}, kSizeRange, {}, kRequired});
     visit("octaves", noise.octaves,
-          {"Sizes of eddies, each half as large as the one before", {}, {1.0, CurlNoise::kOctavesMax}});
+          {"Number of eddy sizes, each half of the previous one", {}, {1.0, CurlNoise::kOctavesMax}});
     visit("drift", noise.drift,
-          {"Speed at which eddies give way to others; up to 1000 scales a second", "1/s", kSpeedRange});
+          {"Speed at which eddies are replaced; at most 1000 scales per second", "1/s", kSpeedRange});
     visit("seed", noise.seed, {"Seed of the pattern"});
 }
 

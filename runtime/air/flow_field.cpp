@@ -33,7 +33,7 @@ Result<void> checkFlowSize(const std::array<std::uint64_t, 3>& size) {
         return fail(ErrorCode::kLimit, "a flow of " + sizeText(size) + " nodes takes " +
                                            std::to_string(nodes * FlowField::kNodeBytes) +
                                            " bytes, more than " + std::to_string(FlowField::kBytesMax) +
-                                           "; resample it, to 256x256x256 for example");
+                                           "; resample it, for example to 256x256x256");
     }
     return {};
 }
@@ -42,7 +42,7 @@ Result<void> checkFlow(const FlowField& flow) {
     const std::array<std::uint64_t, 3> size{flow.size[0], flow.size[1], flow.size[2]};
     RELIEF_TRY(checkFlowSize(size));
     if (flow.nodes.size() != size[0] * size[1] * size[2]) {
-        return fail(ErrorCode::kInvalidInput, "a flow of " + sizeText(size) + " nodes comes with " +
+        return fail(ErrorCode::kInvalidInput, "a flow of " + sizeText(size) + " nodes has " +
                                                   std::to_string(flow.nodes.size()) + " velocities");
     }
     if (!isFinite(flow.box_min) || !isFinite(flow.box_max) || !isFinite(flow.box_max - flow.box_min) ||

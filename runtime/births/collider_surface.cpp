@@ -210,9 +210,8 @@ Result<ColliderSurface> colliderSurface(const Collider& collider, std::uint32_t 
     }
     ColliderSurface made = Contour(collider, cells).run();
     if (made.triangles.empty()) {
-        return invalidInput("no surface is found in it: all of it is thinner than 1/" +
-                            std::to_string(cells) +
-                            " of its longest side; name the mesh that it was baked from as emitter.mesh");
+        return invalidInput("no surface found: every part is thinner than 1/" + std::to_string(cells) +
+                            " of its longest side; set emitter.mesh to the mesh that it was baked from");
     }
     return made;
 }

@@ -30,16 +30,16 @@ double fineUniform(Pcg32& random) {
 Result<EmitterSurface> EmitterSurface::create(std::span<const glm::uvec3> triangles,
                                               std::vector<float> weights, std::vector<glm::vec3> positions) {
     if (!weights.empty() && weights.size() != positions.size()) {
-        return fail(ErrorCode::kUsage, "a surface needs one weight a position, or none");
+        return fail(ErrorCode::kUsage, "a surface needs one weight per position, or none");
     }
     if (!std::all_of(weights.begin(), weights.end(),
                      [](float weight) { return weight >= 0.0F && std::isfinite(weight); })) {
-        return fail(ErrorCode::kUsage, "a surface has a weight that is no number of at least 0");
+        return fail(ErrorCode::kUsage, "a surface has a weight that is not a number of at least 0");
     }
     EmitterSurface made;
     for (const glm::uvec3& t : triangles) {
         if (std::max({t.x, t.y, t.z}) >= positions.size()) {
-            return fail(ErrorCode::kUsage, "a surface has a triangle whose corner does not exist");
+            return fail(ErrorCode::kUsage, "a surface has a triangle with a missing corner");
         }
         if (weights.empty() || weights[t.x] + weights[t.y] + weights[t.z] > 0.0F) {
             made.triangles_.push_back(t);
@@ -47,13 +47,13 @@ Result<EmitterSurface> EmitterSurface::create(std::span<const glm::uvec3> triang
     }
     if (made.triangles_.size() > kTrianglesMax) {
         return fail(ErrorCode::kLimit, "it has more than " + std::to_string(kTrianglesMax) +
-                                           " triangles to give birth; simplify the mesh");
+                                           " emitting triangles; simplify the mesh");
     }
     made.weights_ = std::move(weights);
     made.end_ = std::move(positions);
     made.weigh();
     if (!(made.area() > 0.0)) {
-        return invalidInput("its surface has no area; name one that has");
+        return invalidInput("its surface has no area; choose another one");
     }
     return made;
 }

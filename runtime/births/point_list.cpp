@@ -28,12 +28,12 @@ tl::unexpected<Error> wrong(const std::string& where, const std::string& what) {
 Result<void> add(PointList& list, const Fields& fields, bool normals, const std::string& where) {
     for (std::size_t i = 0; i < 3; ++i) {
         if (!(std::abs(fields[i]) <= kPointCoordinateMax)) {
-            return wrong(where, "a coordinate is no number within 1e9 of 0");
+            return wrong(where, "a coordinate is not a number within 1e9 of 0");
         }
     }
     if (list.positions.size() == kPointsMax) {
         return fail(ErrorCode::kLimit,
-                    where + ": more than " + std::to_string(kPointsMax) + " points; leave some out");
+                    where + ": more than " + std::to_string(kPointsMax) + " points; remove some");
     }
     const auto vector = [&](std::size_t at) {
         return glm::vec3(static_cast<float>(fields[at]), static_cast<float>(fields[at + 1]),
@@ -42,7 +42,7 @@ Result<void> add(PointList& list, const Fields& fields, bool normals, const std:
     if (normals) {
         const glm::vec3 normal = unitVector(vector(3));
         if (normal == glm::vec3(0.0F)) {
-            return wrong(where, "a normal has no direction; leave the normals out, or give every point one");
+            return wrong(where, "a normal has no direction; omit the normals, or give every point one");
         }
         list.normals.push_back(normal);
     }
@@ -79,9 +79,9 @@ Result<PointList> parseCsv(std::string_view text, const std::string& name) {
         }
         const std::string where = name + ":" + std::to_string(reader.number());
         if (!fields || (count != 3 && count != kFields) || (columns != 0 && count != columns)) {
-            return wrong(where, columns == 0 ? "not a point; write x,y,z or x,y,z,nx,ny,nz a line"
+            return wrong(where, columns == 0 ? "not a point; write x,y,z or x,y,z,nx,ny,nz in each line"
                                              : "not a point of " + std::to_string(columns) +
-                                                   " numbers, as those before it");
+                                                   " numbers like the previous ones");
         }
         columns = count;
         RELIEF_TRY(add(list, *fields, count == kFields, where));
@@ -100,7 +100,7 @@ Result<PlyHeader> takePointsHeader(std::string_view& text) {
     const std::uint64_t points = header.elements.front().count;
     if (points > kPointsMax) {
         return fail(ErrorCode::kLimit, std::to_string(points) + " points are more than " +
-                                           std::to_string(kPointsMax) + "; leave some out");
+                                           std::to_string(kPointsMax) + "; remove some");
     }
     return header;
 }
@@ -123,8 +123,8 @@ Result<PointList> parsePly(std::string_view text, const std::string& name) {
         const std::string vertex = name + ": vertex " + std::to_string(i);
         RELIEF_TRY(withPrefix(vertex, columns.read(numbers, fields)));
         if (numbers.isText() && !numbers.atLineEnd()) {
-            return wrong(vertex,
-                         numbers.where() + "more numbers than the header announces; write one vertex a line");
+            return wrong(
+                vertex, numbers.where() + "more numbers than the header declares; write one vertex per line");
         }
         RELIEF_TRY(add(list, fields, normals, vertex));
     }
@@ -138,7 +138,7 @@ Result<PointList> parsePointList(std::span<const std::byte> bytes, const std::st
     std::string_view rest = text;
     auto list = trimmed(takeLine(rest)) == "ply" ? parsePly(text, name) : parseCsv(text, name);
     if (list && list->positions.empty()) {
-        return fail(ErrorCode::kInvalidInput, name + ": holds no points; write x,y,z a line");
+        return fail(ErrorCode::kInvalidInput, name + ": contains no points; write x,y,z in each line");
     }
     return list;
 }

@@ -47,7 +47,7 @@ Result<WorldTextures> WorldTextures::create(const Collider& collider) {
 Result<WorldTextures> WorldTextures::create(std::span<const ColliderBody> bodies, std::size_t room_texels) {
     if (bodies.size() > kBodiesMax) {
         return fail(ErrorCode::kLimit, std::to_string(bodies.size()) + " bodies are more than " +
-                                           std::to_string(kBodiesMax) + "; bake some of them into one");
+                                           std::to_string(kBodiesMax) + "; merge some of them in one bake");
     }
     const auto share = [](float value) { return value >= 0.0F && value <= 1.0F; };
     std::vector<PlacedMap> maps;
@@ -62,7 +62,8 @@ Result<WorldTextures> WorldTextures::create(std::span<const ColliderBody> bodies
             !std::isfinite(glm::dot(body.pose.rotation, body.pose.rotation)) ||
             !std::isfinite(body.pose.scale) || !share(body.restitution) || !share(body.friction)) {
             return fail(ErrorCode::kUsage,
-                        "the pose of a collider must be finite, its restitution and friction from 0 to 1");
+                        "the pose of a collider must be finite, and its restitution and friction must be "
+                        "from 0 to 1");
         }
         const std::uint32_t number = static_cast<std::uint32_t>(placed.size());
         const std::uint32_t group = body.group.value_or(std::min(number, kGroups - 1));
@@ -142,7 +143,7 @@ Result<void> WorldTextures::exchange(std::size_t body, const Collider& collider,
     if (!patches || of.maps != 1 ||
         !world_->bodies.setMap(of.first_map, blockMap(map, place), insideBox(collider))) {
         return fail(ErrorCode::kUnsupported,
-                    "only maps of patches come and go while they are used; bake them anew, without --map, "
+                    "only maps of patches can be streamed; bake again without --map, "
                     "--paper and --holes keep");
     }
     ++revision_;
@@ -213,10 +214,10 @@ Result<WorldTextures> WorldTextures::upload(std::span<const PlacedMap> maps, std
                                       makeBuffer()});
     const std::uint64_t width = std::uint64_t{1} << result.world_->bodies.log2Width();
     RELIEF_TRY(checkTextureSize(width, result.world_->bodies.words().size() / width,
-                                "the bodies of this world", "place fewer"));
+                                "the bodies of this world", "place fewer bodies"));
     result.updateWorld();
     RELIEF_TRY(checkAllocated("the collider's " + std::to_string(result.bytes()) + " bytes of maps",
-                              "bake it with fewer"));
+                              "bake it with fewer maps"));
     return result;
 }
 

@@ -17,8 +17,8 @@ Result<ColliderTextures> ColliderTextures::create(const Collider& collider) {
     if (const std::size_t most = mapsInBlock(static_cast<std::size_t>(block_max));
         collider.maps.size() > most) {
         return fail(ErrorCode::kLimit, "the collider has " + std::to_string(collider.maps.size()) +
-                                           " maps, this GL takes " + std::to_string(most) +
-                                           "; bake it with fewer");
+                                           " maps; this GL supports " + std::to_string(most) +
+                                           "; bake it with fewer maps");
     }
     const std::vector<PlacedMap> maps = placedMaps(collider);
     const MapLayout layout = RELIEF_TRY(MapLayout::create(maps, MapTextures::sideMax()));
@@ -29,7 +29,7 @@ Result<ColliderTextures> ColliderTextures::create(const Collider& collider) {
     result.maps_ = MapTextures(maps, layout);
     result.maps_.setBlock(colliderBlock(maps, layout));
     RELIEF_TRY(checkAllocated("the collider's " + std::to_string(result.bytes()) + " bytes of maps",
-                              "bake it with fewer"));
+                              "bake it with fewer maps"));
     return result;
 }
 

@@ -87,7 +87,7 @@ Slots assignSlots(std::uint32_t vertices, std::span<const glm::uvec3> triangles)
 
 tl::unexpected<Error> tooLarge(const std::string& what, std::uint64_t count, std::uint64_t most) {
     return fail(ErrorCode::kLimit, "a mesh of " + std::to_string(count) + " " + what +
-                                       " is more than this GL takes, " + std::to_string(most) +
+                                       " exceeds the limit of this GL, " + std::to_string(most) +
                                        "; simplify the mesh");
 }
 
@@ -123,7 +123,7 @@ Result<void> checkSize(std::size_t vertices, std::size_t triangles) {
 Result<GpuMesh> GpuMesh::create(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles) {
     RELIEF_TRY(checkContext());
     if (triangles.empty() || positions.empty()) {
-        return fail(ErrorCode::kInvalidInput, "a mesh without triangles cannot be drawn; give it some");
+        return fail(ErrorCode::kInvalidInput, "a mesh without triangles cannot be rendered; add triangles");
     }
     RELIEF_TRY(checkSize(positions.size(), triangles.size()));
     RELIEF_TRY(checkFinite(positions));
@@ -220,7 +220,7 @@ Result<void> GpuMesh::setPositions(std::span<const glm::vec3> positions) {
     if (positions.size() != vertex_count_) {
         return fail(ErrorCode::kUsage, std::to_string(positions.size()) + " positions for a mesh of " +
                                            std::to_string(vertex_count_) +
-                                           " vertices; give as many as at first, or make another mesh");
+                                           " vertices; keep the number of vertices, or create another mesh");
     }
     RELIEF_TRY(checkFinite(positions));
     const PassState state;
@@ -233,12 +233,12 @@ Result<void> GpuMesh::setPositions(std::span<const glm::vec3> positions) {
 
 Result<void> GpuMesh::setPositions(GLuint buffer, std::size_t offset) {
     if (buffer == 0 || glIsBuffer(buffer) != GL_TRUE) {
-        return fail(ErrorCode::kUsage, "positions of a mesh are to come from " + std::to_string(buffer) +
-                                           ", which is no buffer; give one that has been bound");
+        return fail(ErrorCode::kUsage, "positions of a mesh were set from " + std::to_string(buffer) +
+                                           ", which is not a buffer; use one that has been bound");
     }
     if (offset % sizeof(float) != 0) {
-        return fail(ErrorCode::kUsage, "positions of a mesh are to start at byte " + std::to_string(offset) +
-                                           " of a buffer; floats start at multiples of 4");
+        return fail(ErrorCode::kUsage, "positions of a mesh were set to start at byte " +
+                                           std::to_string(offset) + " of a buffer; use a multiple of 4");
     }
     const PassState state;
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer);
@@ -250,7 +250,7 @@ Result<void> GpuMesh::setPositions(GLuint buffer, std::size_t offset) {
         return fail(ErrorCode::kUsage, "positions of a mesh take " + std::to_string(needed) +
                                            " bytes from byte " + std::to_string(offset) +
                                            " on, but the buffer has " + std::to_string(size) +
-                                           "; give a larger one");
+                                           "; use a larger one");
     }
     current_ = 1 - current_;
     moved_ = true;

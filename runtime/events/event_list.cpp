@@ -47,14 +47,14 @@ void drawEntries(const GlProgram& program, const GlFramebuffer& target, std::uin
 Result<EventList> EventList::create(std::span<const EventOptions> lists, std::uint32_t capacity) {
     if (lists.empty() || lists.size() > kEventLists) {
         return fail(ErrorCode::kUsage,
-                    "there may be 1 to " + std::to_string(kEventLists) + " lists of events");
+                    "there must be 1 to " + std::to_string(kEventLists) + " lists of events");
     }
     EventList made;
     for (EventOptions options : lists) {
         if (options.most == 0 || options.most > kMostMax || !(options.min_speed >= 0.0F)) {
             return fail(ErrorCode::kUsage, "a list of events needs room for 1 to " +
                                                std::to_string(kMostMax) +
-                                               " of them, and a least speed of at least 0");
+                                               " of them, and a minimum speed of at least 0");
         }
         options.most = std::min(options.most, capacity);
         made.lists_.push_back(options);

@@ -70,9 +70,8 @@ Result<void> EventRecorder::check(const ShaderCollider* collider) const {
     const std::size_t materials = materialCount(collider);
     if ((bodies + 1) * (materials + 1) > EventList::kPlacesMax) {
         return fail(ErrorCode::kLimit,
-                    "events cannot tell " + std::to_string(materials) + " materials of " +
-                        std::to_string(bodies) + " bodies apart: at most " +
-                        std::to_string(EventList::kPlacesMax) +
+                    "events cannot distinguish " + std::to_string(materials) + " materials of " +
+                        std::to_string(bodies) + " bodies: at most " + std::to_string(EventList::kPlacesMax) +
                         " pairs; give materials the same names, or bake with --materials none");
     }
     return {};

@@ -142,7 +142,7 @@ struct GlContext::Impl {
             return eglErrorText();
         }
         if (es && !epoxy_has_gl_extension("GL_EXT_color_buffer_float")) {
-            return "GL_EXT_color_buffer_float is missing, particle state cannot be rendered to";
+            return "GL_EXT_color_buffer_float is missing, so float textures are not renderable";
         }
         return {};
     }
@@ -202,15 +202,15 @@ struct GlContext::Impl {
         if (index >= devices.size()) {
             return fail(ErrorCode::kUsage,
                         "there is no " + name + ": EGL has " + std::to_string(devices.size()) +
-                            (devices.empty()       ? "; leave the device out"
+                            (devices.empty()       ? "; omit the device"
                              : devices.size() == 1 ? ", device 0"
                                                    : ", 0 to " + std::to_string(devices.size() - 1)) +
                             (devices.empty() ? "" : "; 'eglinfo -B' lists them"));
         }
         const std::string problem = open(deviceDisplay(devices[index]));
         if (!problem.empty()) {
-            return fail(ErrorCode::kUnsupported, name + " gives no " + apiName() + " context (" + problem +
-                                                     "); choose another, or leave the device out");
+            return fail(ErrorCode::kUnsupported, name + " provides no " + apiName() + " context (" + problem +
+                                                     "); choose another, or omit the device");
         }
         describe(name);
         return {};
@@ -258,8 +258,8 @@ Result<void> GlContext::makeCurrent() {
     if (eglBindAPI(impl_->api == GlApi::kGles30 ? EGL_OPENGL_ES_API : EGL_OPENGL_API) != EGL_TRUE ||
         (eglGetCurrentContext() != impl_->context &&
          eglMakeCurrent(impl_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, impl_->context) != EGL_TRUE)) {
-        return fail(ErrorCode::kUsage, "the OpenGL context cannot be used by this thread (" + eglErrorText() +
-                                           "); use it on the thread that made it");
+        return fail(ErrorCode::kUsage, "the OpenGL context cannot be made current on this thread (" +
+                                           eglErrorText() + "); use it on the thread that created it");
     }
     return {};
 }

@@ -25,8 +25,7 @@ std::string errorText(GLenum error) {
 
 Result<void> checkContext() {
     if (glGetString(GL_VERSION) == nullptr) {
-        return fail(ErrorCode::kUsage,
-                    "no OpenGL context is current; make yours current on this thread before the first call");
+        return fail(ErrorCode::kUsage, "no OpenGL context is current; make one current on this thread first");
     }
     return {};
 }
@@ -37,7 +36,7 @@ Result<void> checkGpu(const std::string& during) {
     }
     return fail(ErrorCode::kFailure,
                 "the GPU was reset while " + during +
-                    ", and what was on it is lost; run it again, with less at once if it happens again");
+                    ", and its contents are lost; run again, with less work at once if it recurs");
 }
 
 void forgetGlErrors() {
@@ -51,12 +50,12 @@ Result<void> checkAllocated(const std::string& what, const std::string& cure) {
         return {};
     }
     forgetGlErrors();
-    RELIEF_TRY(checkGpu("making room for " + what));
+    RELIEF_TRY(checkGpu("allocating " + what));
     if (error == GL_OUT_OF_MEMORY) {
-        return fail(ErrorCode::kLimit, what + ": no room on the GPU; " + cure);
+        return fail(ErrorCode::kLimit, what + ": out of GPU memory; " + cure);
     }
     return fail(ErrorCode::kFailure,
-                what + ": the GL refuses the textures or buffers (error " + errorText(error) + "); " + cure);
+                what + ": the GL rejected the textures or buffers (error " + errorText(error) + "); " + cure);
 }
 
 Result<void> checkTextureSize(std::uint64_t width, std::uint64_t height, const std::string& what,
@@ -65,7 +64,7 @@ Result<void> checkTextureSize(std::uint64_t width, std::uint64_t height, const s
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side_max);
     if (std::max(width, height) > static_cast<std::uint64_t>(std::max(side_max, 0))) {
         return fail(ErrorCode::kLimit, what + " need a texture of " + std::to_string(width) + "x" +
-                                           std::to_string(height) + " texels; this GL takes sides up to " +
+                                           std::to_string(height) + " texels; this GL supports sides up to " +
                                            std::to_string(side_max) + "; " + cure);
     }
     return {};

@@ -28,9 +28,9 @@ Result<void> reserve(std::span<const PlacedMap> maps, std::int32_t side_max, std
     for (TexelLayout& texture : textures) {
         if (!texture.finish(side_max)) {
             return fail(ErrorCode::kLimit, "the collider's maps have " + std::to_string(texture.texels()) +
-                                               " texels of one layout, this GL takes " +
+                                               " texels of one layout; this GL supports " +
                                                std::to_string(side_max) + "x" + std::to_string(side_max) +
-                                               " in a texture; bake it with fewer bytes");
+                                               " in a texture; bake it with a smaller budget");
         }
     }
     return {};

@@ -64,9 +64,9 @@ Result<void> AnimatedCollider::check(const MeshPose& pose) const {
     const Bounds box = bounds_.of(pose);
     if (!glm::all(
             glm::lessThanEqual(box.size(), room_ + kRoomSlack * std::max({room_.x, room_.y, room_.z})))) {
-        return fail(ErrorCode::kUsage, "a pose takes up " + sidesText(box.size()) +
-                                           ", more than the room of the animated collider, " +
-                                           sidesText(room_) + "; create it with more");
+        return fail(ErrorCode::kUsage, "a pose occupies " + sidesText(box.size()) +
+                                           ", more than the box of the animated collider, " +
+                                           sidesText(room_) + "; create it with a larger one");
     }
     return {};
 }

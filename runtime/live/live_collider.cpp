@@ -44,7 +44,7 @@ bool isLiveMap(const DepthMap& map) {
 Result<Collider> liveFrames(const Bounds& box, std::uint32_t resolution, LiveSize size) {
     if (resolution < kMapSizeMin || resolution > kMapSizeMax) {
         return fail(ErrorCode::kUsage, "live maps of " + std::to_string(resolution) +
-                                           " texels along a side are not possible; choose " +
+                                           " texels along a side are not supported; choose " +
                                            std::to_string(kMapSizeMin) + " to " +
                                            std::to_string(kMapSizeMax));
     }
@@ -56,7 +56,7 @@ Result<Collider> liveFrames(const Bounds& box, std::uint32_t resolution, LiveSiz
     }
     const float longest = box.longestSide();
     if (!(longest > 0.0F)) {
-        return fail(ErrorCode::kUsage, "the box of live maps is a point");
+        return fail(ErrorCode::kUsage, "the box of live maps has no extent");
     }
     const glm::vec3 middle = box.center();
     const glm::vec3 half =
@@ -101,7 +101,7 @@ Result<LiveCollider> LiveCollider::create(std::span<const glm::vec3> positions,
                                           std::span<const glm::uvec3> triangles, Collider frames) {
     RELIEF_TRY(checkContext());
     if (frames.maps.empty() || !std::all_of(frames.maps.begin(), frames.maps.end(), isLiveMap)) {
-        return fail(ErrorCode::kUsage, "a live collider needs maps as liveFrames() makes them");
+        return fail(ErrorCode::kUsage, "a live collider needs maps from liveFrames()");
     }
     auto mesh = RELIEF_TRY(GpuMesh::create(positions, triangles));
     std::uint32_t width = 0;
@@ -127,7 +127,7 @@ Result<LiveCollider> LiveCollider::create(std::span<const glm::vec3> positions,
 Result<void> LiveCollider::refuseSecondChange() const {
     if (shown_ && moved_) {
         return fail(ErrorCode::kUsage,
-                    "a live collider's positions were set twice between two updates, and half of "
+                    "a live collider's positions were set twice between two updates, so half of "
                     "its motion would be lost; call update(), or settle() after a jump");
     }
     return {};
@@ -141,7 +141,7 @@ Result<void> LiveCollider::setPositions(std::span<const glm::vec3> positions) {
             if (std::isfinite(p.x + p.y + p.z) && !holds(map, p)) {
                 return fail(ErrorCode::kUsage,
                             "vertex " + std::to_string(i) +
-                                " leaves the box of the live collider's maps; choose a larger one");
+                                " leaves the box of the live collider's maps; choose a larger box");
             }
         }
     }
@@ -166,8 +166,8 @@ void LiveCollider::settle() {
 Result<void> LiveCollider::update(WorldTextures& textures, std::size_t body) {
     const std::vector<LiveSlot> slots = textures.liveSlots(body);
     if (slots.size() != frames_.maps.size()) {
-        return fail(ErrorCode::kUsage, "body " + std::to_string(body) +
-                                           " was not created as a live one with this collider's maps");
+        return fail(ErrorCode::kUsage,
+                    "body " + std::to_string(body) + " was not created as live with this collider's maps");
     }
     if (shown_ && !moved_ && !moving_) {
         return {};

@@ -45,7 +45,7 @@ Result<VertexFeedback> VertexFeedback::create(const char* shader, std::size_t ve
     glBindVertexArray(made.array_.name());
     glBindBuffer(GL_ARRAY_BUFFER, made.output_.name());
     glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(made.bytes_), nullptr, GL_DYNAMIC_COPY);
-    RELIEF_TRY(checkAllocated(std::to_string(vertices) + " vertices that move", "simplify the mesh"));
+    RELIEF_TRY(checkAllocated(std::to_string(vertices) + " moving vertices", "simplify the mesh"));
     made.target_ = RELIEF_TRY(makeFramebuffer({made.pixel_.name()}));
     return made;
 }

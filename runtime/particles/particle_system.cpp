@@ -33,10 +33,10 @@ Result<void> checkTypes(std::span<const ParticleType> types) {
               finite(type.friction_threshold, 0.0F) && finite(type.lifetime_loss, 0.0F))) {
             return fail(
                 ErrorCode::kUsage,
-                "a type of particles needs numbers that are finite: a mass of at least 1e-15, a radius, "
-                "friction "
-                "threshold and loss of lifetime of at least 0, restitution and friction from 0 to 1; and it "
-                "collides with groups 0 to 7 of the bodies and the ground alone");
+                "a particle type needs finite numbers: a mass of at least 1e-15; a radius, friction "
+                "threshold "
+                "and lifetime loss of at least 0; restitution and friction from 0 to 1. It may only collide "
+                "with groups 0 to 7 of the bodies and with the ground");
         }
     }
     return {};
@@ -48,7 +48,7 @@ Result<ParticleSystem> ParticleSystem::create(const ParticleSystemOptions& optio
     RELIEF_TRY(checkContext());
     if (options.capacity == 0 || options.capacity > kCapacityMax) {
         return fail(ErrorCode::kUsage, "a particle system of " + std::to_string(options.capacity) +
-                                           " particles is not possible; choose 1 to " +
+                                           " particles is not supported; choose 1 to " +
                                            std::to_string(kCapacityMax));
     }
     // The upper limit keeps the resolution of the GPU's clock below 8 ms.
@@ -176,7 +176,7 @@ Result<void> ParticleSystem::setForces(const Forces& forces) {
         return fail(ErrorCode::kUsage, "gravity and wind must be finite");
     }
     if (!rate(forces.drag) || !rate(forces.viscosity)) {
-        return fail(ErrorCode::kUsage, "drag and viscosity must be at least 0, and finite");
+        return fail(ErrorCode::kUsage, "drag and viscosity must be finite and at least 0");
     }
     forces_ = forces;
     return {};
@@ -202,7 +202,7 @@ Result<void> ParticleSystem::setTypes(std::span<const ParticleType> types) {
 
 Result<void> ParticleSystem::setSweep(float length) {
     if (!(length >= 0.0F && std::isfinite(length))) {
-        return fail(ErrorCode::kUsage, "the length of a sweep must be at least 0, and finite");
+        return fail(ErrorCode::kUsage, "the length of a sweep must be finite and at least 0");
     }
     sweep_ = length;
     return remakeStepIfNeeded();
@@ -277,7 +277,7 @@ Result<std::size_t> ParticleSystem::spawn(std::span<const Birth> births) {
 
 Result<void> ParticleSystem::step(float dt) {
     if (!(dt > 0.0F && std::isfinite(dt))) {
-        return fail(ErrorCode::kUsage, "a step takes more than 0 seconds, and is finite");
+        return fail(ErrorCode::kUsage, "the duration of a step must be finite and above 0");
     }
     const PassState state;
     runBirths(dt);

@@ -14,7 +14,7 @@ Result<StepPath> chosenPath(StepPath wanted) {
         return fail(ErrorCode::kUnsupported,
                     "the compute path needs OpenGL 4.3 or OpenGL ES 3.1, and this context has " +
                         std::string(reinterpret_cast<const char*>(glGetString(GL_VERSION))) +
-                        "; take the fragment path");
+                        "; use the fragment path");
     }
     if (wanted == StepPath::kAuto) {
         return hasCompute() && !isSoftwareRenderer() ? StepPath::kCompute : StepPath::kFragment;

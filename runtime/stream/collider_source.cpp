@@ -115,7 +115,8 @@ Result<std::unique_ptr<ColliderSource>> makeFileSource(World world, std::filesys
     try {
         return std::make_unique<FileSource>(std::move(world), std::move(folder), limits);
     } catch (const std::system_error& error) {
-        return fail(ErrorCode::kLimit, std::string("no thread to load colliders with: ") + error.what());
+        return fail(ErrorCode::kLimit,
+                    std::string("cannot create a thread to load colliders: ") + error.what());
     }
 }
 

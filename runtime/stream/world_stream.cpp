@@ -94,8 +94,8 @@ Result<Start> layOut(const World& world, std::span<const ColliderBody> bodies,
         }
         if (!isStreamable(*body.collider)) {
             return fail(ErrorCode::kUnsupported, quotedPath(named.coarse->file) +
-                                                     ": a collider that comes and goes has one map of "
-                                                     "patches; bake the level anew");
+                                                     ": streamed colliders must have exactly one map of "
+                                                     "patches; bake the level again");
         }
         collider.body = start.planned.size() - 1;
         collider.texels = static_cast<std::size_t>(named.gpu_bytes / kTexelSize);
@@ -196,7 +196,7 @@ void WorldStream::State::request() {
 void WorldStream::State::giveUp(std::size_t index, const std::string& warning) {
     colliders[index].failed = true;
     colliders[index].requested = false;
-    warnings.push_back(warning + "; its coarse likeness stays");
+    warnings.push_back(warning + "; its coarse collider remains in use");
 }
 
 void WorldStream::State::take(ColliderSource::Arrival arrival) {
@@ -205,7 +205,7 @@ void WorldStream::State::take(ColliderSource::Arrival arrival) {
         giveUp(arrival.collider, arrival.loaded.error().message);
     } else if (!isStreamable(*arrival.loaded) ||
                arrival.loaded->texelBytes() != kTexelSize * colliders[arrival.collider].texels) {
-        giveUp(arrival.collider, names[arrival.collider] + " is not the collider that the world names");
+        giveUp(arrival.collider, names[arrival.collider] + " is not the collider named by the world");
     } else {
         arrived.push_back({arrival.collider, *std::move(arrival.loaded)});
     }
@@ -294,7 +294,7 @@ Result<std::unique_ptr<WorldStream>> WorldStream::create(const World& world,
         names.push_back(quotedPath(collider.file));
     }
     if (coarse_bytes > options.gpu_bytes) {
-        return fail(ErrorCode::kLimit, "what is always there of this world takes " +
+        return fail(ErrorCode::kLimit, "the resident colliders of this world take " +
                                            std::to_string(coarse_bytes) + " bytes of the GPU, more than " +
                                            std::to_string(options.gpu_bytes) + "; allow more");
     }
@@ -324,7 +324,7 @@ Result<std::unique_ptr<WorldStream>> WorldStream::create(const World& world,
         if (state->colliders[i].texels > room) {
             state->giveUp(
                 i, state->names[i] + " takes " + std::to_string(kTexelSize * state->colliders[i].texels) +
-                       " bytes of the GPU, and there is room for " + std::to_string(kTexelSize * room));
+                       " bytes of the GPU, but there is room for " + std::to_string(kTexelSize * room));
         }
     }
     return std::unique_ptr<WorldStream>(new WorldStream(std::move(state)));

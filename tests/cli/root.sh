@@ -29,5 +29,5 @@ printf '[collider]\nfile = "../assets/colliders/link.relief"\n' >scenes/link.tom
 expect_error 3 'leads out of' "$relief_sim" scenes/link.toml --check --root assets
 printf '[collider]\nfile = "%s/assets/colliders/box.relief"\n' "$work" >scenes/absolute.toml
 expect_error 3 'is an absolute path' "$relief_sim" scenes/absolute.toml --check --root assets
-expect_error 2 "--root 'missing' is no folder" "$relief_sim" scenes/scene.toml --check --root missing
-expect_error 2 "--root '.*box\.relief' is no folder" "$relief_sim" scenes/scene.toml --check --root elsewhere/box.relief
+expect_error 2 "--root 'missing' is not a folder" "$relief_sim" scenes/scene.toml --check --root missing
+expect_error 2 "--root '.*box\.relief' is not a folder" "$relief_sim" scenes/scene.toml --check --root elsewhere/box.relief

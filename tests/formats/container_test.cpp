@@ -92,8 +92,8 @@ TEST(Container, VersionsBeforeTwoAreRefusedInOneLineWithTheCure) {
         EXPECT_EQ(inspectContainer(bytes)->issues.size(), 1U) << "the checksum, too, is of another version";
         return read ? "" : read.error().message;
     };
-    EXPECT_EQ(refusedAs(1, 6), "container version 1.6, this program reads version 2: bake the mesh again");
-    EXPECT_EQ(refusedAs(3, 0), "container version 3.0, this program reads version 2; use a newer Relief");
+    EXPECT_EQ(refusedAs(1, 6), "container version 1.6; this program reads version 2: bake the mesh again");
+    EXPECT_EQ(refusedAs(3, 0), "container version 3.0; this program reads version 2; use a newer Relief");
 }
 
 TEST(Container, APayloadThatDoesNotShrinkIsStored) {
@@ -139,7 +139,8 @@ TEST(Damage, OtherFilesAndTransfersAsTextAreNamed) {
     for (const std::vector<std::byte>& file : {bytes, test::toBytes(std::string(500, 'v'))}) {
         const Result<Collider> read = readContainer(file);
         ASSERT_FALSE(read);
-        EXPECT_NE(read.error().message.find("no .relief container, or a transfer as text"), std::string::npos)
+        EXPECT_NE(read.error().message.find("not a .relief container, or a text-mode transfer"),
+                  std::string::npos)
             << read.error().message;
     }
     EXPECT_FALSE(readContainer({}));
@@ -173,12 +174,12 @@ std::size_t fullTexel(const DepthMap& map) {
 
 const std::vector<Refusal>& refusals() {
     static const std::vector<Refusal> all = {
-        {"there is no map", [](auto& c) { c.maps.clear(); }},
+        {"there are no maps", [](auto& c) { c.maps.clear(); }},
         {"bounds are not finite", [](auto& c) { c.bounds.max.y = kInfinity; }},
         {"bounds are not finite", [](auto& c) { c.bounds.min.x = kNotANumber; }},
-        {"lies beyond bounds.max", [](auto& c) { c.bounds.min.z = 9.0F; }},
-        {"lies beyond bounds.max", [](auto& c) { c.bounds = {}; }},
-        {"mesh_name has a '/'", [](auto& c) { c.provenance.mesh_name = "../x.obj"; }},
+        {"exceeds bounds.max", [](auto& c) { c.bounds.min.z = 9.0F; }},
+        {"exceeds bounds.max", [](auto& c) { c.bounds = {}; }},
+        {"mesh_name contains '/'", [](auto& c) { c.provenance.mesh_name = "../x.obj"; }},
         {"mesh_name has 256 bytes", [](auto& c) { c.provenance.mesh_name.assign(256, 'a'); }},
         {"mesh_name is not UTF-8", [](auto& c) { c.provenance.mesh_name = "a\xff"; }},
         {"mesh_hash is neither", [](auto& c) { c.provenance.mesh_hash = "0123"; }},
@@ -198,13 +199,13 @@ const std::vector<Refusal>& refusals() {
         {"map 0: its format 6 is unknown", [](auto& c) { c.maps[0].format = static_cast<MapFormat>(6); }},
         {"map 2: its decode 2 is unknown", [](auto& c) { c.maps[2].decode = static_cast<Decode>(2); }},
         {"map 0: its compare 3 is unknown", [](auto& c) { c.maps[0].compare = static_cast<Compare>(3); }},
-        {"does not go with its format", [](auto& c) { c.maps[1].compare = Compare::kBoth; }},
-        {"does not go with its format", [](auto& c) { c.maps[2].compare = Compare::kLess; }},
-        {"does not go with its format", [](auto& c) { c.maps[4].compare = Compare::kGreater; }},
+        {"does not match its format", [](auto& c) { c.maps[1].compare = Compare::kBoth; }},
+        {"does not match its format", [](auto& c) { c.maps[2].compare = Compare::kLess; }},
+        {"does not match its format", [](auto& c) { c.maps[4].compare = Compare::kGreater; }},
         {"map 3: its size 4x5 is not square", [](auto& c) { c.maps[3].height = 5; }},
         {"map 3: its size 0x0 is below 1x1", [](auto& c) { c.maps[3].width = c.maps[3].height = 0; }},
         {"map 1: its size 2x8 is below 3x3", [](auto& c) { c.maps[1].width = 2; }},
-        {"map 1: its size 16385x8 is beyond", [](auto& c) { c.maps[1].width = 16385; }, ErrorCode::kLimit},
+        {"map 1: its size 16385x8 exceeds", [](auto& c) { c.maps[1].width = 16385; }, ErrorCode::kLimit},
         {"map 1: it has 224 bytes of texels", [](auto& c) { c.maps[1].height = 9; }},
         {"map 1: it has 225 bytes of texels", [](auto& c) { c.maps[1].texels.push_back({}); }},
         {"object_to_map row 2 is not finite",
@@ -326,7 +327,7 @@ TEST(Files, SaveAndLoadNameTheFile) {
     expectNamed(loadCollider(path), ErrorCode::kInvalidInput, "a.relief");
     ASSERT_TRUE(writeFile(folder.path() / "w.json", test::toBytes("{}")));
     expectNamed(loadCollider(folder.path() / "w.json"), ErrorCode::kInvalidInput,
-                "of a world name a container");
+                "name one of the containers");
     Collider broken = oneMapOfEveryFormat();
     broken.maps[0].width = 0;
     expectNamed(saveCollider(path, broken), ErrorCode::kInvalidInput, "a.relief");

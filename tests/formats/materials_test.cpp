@@ -51,15 +51,15 @@ TEST(Materials, EveryFaultIsFound) {
         std::function<void(Materials&)> spoil;
     };
     for (const Case& wrong : std::vector<Case>{
-             {"a tree of materials, but no material", [](auto& m) { m.list.clear(); }},
+             {"a material tree, but no materials", [](auto& m) { m.list.clear(); }},
              {"materials[1] has the name 'oak'", [](auto& m) { m.list[1].name = "oak"; }},
-             {"materials[0] has a name that is no UTF-8", [](auto& m) { m.list[0].name = "\x80"; }},
+             {"materials[0] has a name that is not clean UTF-8", [](auto& m) { m.list[0].name = "\x80"; }},
              {"longer than 256 bytes", [](auto& m) { m.list[0].name.assign(257, 'a'); }},
              {"materials[2] has a restitution", [](auto& m) { m.list[2].restitution = 1.5F; }},
              {"materials[2] has a restitution", [](auto& m) { m.list[2].friction = std::nanf(""); }},
              {"materials[1] has a lifetime_loss", [](auto& m) { m.list[1].lifetime_loss = -1.0F; }},
              {"there are 256 materials", [](auto& m) { m.list.resize(256); }},
-             {"with the materials more than 256", [](auto& m) { m.sides.resize(254); }},
+             {"together with the materials, more than 256", [](auto& m) { m.sides.resize(254); }},
              {"a pair of sides", [](auto& m) { m.sides[0].axis = 9; }},
              {"a pair of sides", [](auto& m) { m.sides[0].against = 3; }},
              {"the cube of the materials", [](auto& m) { m.size = 0.0F; }},
@@ -67,14 +67,14 @@ TEST(Materials, EveryFaultIsFound) {
              {"node 0 has its octants", [](auto& m) { m.nodes[0].head = 0x80U; }},
              {"node 0 has its octants", [](auto& m) { m.nodes[0].head = 2U << 8U | 0x80U; }},
              {"node 1 has its octants", [](auto& m) { m.nodes[1].head = 1U << 8U; }},
-             {"material node 1 belongs to no other", [](auto& m) { m.nodes[0].head = 0; }},
-             {"nodes of materials are missing",
+             {"material node 1 has no parent", [](auto& m) { m.nodes[0].head = 0; }},
+             {"material nodes are missing",
               [](auto& m) {
                   m.nodes[1].head = 2U << 8U | 1U;
                   m.nodes[1].leaves[0] = 0;
               }},
-             {"octant of a material", [](auto& m) { m.nodes[1].leaves[3] = 4; }},
-             {"octant of a material", [](auto& m) { m.nodes[0].leaves[7] = 1; }}}) {
+             {"octant with an invalid material", [](auto& m) { m.nodes[1].leaves[3] = 4; }},
+             {"octant with an invalid material", [](auto& m) { m.nodes[0].leaves[7] = 1; }}}) {
         Materials materials = someMaterials();
         wrong.spoil(materials);
         const std::string fault = faultOfMaterials(materials);
@@ -86,7 +86,7 @@ TEST(Materials, EveryFaultIsFound) {
     for (std::size_t i = 0; i + 1 < deep.nodes.size(); ++i) {
         deep.nodes[i].head = static_cast<std::uint32_t>(i + 1) << 8U | 1U;
     }
-    EXPECT_NE(faultOfMaterials(deep).find("lies too deep"), std::string::npos) << faultOfMaterials(deep);
+    EXPECT_NE(faultOfMaterials(deep).find("is too deep"), std::string::npos) << faultOfMaterials(deep);
     deep.nodes.pop_back();
     deep.nodes.back().head = 0;
     EXPECT_EQ(faultOfMaterials(deep), "");
@@ -119,9 +119,9 @@ TEST(Materials, ResponsesAreByName) {
     EXPECT_EQ(materials.list[1], (Material{"stone", 0.1F, 0.0F, 5.0F, 0.25F}));
     EXPECT_EQ(given.faultOf("stone"), std::nullopt);
     EXPECT_EQ(given.faultOf("stoen").value_or(""),
-              "is the name of no material; did you mean 'stone'? There are '', 'oak', 'stone'");
+              "is not the name of a material; did you mean 'stone'? There are '', 'oak', 'stone'");
     EXPECT_EQ(MaterialResponses({}).faultOf("x").value_or(""),
-              "is the name of no material: the colliders have none; bake a mesh with several, or with "
+              "is not the name of a material: the colliders have none; bake a mesh with several, or with "
               "--materials keep");
     const std::vector<MaterialResponse> twice{{"a", {}, {}, {}}, {"b", {}, {}, {}}, {"a", {}, {}, {}}};
     EXPECT_EQ(repeatedName(twice), 2U);

@@ -192,28 +192,29 @@ TEST(PatchTree, BrokenTreesAreRefused) {
         ASSERT_FALSE(valid) << text;
         EXPECT_NE(valid.error().message.find(text), std::string::npos) << valid.error().message;
     };
-    refused({{0, 1, 1}, 0}, {leaf}, "no valid size");
-    refused({{65535, 65535, 65535}, 0}, {leaf}, "no valid size");
-    refused({{1, 1, 1}, kPatchLevelsMax + 1}, {leaf}, "no valid size");
+    refused({{0, 1, 1}, 0}, {leaf}, "an invalid size");
+    refused({{65535, 65535, 65535}, 0}, {leaf}, "an invalid size");
+    refused({{1, 1, 1}, kPatchLevelsMax + 1}, {leaf}, "an invalid size");
     // To itself, past the next texel, beyond the map, and deeper than the header says.
     refused({{1, 1, 1}, 3}, {PatchRecord::split(1, 0, 1, up, 0)}, "not the next texels");
     refused({{1, 1, 1}, 3}, {PatchRecord::split(1, 0, 3, up, 0), leaf, leaf}, "not the next texels");
     refused({{4, 4, 1}, 0}, std::vector<PatchRecord>(16, PatchRecord::split(1, 0, 17, up, 0)),
             "not the next texels");
-    refused({{1, 1, 1}, 0}, {PatchRecord::patch(frame, false, codes, 1)}, "heights lie elsewhere");
-    refused({{1, 1, 1}, 0}, {PatchRecord::patch(frame, false, codes, 14)}, "heights lie elsewhere");
+    refused({{1, 1, 1}, 0}, {PatchRecord::patch(frame, false, codes, 1)}, "heights are out of place");
+    refused({{1, 1, 1}, 0}, {PatchRecord::patch(frame, false, codes, 14)}, "heights are out of place");
     PatchRecord odd = PatchRecord::patch(frame, false, codes, 2);
     odd.low |= 3U << 5U;
-    refused({{1, 1, 1}, 0}, {odd}, "no known kind");
+    refused({{1, 1, 1}, 0}, {odd}, "an unknown kind");
     // Pairs of themselves, of what lies beyond the map, of another kind, of pairs, and of patches without heights.
-    refused({{1, 1, 1}, 0}, {PatchRecord::pair(true, 1)}, "patches lie elsewhere");
-    refused({{1, 1, 1}, 0}, {PatchRecord::pair(true, 15)}, "patches lie elsewhere");
-    refused({{1, 1, 1}, 0}, {PatchRecord::pair(true, 2), leaf, leaf}, "no known kind");
+    refused({{1, 1, 1}, 0}, {PatchRecord::pair(true, 1)}, "patches are out of place");
+    refused({{1, 1, 1}, 0}, {PatchRecord::pair(true, 15)}, "patches are out of place");
+    refused({{1, 1, 1}, 0}, {PatchRecord::pair(true, 2), leaf, leaf}, "an unknown kind");
     const PatchRecord flat =
         PatchRecord::patch(frame, false, PatchHeights::of(std::array{0.1, 0.2, 0.3, 0.4}, 2), 0);
-    refused({{1, 1, 1}, 0}, {PatchRecord::pair(true, 2), flat, PatchRecord::pair(true, 2)}, "no known kind");
+    refused({{1, 1, 1}, 0}, {PatchRecord::pair(true, 2), flat, PatchRecord::pair(true, 2)},
+            "an unknown kind");
     refused({{1, 1, 1}, 0}, {PatchRecord::pair(true, 2), flat, PatchRecord::patch(frame, false, codes, 14)},
-            "heights lie elsewhere");
+            "heights are out of place");
     odd = PatchRecord::flat(true, up, std::nanf(""));
     refused({{1, 1, 1}, 0}, {odd}, "not finite");
     odd = leaf;

@@ -207,7 +207,7 @@ TEST(ImportGltf, TransformsThatAreNone) {
                  node(R"("rotation":[0,0,0,0])", "not a unit quaternion"),
                  node(R"("rotation":[0,0,1])", "3 numbers instead of 4"),
                  node(zeros + R"(,1],"scale":[1,1,1])", "use one of them"),
-                 node(R"("translation":[0,0,1e999])", "no valid JSON"),
+                 node(R"("translation":[0,0,1e999])", "not valid JSON"),
                  node(R"("translation":[0,0,1e200])", "not a number or beyond 1e15")});
 }
 
@@ -274,11 +274,11 @@ TEST(ImportGltf, EqualKeysAndJsonThatIsNone) {
     expectWrong({node(R"("scale":[1,1,1],"scale":[2,2,2])", "the key 'scale' twice"),
                  node(R"("me\u0073h":0)", "the key 'mesh' twice"),
                  parts({.more = R"("extras":{"a":[{"b":1},{"b":1,"b":1}]},)"}, "the key 'b' twice"),
-                 {tetrahedronGltf() + "x", "no valid JSON: parse error at line 1, column "},
-                 {"{\n \"asset\": ,}", "no valid JSON: parse error at line 2, column 11"},
-                 {tetrahedronGltf() + std::string("\0{}", 3), "a byte of 0"},
+                 {tetrahedronGltf() + "x", "not valid JSON: parse error at line 1, column "},
+                 {"{\n \"asset\": ,}", "not valid JSON: parse error at line 2, column 11"},
+                 {tetrahedronGltf() + std::string("\0{}", 3), "a zero byte"},
                  {"[]", "not an object"},
-                 {"{", "no valid JSON"}});
+                 {"{", "not valid JSON"}});
 }
 
 TEST(ImportGltf, AccessorsAndIndicesThatAreWrong) {

@@ -167,21 +167,22 @@ TEST(ImportPly, StripsBeginEndAndTurn) {
 TEST(ImportPly, HostileStripsAreRefused) {
     for (const char* list : {"3 0 1 4\n", "3 0 1 -2\n", "4 0 1 2 2147483647\n", "3 0 1 0.5\n", "3 0 1 nan\n",
                              "3 0 1 4294967295\n"}) {
-        expectWrong("p.ply", {{strips("element tristrips 1", list), "names the vertex"}});
+        expectWrong("p.ply", {{strips("element tristrips 1", list), "refers to vertex"}});
     }
     const auto vertices = [](const std::string& count) {
         return replaced(strips("element tristrips 1", ""), "vertex 4", "vertex " + count);
     };
-    expectWrong("p.ply", {{strips("element tristrips 1", "-3 0 1 2\n"), "length that cannot be"},
-                          {strips("element tristrips 1", "2147483647 0 1 2\n"), "ends too early"},
-                          {strips("element tristrips 4000000000", "3 0 1 2\n"), "ends too early"},
-                          {strips("element tristrips 18446744073709551615", "3 0 1 2\n"), "ends too early"},
-                          {strips("element tristrips 18446744073709551616", "3 0 1 2\n"), "ends too early"},
-                          {strips("element tristrips -1", "3 0 1 2\n"), "not understood"},
-                          {strips("element tristrips 1", "3 0 one 2\n"), "line 14: 'one'"},
-                          {strips("element tristrips 1", "4 0 0 1 1\n"), "no faces"},
-                          {vertices("200000000"), "ends too early"},
-                          {vertices("99999999999"), "", ErrorCode::kLimit}});
+    expectWrong("p.ply",
+                {{strips("element tristrips 1", "-3 0 1 2\n"), "invalid length"},
+                 {strips("element tristrips 1", "2147483647 0 1 2\n"), "ends before the counts"},
+                 {strips("element tristrips 4000000000", "3 0 1 2\n"), "ends before the counts"},
+                 {strips("element tristrips 18446744073709551615", "3 0 1 2\n"), "ends before the counts"},
+                 {strips("element tristrips 18446744073709551616", "3 0 1 2\n"), "ends before the counts"},
+                 {strips("element tristrips -1", "3 0 1 2\n"), "malformed"},
+                 {strips("element tristrips 1", "3 0 one 2\n"), "line 14: 'one'"},
+                 {strips("element tristrips 1", "4 0 0 1 1\n"), "no faces"},
+                 {vertices("200000000"), "ends before the counts"},
+                 {vertices("99999999999"), "", ErrorCode::kLimit}});
 }
 
 TEST(ImportPly, EveryTruncationIsRefused) {
@@ -210,10 +211,11 @@ TEST(ImportPly, BytesBehindTheLastElement) {
 
 TEST(ImportPly, HeadersThatNobodyWrites) {
     expectWrong("p.ply", {{"ply\nformat ascii 1.0\n", "header does not end"},
-                          {"solid t\nend_header\n", "no PLY"},
-                          {"ply\nelement vertex 1\nend_header\n", "no format"},
-                          {"ply\nformat ascii 1.0\nend_header\n", "'vertex' once"},
-                          {kHead + "element vertex 1\nproperty float x\nend_header\n", "'vertex' once"}});
+                          {"solid t\nend_header\n", "not a PLY"},
+                          {"ply\nelement vertex 1\nend_header\n", "not name a supported format"},
+                          {"ply\nformat ascii 1.0\nend_header\n", "exactly one element 'vertex'"},
+                          {kHead + "element vertex 1\nproperty float x\nend_header\n",
+                           "exactly one element 'vertex'"}});
     for (const char* z : {"float w", "float x", "float y", "list uchar float z"}) {
         expectWrong("p.ply", {{replaced(kHead, "float z", z) + kFace + "end_header\n", "x, y and z"}});
     }
@@ -246,11 +248,11 @@ TEST(ImportPly, PointsAndEdgesAreNoSurface) {
     const std::string rest = "end_header\n" + kCorners;
     expectWrong(
         "p.ply",
-        {{kHead + rest, "it has 4 vertices but no faces; if it is a scan"},
+        {{kHead + rest, "it has 4 vertices but no faces; for a scan"},
          // Also of a cloud that is cut off: more points would not help.
-         {kHead + "end_header\n0 0 0\n", "if it is a scan"},
-         {kHead + replaced(kFace, "face 1", "face 0") + rest, "if it is a scan"},
-         {kHead + replaced(kFace, "face 1", "range_grid 4") + rest + "1 0\n1 1\n0\n1 2\n", "if it is a scan"},
+         {kHead + "end_header\n0 0 0\n", "for a scan"},
+         {kHead + replaced(kFace, "face 1", "face 0") + rest, "for a scan"},
+         {kHead + replaced(kFace, "face 1", "range_grid 4") + rest + "1 0\n1 1\n0\n1 2\n", "for a scan"},
          {kHead + "element edge 1\nproperty int vertex1\nproperty int vertex2\n" + rest + "0 1\n",
           "4 vertices and edges but no faces; export"}});
 }

@@ -68,9 +68,9 @@ TEST(ImportText, Obj) {
                           {face("f 2 3 99999999999999999999"), "line 7: "},
                           {face("f"), "line 7: "},
                           {vertex("v 0 0"), "line 4: a vertex of 2 numbers"},
-                          {vertex("v 0 0,0 1"), "line 4: '0,0' has a comma"},
+                          {vertex("v 0 0,0 1"), "line 4: '0,0' contains a comma"},
                           {vertex("v 0 0x3 1"), "line 4: '0x3' is hexadecimal"},
-                          {vertex("v 0 0 1 0"), "line 4: a vertex of weight 0"}});
+                          {vertex("v 0 0 1 0"), "line 4: a vertex has weight 0"}});
 }
 
 TEST(ImportText, Off) {
@@ -203,8 +203,8 @@ TEST(ImportText, PlyByLinesWithTrueCounts) {
                  {replaced(ply, "vertex 4", "vertex 5"), "does not end with its line"},
                  {replaced(ply, "vertex 4", "vertex 3"), "does not end with its line"},
                  {replaced(ply, "vertex 4", "vertex 6"), "does not end with its line"},
-                 {replaced(ply, "face 4", "face 5"), "line 17: it ends too early"},
-                 {replaced(ply, "face 4", "face 3"), "line 17: it holds more numbers"},
+                 {replaced(ply, "face 4", "face 5"), "line 17: it ends before the counts"},
+                 {replaced(ply, "face 4", "face 3"), "line 17: it contains more numbers"},
                  {replaced(ply, "3 1 2 3", "3 1 2 4"), "vertex"},
                  {replaced(ply, "3 1 2 3", "3 1 2 -1"), "vertex"},
                  {replaced(ply, "3 1 2 3", "4 1 2 3 2147483647"), "vertex"}});

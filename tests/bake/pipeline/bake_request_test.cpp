@@ -70,13 +70,13 @@ TEST(BakeRequest, EveryFieldReadsTheWordsThatItIsWrittenAs) {
 TEST(BakeRequest, WrongValuesNameTheOptionAndTheCure) {
     for (const auto& [name, word, begin] :
          {std::tuple{"budget", "much", "--budget is 'much' but must be a number of bytes"},
-          std::tuple{"max_error", "-1", "--max-error is '-1' but must be a share in percent, such as 1.5"},
+          std::tuple{"max_error", "-1", "--max-error is '-1' but must be a percentage, such as 1.5"},
           std::tuple{"quality", "bset", "--quality is 'bset' but must be one of fast, normal, best"},
           std::tuple{"depth", "x", "--depth is 'x' but must be unorm16 or half"},
           std::tuple{"thickness", "0", "--thickness is '0' but must be a length above 0"},
           std::tuple{"unit", "mile", "--unit is 'mile' but must be one of m, cm, mm, um, km, in, ft, yd"},
           std::tuple{"up", "z", "--up is 'z' but must be one of +x, -x, +y, -y, +z, -z"},
-          std::tuple{"repair", "", "--repair is given without a value"},
+          std::tuple{"repair", "", "--repair is empty"},
           std::tuple{"threads", "1.5", "--threads is '1.5' but must be"},
           std::tuple{"no_such", "1", "unknown option --no-such"}}) {
         BakeRequest request;

@@ -251,7 +251,7 @@ def test_another_thread_is_refused(scene):
     thread = threading.Thread(target=use)
     thread.start()
     thread.join()
-    assert len(failed) == 1 and "thread that made it" in failed[0]
+    assert len(failed) == 1 and "thread that created it" in failed[0]
     simulation.step(1)
     assert simulation.time == pytest.approx(11 / 60, rel=1e-3)
     holder = [simulation]

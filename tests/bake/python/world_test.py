@@ -91,7 +91,7 @@ def test_a_simulation_plays_it(folder):
 def test_errors_are_exceptions(folder, world, tmp_path):
     with pytest.raises(relief.FileError, match="none.json"):
         relief.World(tmp_path / "none.json")
-    with pytest.raises(relief.InputError, match="is no world"):
+    with pytest.raises(relief.InputError, match="is not a world"):
         (tmp_path / "world.json").write_text("{}")
         relief.World(tmp_path / "world.json")
     with pytest.raises(relief.FileError, match="colliders"):

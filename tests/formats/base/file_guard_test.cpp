@@ -242,7 +242,7 @@ TEST_F(FileGuardTest, FoldersThatItMadeAndThatStayEmptyAreRemoved) {
     make(true);
     EXPECT_TRUE(fs::exists(in("a/b")) && fs::exists(in("d/e")) && fs::exists(in("empty/f")));
     for (const char* name : {"scene", "scene/a", "real/input/b"}) {
-        expectError(guard_.makes(in(name), "--new"), ErrorCode::kIo, "cannot make the folder '");
+        expectError(guard_.makes(in(name), "--new"), ErrorCode::kIo, "cannot create the folder '");
     }
 }
 

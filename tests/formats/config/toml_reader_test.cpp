@@ -103,20 +103,20 @@ TEST(TomlReader, Errors) {
     EXPECT_EQ(error("radius = 9\n"), "f.toml:1:10: radius = 9 is out of range; choose 0 to 5");
     EXPECT_EQ(error("radius = \"1\"\n"), "f.toml:1:10: radius must be a number");
     EXPECT_EQ(error("form = \"bal\"\n"), "f.toml:1:8: form = 'bal' is unknown; did you mean 'ball'?");
-    EXPECT_EQ(error("form = \"box\"\n"), "f.toml:1:8: form = \"box\" needs side beside it");
+    EXPECT_EQ(error("form = \"box\"\n"), "f.toml:1:8: form = \"box\" also requires side");
     EXPECT_EQ(error("side = [1, 1, 1]\nradius = 2\n"),
               "f.toml:2:10: radius does nothing for form = \"box\"; remove it, or choose form = \"ball\"");
-    EXPECT_EQ(error("count = [4, 2]\n"), "f.toml:1:9: count has its least above its most; swap them");
+    EXPECT_EQ(error("count = [4, 2]\n"), "f.toml:1:9: count has a minimum above its maximum; swap them");
     EXPECT_EQ(error("range = [4]\n"), "f.toml:1:9: range must be two numbers [low, high]");
-    EXPECT_EQ(error("speed = 1\n"),
-              "f.toml:1:9: speed does nothing without axis; give that too, or remove this");
+    EXPECT_EQ(error("speed = 1\n"), "f.toml:1:9: speed does nothing without axis; add that, or remove this");
     EXPECT_EQ(error("axis = [1, 0, 0]\nspeed = 0\n"),
-              "f.toml:2:9: speed does nothing as 0; raise it or remove it");
-    EXPECT_EQ(error("axis = [0, 0, 0]\n"), "f.toml:1:8: axis has no direction; give one, as [0, 1, 0]");
+              "f.toml:2:9: speed does nothing if it is 0; raise it or remove it");
+    EXPECT_EQ(error("axis = [0, 0, 0]\n"),
+              "f.toml:1:8: axis has no direction; use a nonzero vector such as [0, 1, 0]");
     EXPECT_EQ(error("heavy = 0\ncount = 1\n"), "f.toml:1:9: heavy and count exclude each other; remove one");
-    EXPECT_EQ(error("[[part]]\n"), "f.toml:1:1: part.weight is missing; give it: Weight, kg");
+    EXPECT_EQ(error("[[part]]\n"), "f.toml:1:1: part.weight is missing; add it: Weight, kg");
     EXPECT_EQ(error("heavy = 1\n[[part]]\nweight = 1\n"),
-              "f.toml:1:9: heavy = 1 is none of the 1 parts; the first is 0");
+              "f.toml:1:9: heavy = 1 is not one of the 1 parts; the first is 0");
     EXPECT_EQ(error("[[part]]\nweight = 1\n[[part]]\nweight = 2\n"),
               "f.toml:4:10: part.weight is above the first; order the parts");
     EXPECT_EQ(error("part = [{ weight = 1 }, { weight = 1 }, { weight = 1 }]\n"),

@@ -77,7 +77,7 @@ TEST(World, WhatIsNoneIsRefusedWithItsPlaceAndCure) {
              {"\"scale\":2.0", "\"scale\":0", "bodies[0].scale = 0 is out of range"},
              {"\"scale\":2.0", "\"scale\":1e-300", "bodies[0].scale = "},
              {"\"scale\":2.0", "\"scale\":\"2\"", "bodies[0].scale must be a number"},
-             {"\"scale\":2.0", "\"scale\":NaN", "no valid JSON"},
+             {"\"scale\":2.0", "\"scale\":NaN", "not valid JSON"},
              {"\"scale\":2.0", "\"scale\":2.0,\"scale\":2.0", "has the key 'scale' twice"},
              {"\"scale\":2.0", "\"scales\":2.0", "bodies[0] has no scale"},
              {"\"scale\":2.0", "\"scale\":2.0,\"frction\":0",
@@ -88,19 +88,19 @@ TEST(World, WhatIsNoneIsRefusedWithItsPlaceAndCure) {
              {"chair.relief", "a/../../chair.relief", "must be a path inside"},
              {"chair.relief", "/chair.relief", "must be a path inside"},
              {"chair.relief", "", "must be a path inside"},
-             {"chair.relief", "a\\u0000b", "holds a zero byte"},
+             {"chair.relief", "a\\u0000b", "contains a zero byte"},
              {"aaaa", "AAAA", "colliders[0].hash"},
              {"\"gpu_bytes\":4096", "\"gpu_bytes\":0", "colliders[0].gpu_bytes"},
              {"[1.0,1.0,1.0]", "[1.0,1.0,1.0],\"coarse\":{}", "coarse has no file"},
              {"[1.0,1.0,1.0]", "[1.0,1.0,1.0],\"coarse\":null", "colliders[0].coarse "},
-             {"[1.0,1.0,1.0]", coarse("chair.relief"), "is that of another"},
+             {"[1.0,1.0,1.0]", coarse("chair.relief"), "is also used by another"},
              {"[1.0,1.0,1.0]", coarse("../c.relief"), "coarse.file = "},
              {"\"min\":[0.0", "\"min\":[2.0", "colliders[0].min is"},
-             {"relief-world", "relief-cache", "is no world"},
+             {"relief-world", "relief-cache", "is not a world"},
              {"\"version\": 1", "\"version\": 2", "newer than this program"},
              {"\"unit\": \"m\"", "\"unit\": \"cm\"", "unit must be"},
              {"\n}\n", ",\"x\":1}", "unknown key 'x'"},
-             {"\n}\n", "", "no valid JSON"}}) {
+             {"\n}\n", "", "not valid JSON"}}) {
         const Result<World> read = parseWorld(with(one.part, one.other));
         ASSERT_FALSE(read) << one.other;
         EXPECT_NE(read.error().message.find(one.message), std::string::npos) << read.error().message;
@@ -179,10 +179,10 @@ class WorldFolder : public testing::Test {
 
 TEST_F(WorldFolder, ContainersAreThereAndTheOnesThatWereMeant) {
     world_.colliders[0].hash[0] = world_.colliders[0].hash[0] == '0' ? '1' : '0';
-    expectRefused("other contents than its hash");
+    expectRefused("does not match its hash");
     SetUp();
     world_.colliders[0].box.max.x += 1.0F;
-    expectRefused("another box");
+    expectRefused("does not match its min and max");
     SetUp();
     world_.colliders[0].gpu_bytes += 8;
     expectRefused("bytes on the GPU");
@@ -233,7 +233,7 @@ TEST_F(WorldFolder, ACoarseColliderIsReadInPlaceOfTheOther) {
     world_.colliders[0].coarse->hash[0] = world_.colliders[0].coarse->hash[0] == '0' ? '1' : '0';
     loaded = load(WorldDetail::kCoarse);
     ASSERT_FALSE(loaded);
-    EXPECT_NE(loaded.error().message.find("colliders[0].coarse ('c.relief') has other contents"),
+    EXPECT_NE(loaded.error().message.find("colliders[0].coarse ('c.relief') does not match its hash"),
               std::string::npos)
         << loaded.error().message;
 }

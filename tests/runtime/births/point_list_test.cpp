@@ -50,8 +50,8 @@ TEST(PointList, WrongCsvNamesItsLine) {
     expectError("1,2,3\n" + std::string(100'000, ','), "p:2: ");
     expectError("1,2,3,0,0,0\n", "p:1: a normal has no direction");
     expectError("1,2,3,0,0,inf\n", "p:1: a normal has no direction");
-    expectError("", "p: holds no points");
-    expectError("x,y,z\n", "p: holds no points");
+    expectError("", "p: contains no points");
+    expectError("x,y,z\n", "p: contains no points");
     EXPECT_TRUE(parse("1,2,1e9\n"));
 }
 
@@ -106,14 +106,14 @@ TEST(PointList, BinaryPlyOfEveryTypeAndByteOrder) {
         EXPECT_EQ(list.positions[1], glm::vec3(-301.0F, 65535.0F, 1e8F));
         EXPECT_EQ(list.normals[0], glm::vec3(0.0F, 0.0F, -1.0F));
         text.pop_back();
-        expectError(text, "p: vertex 1: it ends too early");
+        expectError(text, "p: vertex 1: it ends before the counts");
     }
 }
 
 TEST(PointList, WrongPly) {
     expectError("ply\n", "p: its header does not end");
     expectError("ply\n" + std::string(1'000'000, '\n'), "p: its header does not end");
-    expectError("ply\nformat ebcdic 1.0\nend_header\n", "p: its header names no format");
+    expectError("ply\nformat ebcdic 1.0\nend_header\n", "p: its header does not name a supported format");
     expectError("ply\nelement vertex 1\n" + kXyz + "end_header\n0 0 0\n", "p: ");
     expectError("ply\nformat ascii 1.0\nelement face 2\nelement vertex 1\nend_header\n",
                 "p: vertices must be the first element");
@@ -133,12 +133,12 @@ TEST(PointList, WrongPly) {
     expectError(ascii("99999999999999999999999", kXyz, ""), "p: 18446744073709551615 points",
                 ErrorCode::kLimit);
     expectError(ascii("4194305", kXyz, ""), "p: 4194305 points", ErrorCode::kLimit);
-    expectError(ascii("0", kXyz, ""), "p: holds no points");
-    expectError(ascii("2", kXyz, "0 0 0\n0 0\n"), "p: vertex 1: line 12: it ends too early");
+    expectError(ascii("0", kXyz, ""), "p: contains no points");
+    expectError(ascii("2", kXyz, "0 0 0\n0 0\n"), "p: vertex 1: line 12: it ends before the counts");
     expectError(ascii("2", kXyz, "0 0 0\n"), "p: vertex 1: ");
     expectError(ascii("2", kXyz, "0 0 0 0\n0 0 0\n"), "p: vertex 0: line 11: more numbers");
     expectError(ascii("2", kXyz, "0 0\n0 0 0\n0\n"), "p: vertex 0: line 12: more numbers");
-    expectError(header("binary_little_endian", "4194304", kXyz), "p: vertex 0: it ends too early");
+    expectError(header("binary_little_endian", "4194304", kXyz), "p: vertex 0: it ends before the counts");
 }
 
 TEST(PointList, EveryPrefixAndFlippedByteIsSurvived) {

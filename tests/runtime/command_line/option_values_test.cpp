@@ -88,7 +88,7 @@ TEST(OptionValues, SayWhatToWriteInstead) {
     allRefused("--count", {"0", "-1", "0x10", "1e3", " 1", "4000000001", "99999999999999999999999", "one"},
                "a whole number from 1 to 4000000000");
     allRefused("--degrees", {"nan", "inf", "-0.1", "361", "0x1p3", "1e39", "much"}, "degrees, 0 to 360");
-    allRefused("--share", {"-1", "%", "nan%", "1%%", "few"}, "a share in percent, such as 1.5");
+    allRefused("--share", {"-1", "%", "nan%", "1%%", "few"}, "a percentage, such as 1.5");
     EXPECT_EQ(refused("--max-memory", "1XB"),
               "--max-memory is '1XB' but must be a number of bytes, such as 1MB or 512KiB");
     EXPECT_EQ(refused("--color", "green"), "--color is 'green' but must be red or blue");
@@ -102,7 +102,7 @@ TEST(CommandLine, WhatCannotBeReadIsNamedWithACure) {
     EXPECT_EQ(error({"--cuont", "1"}), "unknown option --cuont; did you mean '--count'?");
     EXPECT_EQ(error({"--nothing-like-it"}), "unknown option --nothing-like-it; see tool --help");
     EXPECT_EQ(error({"word"}), "unexpected argument 'word'; see tool --help");
-    EXPECT_EQ(error({"--text", ""}), "--text is given without a value; leave it out, or give it one");
+    EXPECT_EQ(error({"--text", ""}), "--text is empty; omit it, or give it a value");
     EXPECT_EQ(error({"--count", "1"}), "");
 }
 

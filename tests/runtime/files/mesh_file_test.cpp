@@ -154,15 +154,15 @@ TEST(PlyMesh, Hostile) {
                                       {"3 0 1 0.5\n", "face 0"},
                                       {"2 0 1\n", "no faces"},
                                       {"-3 0 1 2\n", "length"},
-                                      {"1e9 0 1 2\n", "too early"},
+                                      {"1e9 0 1 2\n", "before the counts"},
                                       {"1e10 0 1 2\n", "length"},
-                                      {"3 0 1", "too early"}}) {
+                                      {"3 0 1", "before the counts"}}) {
         expectError(ply(face + text), names);
     }
     // A count that the file does not hold allocates nothing of that size, and a crowd of empty faces ends at once.
     std::string many = face;
     many.replace(many.find("vertex 3"), 8, "vertex 20000000");
-    expectError(ply(many), "too early");
+    expectError(ply(many), "before the counts");
     many.replace(many.find("20000000"), 8, "300000001");
     expectError(ply(many), "vertices", ErrorCode::kLimit);
     expectError(ply(xyz + "element face 18446744073709551615\nend_header\n0 0 0\n1 0 0\n0 1 0\n"), "");

@@ -321,7 +321,7 @@ TEST_P(GlFaultTest, EveryAllocationThatFailsIsNamed) {
                 break;
             }
             ASSERT_FALSE(done) << "allocation " << failing << " failed in silence: " << failed_call;
-            expectFails(done, ErrorCode::kLimit, "no room on the GPU");
+            expectFails(done, ErrorCode::kLimit, "out of GPU memory");
         }
     }
 }

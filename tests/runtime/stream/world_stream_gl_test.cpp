@@ -401,7 +401,7 @@ TEST_P(WorldStreamBooksGlTest, FilesThatAreMissingOrOthersAreNamed) {
     const std::vector<std::string> warnings = world->takeWarnings();
     ASSERT_EQ(warnings.size(), 2U);
     EXPECT_NE((warnings[0] + warnings[1]).find("thing 3"), std::string::npos);
-    EXPECT_NE((warnings[0] + warnings[1]).find("'thing 5') has other contents"), std::string::npos)
+    EXPECT_NE((warnings[0] + warnings[1]).find("'thing 5') does not match its hash"), std::string::npos)
         << warnings[0] << warnings[1];
     fs::remove(folder.path() / "thing 2 coarse");
     EXPECT_FALSE(WorldStream::open(path)) << "there is nothing to stand in";
