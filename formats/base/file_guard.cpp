@@ -216,7 +216,7 @@ Result<void> FileGuard::writesSeries(const fs::path& folder, const HoldsName& ho
         const auto& [keys, file] = found.emplace_back(keysOf(entry->path(), STDOUT_FILENO),
                                                       File{folder / name, self.option, self.use});
         const auto other = find(keys);
-        // Files of a series are replaced, not rewritten, so a hard link keeps its other name's contents.
+        // Files of a series are replaced, so other hard links to an old file are not affected.
         if (other && (other->use != Use::kOneOfMany || find({keys.back()}))) {
             return refusal(file, *other);
         }

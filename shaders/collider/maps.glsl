@@ -72,8 +72,8 @@ uniform highp sampler2D u_relief_float;
 uniform highp sampler2D u_relief_fixed;
 uniform highp usampler2D u_relief_front_back;
 
-// 1: a texel of planes may have only one surface. In uploaded maps, ColliderTextures copies the plane of a texel's only
-// surface to the other one, which changes no vote; maps of live bodies are not modified.
+// 1: a texel of planes may have only one surface. ColliderTextures copies the plane of a texel's only surface to
+// the other one on upload, which changes no vote. Maps of live bodies are used as rendered.
 #define RELIEF_HALF_EMPTY (RELIEF_LIVE == 1)
 
 // The format of a map, a constant if all are alike: otherwise a GL may execute the branches of all formats for every

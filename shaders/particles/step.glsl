@@ -41,9 +41,9 @@ struct Solid {
 // its point nearest to the surface hit. (Contact with another side does not count: a ball on a floor bounces off a
 // wall.) free: the last step ended without contact.
 bool insideBefore(vec3 p, float radius, Solid s, bool free);
-// Returns the position of a point of the body of s at the start of the step.
+// Moves a point of the body of s back to the start of the step.
 vec3 pointBefore(Solid s, vec3 p);
-// Returns the position at the end of the step of a point of a body at its start.
+// Moves a point of a body from the start to the end of the step.
 vec3 pointNow(int body, vec3 p);
 // Returns restitution and 1 - friction of a body, factors of the particle's own.
 vec2 bodyResponse(int body);
