@@ -114,9 +114,9 @@ class ObjReader {
             }
             position = {numbers[0] / numbers[3], numbers[1] / numbers[3], numbers[2] / numbers[3]};
         }
-        if (!isFinite(position) && nowhere_line_ == 0) {
-            nowhere_ = mesh_.positions.size();
-            nowhere_line_ = line;
+        if (!isFinite(position) && nonfinite_line_ == 0) {
+            nonfinite_vertex_ = mesh_.positions.size();
+            nonfinite_line_ = line;
         }
         mesh_.positions.push_back(position);
         if (colors_ == PolygonColors::kRead && count >= 6) {
@@ -209,12 +209,12 @@ class ObjReader {
 
     /// Checks coordinates of vertices in use; the others may have any value.
     Result<void> checkFinite() const {
-        const bool used = nowhere_line_ != 0 &&
+        const bool used = nonfinite_line_ != 0 &&
                           std::any_of(mesh_.corners.begin(), mesh_.corners.end(), [&](std::uint32_t corner) {
                               return !isFinite(mesh_.positions[corner]);
                           });
-        return used ? wrongLine(nowhere_line_, "vertex " + std::to_string(nowhere_ + 1) +
-                                                   " has a coordinate that is not finite; repair the mesh")
+        return used ? wrongLine(nonfinite_line_, "vertex " + std::to_string(nonfinite_vertex_ + 1) +
+                                                     " has a coordinate that is not finite; repair the mesh")
                     : Result<void>();
     }
 
@@ -234,8 +234,8 @@ class ObjReader {
     std::uint64_t triangles_ = 0;
     std::uint64_t furthest_ = 0;  // largest vertex index of a face
     std::size_t furthest_line_ = 0;
-    std::size_t nowhere_ = 0;  // first vertex that is not finite
-    std::size_t nowhere_line_ = 0;
+    std::size_t nonfinite_vertex_ = 0;  // first vertex that is not finite
+    std::size_t nonfinite_line_ = 0;
 };
 
 }  // namespace

@@ -242,10 +242,10 @@ Result<std::optional<EventList::Collected>> EventList::wait() {
     if (in_flight_ == 0) {
         return std::optional<Collected>();
     }
-    constexpr GLuint64 kPatience = 10'000'000'000;  // nanoseconds
+    constexpr GLuint64 kWaitTimeout = 10'000'000'000;  // nanoseconds
     static constexpr const char* kReading = "reading the list of events";
     const Request& oldest = requests_[oldest_];
-    if (oldest.floats > 0 && !waitToRead(oldest.fence, kPatience)) {
+    if (oldest.floats > 0 && !waitToRead(oldest.fence, kWaitTimeout)) {
         RELIEF_TRY(checkGpu(kReading));
         return fail(ErrorCode::kFailure, "the GPU has not finished the list of events within ten seconds");
     }

@@ -10,7 +10,7 @@ Spawner::Spawner(const SpawnSettings& settings, std::uint64_t seed, std::uint64_
       random_(seed, stream),
       opening_(static_cast<float>(oneMinusCosine(static_cast<double>(settings.cone_degrees)))) {}
 
-bool Spawner::heeds(const ParticleEvent& event) const {
+bool Spawner::matches(const ParticleEvent& event) const {
     if (settings_.of && event.type != *settings_.of) {
         return false;
     }
@@ -38,7 +38,7 @@ std::uint64_t Spawner::spawn(std::span<const ParticleEvent> events, std::span<co
     std::uint64_t refused = 0;
     std::uint64_t used = 0;
     for (const ParticleEvent& event : events) {
-        if (!heeds(event)) {
+        if (!matches(event)) {
             continue;
         }
         if (++used >

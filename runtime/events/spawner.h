@@ -78,7 +78,7 @@ class Spawner {
     [[nodiscard]] const SpawnSettings& settings() const { return settings_; }
 
   private:
-    [[nodiscard]] bool heeds(const ParticleEvent& event) const;
+    [[nodiscard]] bool matches(const ParticleEvent& event) const;
     [[nodiscard]] Birth sample(const ParticleEvent& event, float radius);
 
     SpawnSettings settings_;

@@ -12,8 +12,8 @@
 namespace relief {
 namespace {
 
-constexpr int kErrorFlagsMax = 64;         // a lost context may report errors endlessly
-constexpr GLuint64 kAtOnce = 100'000'000;  // nanoseconds per wait
+constexpr int kErrorFlagsMax = 64;            // a lost context may report errors endlessly
+constexpr GLuint64 kWaitSlice = 100'000'000;  // nanoseconds per wait
 
 std::string errorText(GLenum error) {
     std::array<char, 16> text{};
@@ -73,7 +73,7 @@ Result<void> checkTextureSize(std::uint64_t width, std::uint64_t height, const s
 Result<void> waitForGpu(const std::string& what) {
     GlFence fence;
     fence.insert();
-    while (!fence.passed(kAtOnce)) {
+    while (!fence.passed(kWaitSlice)) {
         if (fence.failed()) {
             RELIEF_TRY(checkGpu("waiting for " + what));
             return fail(ErrorCode::kFailure, "the GL cannot wait for " + what +

@@ -22,7 +22,7 @@ namespace {
 
 // Step of the finite differences for normals, relative to the mesh's box: large enough for float precision, small
 // enough to resolve the curvature.
-constexpr float kInch = 1e-3F;
+constexpr float kDifferenceStep = 1e-3F;
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
@@ -87,7 +87,7 @@ Result<WobblePass> WobblePass::create(const Wobble& wobble, std::span<const glm:
     const PassState state;
     WobblePass pass;
     pass.wobble_ = wobble;
-    pass.inch_ = std::max(kInch * bounds.longestSide(), std::numeric_limits<float>::min());
+    pass.step_ = std::max(kDifferenceStep * bounds.longestSide(), std::numeric_limits<float>::min());
     pass.feedback_ = RELIEF_TRY(VertexFeedback::create("live/wobble.vert", positions.size(), output));
     pass.rest_ = makeBuffer();
     glBindBuffer(GL_ARRAY_BUFFER, pass.rest_.name());
@@ -107,7 +107,7 @@ void WobblePass::run(double time) {
     const PassState state;
     GlProgram& program = feedback_.program();
     program.use();
-    program.set("u_inch", inch_);
+    program.set("u_step", step_);
     program.set("u_phases", phasesAt(wobble_, time));
     program.set("u_amplitude", wobble_.amplitude);
     program.set("u_number", static_cast<float>(kTurn) / wobble_.wavelength);

@@ -52,7 +52,7 @@ class WobblePass {
 
   private:
     Wobble wobble_;
-    float inch_ = 0.0F;
+    float step_ = 0.0F;
     GlBuffer rest_;
     VertexFeedback feedback_;
 };

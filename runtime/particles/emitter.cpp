@@ -17,7 +17,7 @@ namespace {
 constexpr double kCountMax = 9007199254740992.0;  // 2^53
 
 // Keeps 60 steps of 1/60 s from missing the last birth of a second through rounding.
-constexpr double kEarly = 1e-12;
+constexpr double kTimeSlack = 1e-12;
 
 std::uint64_t wholeCount(double count) {
     return count > 0.0 ? static_cast<std::uint64_t>(std::min(count, kCountMax)) : 0;  // 0 for NaN
@@ -91,7 +91,7 @@ Emitter::Emitter(EmitterSettings settings, std::uint64_t seed, std::uint64_t str
 }
 
 double Emitter::steadyBirths(double active) const {
-    const double until = std::min(active, settings_.duration * (1.0 + kEarly));
+    const double until = std::min(active, settings_.duration * (1.0 + kTimeSlack));
     return std::min(settings_.rate * until, kCountMax);
 }
 
@@ -120,7 +120,7 @@ Emitter::Due Emitter::dueAfter(double dt) const {
     const double more = dt + remainder_;
     const double sum = elapsed_ + more;
     Due due{.elapsed = sum, .remainder = std::isfinite(sum) ? more - (sum - elapsed_) : 0.0};
-    const double active = sum - settings_.start + kEarly * sum;
+    const double active = sum - settings_.start + kTimeSlack * sum;
     due.started = active >= 0.0;
     if (due.started) {
         due.steady = wholeCount(steadyBirths(active));

@@ -22,9 +22,9 @@ namespace {
 
 constexpr std::size_t kTexelSize = 8;
 /// Factor on the distance of resident colliders, as hysteresis.
-constexpr float kHere = 0.9F;
+constexpr float kResidentFactor = 0.9F;
 /// Body-point distances to measure per update: some tens of microseconds.
-constexpr std::size_t kPairs = 8192;
+constexpr std::size_t kPairsPerUpdate = 8192;
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
 /// A collider of the world.
@@ -148,7 +148,7 @@ void WorldStream::State::choose() {
     std::vector<std::pair<float, std::uint32_t>> order;
     for (const std::uint32_t i : plan.wanted()) {
         const bool here = colliders[i].present || colliders[i].requested;
-        order.emplace_back((here ? kHere : 1.0F) * plan.nearest(i), i);
+        order.emplace_back((here ? kResidentFactor : 1.0F) * plan.nearest(i), i);
     }
     std::sort(order.begin(), order.end());
     const std::vector<std::uint32_t> before = std::exchange(wanted, {});
@@ -369,7 +369,7 @@ void WorldStream::setPoses(std::span<const Pose> poses) {
 Result<void> WorldStream::update(std::span<const PointOfInterest> points) {
     RELIEF_TRY(checkPoints(points));
     State& state = *state_;
-    if (state.plan.look(points, kPairs)) {
+    if (state.plan.look(points, kPairsPerUpdate)) {
         state.choose();
     }
     while (std::optional<ColliderSource::Arrival> arrival = state.source->take()) {

@@ -4,7 +4,7 @@
 layout(location = 0) in vec3 a_position;  // object space, at rest
 layout(location = 1) in vec3 a_normal;    // unit length, or zero
 
-uniform float u_inch;       // step of the finite differences for normals, object units
+uniform float u_step;       // step of the finite differences for normals, object units
 uniform vec3 u_phases;      // of the waves, at the current time
 uniform float u_amplitude;  // object units
 uniform float u_number;     // 2 pi / wavelength
@@ -28,8 +28,8 @@ void main() {
     float l = length(u);
     u = l > 0.0 ? u / l : vec3(0.0);
     vec3 v = cross(n, u);
-    vec3 du = moved(a_position + u_inch * u) - moved(a_position - u_inch * u);
-    vec3 dv = moved(a_position + u_inch * v) - moved(a_position - u_inch * v);
+    vec3 du = moved(a_position + u_step * u) - moved(a_position - u_step * u);
+    vec3 dv = moved(a_position + u_step * v) - moved(a_position - u_step * v);
     vec3 across = cross(du, dv);
     float size = length(across);
     v_normal = size > 0.0 ? across / size : n;

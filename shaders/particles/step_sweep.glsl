@@ -79,15 +79,15 @@ Sweep sweepOf(vec3 p, vec3 v, float radius) {
 
 // Continues from the free point for the duration of the piece. All pieces are tested against the bodies at the end of
 // the step: a particle that hits a moving body in its first piece is carried for the rest of the step.
-vec3 goneOn(Sweep sweep, vec3 carried, vec3 v) {
+vec3 continued(Sweep sweep, vec3 carried, vec3 v) {
     vec3 from = sweep.from;
     from += sweep.first ? ((1.0 - sweep.share) * u_dt) * carried : vec3(0.0);
     return from + (sweep.share * u_dt) * v;
 }
 
 // Likewise for a particle that was outside: it stays outside.
-vec3 goneOnOutside(Sweep sweep, vec3 carried, vec3 v, float radius) {
-    vec3 to = goneOn(sweep, carried, v);
+vec3 continuedOutside(Sweep sweep, vec3 carried, vec3 v, float radius) {
+    vec3 to = continued(sweep, carried, v);
     if (aboveGround(to, radius) < 0.0 || solidFrom(to, radius, max(sweep.hit.map, 0)).distance < 0.0) {
         to = sweep.first ? sweep.from + u_dt * carried : sweep.from;
     }
@@ -95,7 +95,8 @@ vec3 goneOnOutside(Sweep sweep, vec3 carried, vec3 v, float radius) {
 }
 
 vec3 sweepEnd(Sweep sweep, vec3 carried, vec3 v, float contact, float radius) {
-    return contact == float(RELIEF_CONTACT_CAUGHT) ? goneOn(sweep, carried, v) : goneOnOutside(sweep, carried, v, radius);
+    return contact == float(RELIEF_CONTACT_CAUGHT) ? continued(sweep, carried, v)
+                                                   : continuedOutside(sweep, carried, v, radius);
 }
 
 #endif
