@@ -44,8 +44,8 @@ enum class Decode : std::uint8_t { kProjected = 0, kPlane = 1 };
 
 [[nodiscard]] const char* decodeName(Decode decode);  ///< "projected" or "plane"
 
-/// An affine transform as three rows: result i = dot(row[i].xyz, p) + row[i].w, evaluated as x·p.x + (y·p.y + (z·p.z +
-/// w)). The shader does the same with rows that map to texels.
+/// An affine transform as three rows: result i = dot(row[i].xyz, p) + row[i].w,
+/// evaluated as x·p.x + (y·p.y + (z·p.z + w)). The shader does the same with rows that map to texels.
 struct Affine {
     glm::vec4 row[3] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
 
@@ -57,8 +57,8 @@ struct Affine {
 /// useful depth. For walls seen edge-on, writers store a plane that faces the viewer instead.
 inline constexpr float kPlaneCosineMin = 1.0F / 32.0F;
 
-/// Fraction of the depth range by which surfaces may lie outside the volume: writers rasterize them with depths
-/// clamped. Surfaces in a face of the volume are thus drawn in spite of rounding.
+/// Writers also rasterize surfaces up to this fraction of the depth range outside the volume, with clamped depths.
+/// Rounding then never drops a surface that lies in a face of the volume.
 inline constexpr double kDepthSlack = 1e-6;
 
 /// If the |cosine| between a triangle's normal and the ray is at most this, writers clamp depths to the range of the

@@ -23,8 +23,8 @@ struct TexelRay {
 /// \param face  0 for an orthographic map.
 [[nodiscard]] TexelRay texelRay(const DepthMap& map, std::uint32_t face, std::uint32_t x, std::uint32_t y);
 
-/// Returns the ray through any position on a face. \param x, y  in texels: the centre of texel (i, j) is (i + ½, j +
-/// ½).
+/// Returns the ray through any position on a face.
+/// \param x, y  in texels: the centre of texel (i, j) is (i + ½, j + ½).
 [[nodiscard]] TexelRay rayThrough(const DepthMap& map, std::uint32_t face, double x, double y);
 
 }  // namespace relief

@@ -22,8 +22,8 @@ template <>
 inline constexpr std::array<std::string_view, 2> kWordsOf<FlowOutside>{"zero", "edge"};
 
 /// A node-centred grid: the first and last nodes of an axis lie on the faces of the box, and velocities are
-/// interpolated trilinearly. Along an axis with a single node the velocity is constant; a 2-D flow thus uses size[2] =
-/// 1.
+/// interpolated trilinearly. Along an axis with a single node the velocity is constant, so a 2-D flow has
+/// size[2] = 1.
 struct FlowField {
     static constexpr std::uint32_t kSideMax = 512;                     ///< nodes along an axis
     static constexpr std::size_t kBytesMax = std::size_t{256} << 20U;  ///< on the GPU

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random numbers and distributions: the same seed gives the same bits on every machine. Sampling only uses integers, +
-// − × ÷ and square roots, which IEEE 754 rounds exactly. Sines and logarithms of C libraries differ in their last bits.
+// Random numbers and distributions: the same seed gives the same bits on every machine. Sampling only uses integers and
+// + − × ÷ √, which IEEE 754 rounds exactly. Sines and logarithms of C libraries differ in their last bits.
 #pragma once
 
 #include <algorithm>

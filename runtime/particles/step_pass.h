@@ -25,8 +25,8 @@ struct Forces {
 /// Returns the rate at which a type adopts the velocity of the air, 1/s.
 [[nodiscard]] float dragRate(const Forces& forces, const ParticleType& type);
 
-/// Returns the rate of Stokes drag, k = 6π · viscosity · radius / mass, 1/s, for v' = (v + dt (a + k air)) / (1 + dt
-/// k).
+/// Returns the rate of Stokes drag, k = 6π · viscosity · radius / mass, 1/s,
+/// for v' = (v + dt (a + k air)) / (1 + dt k).
 /// \param mass  > 0
 [[nodiscard]] float stokesRate(float viscosity, float radius, float mass);
 

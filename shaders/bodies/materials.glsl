@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Returns the material of a contact; formats/materials.cpp is the C++ version. The octree of a collider is converted
 // into a top grid and, where it is deeper, bricks of 4^3 entries for two levels each, which needs fewer dependent
-// fetches. The data are in one texture, written by runtime/bodies/material_table.h; texel i is at (i mod width, i /
-// width):
+// fetches. The data are in one texture, written by runtime/bodies/material_table.h. Texel i is at
+// (i mod width, i / width):
 //
 //     bodies       RELIEF_MATERIAL_HEAD_TEXELS per body: lowest corner of the cube, object space, and 1 / side; then
 //                  the texels of the first material (0: none) and of the top grid, log2 of the cells along the cube and

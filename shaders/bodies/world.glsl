@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The data of a world, written by body_table.h. Everything is in one texture of words, texel i at (i mod width, i /
-// width), because uniform blocks are too small for many bodies and OpenGL ES 3.0 has no other buffers.
+// The data of a world, written by body_table.h. Everything is in one texture of words, because uniform blocks are
+// too small for many bodies and OpenGL ES 3.0 has no other buffers. Texel i is at (i mod width, i / width).
 //
 //     from texel 0             ReliefMap of each map, in RELIEF_WORLD_MAP_TEXELS texels. With RELIEF_PLACED each body
 //                              has one map of patches in world space: map i belongs to body i
