@@ -311,8 +311,8 @@ class Search {
         }
     }
 
-    /// If no plane confirmed that the point found is the nearest of its surface, tilts the direction to it to all sides
-    /// while that shortens the distance.
+    /// If no plane confirmed that the point found is the nearest of its surface, tilts the direction to it in four
+    /// directions while that shortens the distance.
     void turn() {
         float tilt = NearestSearch::kTilt;
         for (int k = 0; k < NearestSearch::kTurns && tilt >= NearestSearch::kTiltMin && found() && !settled_;

@@ -97,8 +97,8 @@ class EventList {
     [[nodiscard]] Result<void> createPrograms();
     [[nodiscard]] std::uint32_t listWidth() const;
     [[nodiscard]] std::uint32_t longest() const;
-    /// Computes the layout for a number of particles. \return rows of all lists. \param first_row  of each list;
-    /// unreachable for lists that do not exist.
+    /// Computes the layout for a number of particles. \return rows of all lists.
+    /// \param first_row  of each list; beyond all rows for lists that do not exist.
     std::uint32_t layOut(std::uint32_t particles, std::array<std::uint32_t, kEventLists>& first_row) const;
     void useFilter(const GlProgram& program) const;
     void count(const Step& step) const;

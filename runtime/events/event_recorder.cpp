@@ -57,7 +57,7 @@ class EventRecorder : public StepFeature {
     EventList list_;
     Outputs outputs_;
     std::deque<Replaced> replaced_;  // since the oldest pending list
-    // Data of the last step, and the number of steps since creation:
+    // The last step; steps_ counts from creation.
     std::uint64_t steps_ = 0;
     double begin_ = 0.0;
     double end_ = 0.0;

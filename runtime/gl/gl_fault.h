@@ -13,8 +13,8 @@ namespace relief {
 /// Fails with kUsage if no context is current. Call it first in functions that create GL objects.
 [[nodiscard]] Result<void> checkContext();
 
-/// Checks that the context still works; cheap. Call it after read-backs and waits, because otherwise a reset only shows
-/// as wrong results.
+/// Checks that the context still works; cheap. Call it after read-backs and waits: without it, a reset only shows as
+/// wrong results.
 /// \param during  for the message: "reading a picture".
 /// Errors: kFailure if the GPU was reset: all objects of the context are lost. Only contexts created with reset
 /// notification can report this; GlContext requests it if EGL supports it.

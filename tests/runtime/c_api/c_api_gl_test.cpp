@@ -291,7 +291,7 @@ TEST_F(CApi, WithoutAContextNothingOfTheGlIsTouched) {
         Arguments good{stage_, function};
         EXPECT_NE(function.call(good), Outcome::kSuccess) << function.name;
         EXPECT_EQ(relief_error(),
-                  function.name + "(): no OpenGL context is current; make one current on this thread first");
+                  function.name + "(): no OpenGL context is current; make yours current on this thread");
     }
     ASSERT_TRUE(eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context));
     for (const Function& function : kFunctions) {
