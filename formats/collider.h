@@ -88,8 +88,8 @@ struct FieldSample {
 struct InsideSample {
     bool inside = false;
     glm::vec3 normal{0.0F};  ///< of the largest negative vote; zero if P is outside
-    int map =
-        -1;  ///< inside: the map of that vote; outside: the first map that classifies P as outside; or −1
+    /// Inside: the map of that vote. Outside: the first map that classifies P as outside, or −1.
+    int map = -1;
 };
 
 /// Equals evaluate(…).inside(), with its normal and map if inside, but stops at the first map that classifies P as

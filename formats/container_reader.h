@@ -97,8 +97,8 @@ class ContainerReader {
     Collider collider;  ///< without maps
     std::vector<StoredMap> maps;
     std::vector<Issue> issues;  ///< in file order, except that payload issues come last
-    std::size_t first_map_issue =
-        0;  ///< index of the first issue of a map; earlier ones concern header and metadata
+    /// Index of the first issue of a map; earlier ones concern header and metadata.
+    std::size_t first_map_issue = 0;
 
   private:
     [[nodiscard]] bool readHeader();

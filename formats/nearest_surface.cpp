@@ -34,9 +34,8 @@ class Corner {
 
     /// Returns the point of the other side nearest to P, relative to P.
     [[nodiscard]] const glm::vec3& foot() const { return foot_; }
-    [[nodiscard]] const glm::vec3& normal() const {
-        return planes_[count_ - 1].normal;
-    }  ///< of the newest plane
+    /// Returns the normal of the newest plane.
+    [[nodiscard]] const glm::vec3& normal() const { return planes_[count_ - 1].normal; }
     [[nodiscard]] bool isCutBy(const Plane& plane) const {
         return plane.at + dot(plane.normal, foot_) > 0.0F;
     }

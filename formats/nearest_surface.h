@@ -41,13 +41,13 @@ struct NearestSearch {
     static constexpr int kEvaluationsMax = 192;
     static constexpr int kSteps = 8;           // from the plane of the vote at P
     static constexpr int kStepsFromProbe = 4;  // from a plane found by a probe
-    static constexpr float kBeyond =
-        0.015625F;  // fraction of the way to a plane: how far behind it the maps are evaluated
+    // How far behind a plane the maps are evaluated, as a fraction of the way to it.
+    static constexpr float kBeyond = 0.015625F;
     static constexpr float kBeyondMin = 1.52587890625e-5F;  // 2⁻¹⁶, as a fraction of the longest side
-    static constexpr float kBeyondMax =
-        0.00390625F;  // fraction of the longest side; small enough not to step over thin parts
-    static constexpr float kNearer =
-        0.9921875F;  // a new plane must be nearer by this factor to justify another step
+    // As a fraction of the longest side; small enough not to step over thin parts.
+    static constexpr float kBeyondMax = 0.00390625F;
+    // A new plane must be nearer by this factor to justify another step.
+    static constexpr float kNearer = 0.9921875F;
     static constexpr int kFinestRing = 5;  // radius 2⁻⁵ of the longest side
     static constexpr int kFinestWholeRing = 3;
     static constexpr int kHalvings = 4;
@@ -59,8 +59,8 @@ struct NearestSearch {
     static constexpr float kTiltMin = 0.0625F;
     static constexpr float kReachMax = 1e15F;  // keeps squares from overflowing
     static constexpr float kReachMin = 1e-12F;
-    static constexpr float kDistanceMin =
-        1.17549435e-38F;  // the least normal float: a distance of 0 would have no sign
+    // The smallest normal float: a distance of 0 would have no sign.
+    static constexpr float kDistanceMin = 1.17549435e-38F;
 };
 
 /// Computes the distance from P to the nearest surface that the maps represent.

@@ -106,8 +106,7 @@ struct FieldInfo {
     FieldRange items = kFromZero;   ///< number of elements that a vector may have
     /// Omit the field from JSON if it is unset, empty, out of range, or none of the keys in `needs` is present.
     bool left_out = false;
-    std::string_view value =
-        {};  ///< placeholder of the value in --help: "SECONDS"; empty: derived from the type
+    std::string_view value = {};  ///< placeholder in --help: "SECONDS"; empty: derived from the type
     /// A valid value for messages: "a length above 0"; empty: derived from type and range.
     std::string_view must = {};
     char letter = '\0';     ///< short option: 'j'

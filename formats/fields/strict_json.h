@@ -13,8 +13,8 @@ namespace relief {
 
 struct JsonLimits {
     std::size_t depth = 256;  ///< nesting depth of objects and arrays
-    std::size_t values =
-        std::numeric_limits<std::size_t>::max();  ///< number of values in the text, excluding keys
+    /// Number of values in the text, excluding keys.
+    std::size_t values = std::numeric_limits<std::size_t>::max();
 };
 
 /// Rejects invalid JSON, duplicate keys in an object, and zero bytes. Checks the limits before any allocation. Errors,

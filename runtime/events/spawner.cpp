@@ -41,8 +41,8 @@ std::uint64_t Spawner::spawn(std::span<const ParticleEvent> events, std::span<co
         if (!matches(event)) {
             continue;
         }
-        if (++used >
-            settings_.most) {  // no random numbers are drawn, so a shorter event list gives the same births
+        // No random numbers are drawn beyond `most`, so a shorter event list gives the same births.
+        if (++used > settings_.most) {
             refused += settings_.count_min;
             continue;
         }

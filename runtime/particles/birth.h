@@ -20,9 +20,8 @@ struct Birth {
     float age = 0.0F;
 };
 
-inline constexpr std::uint32_t kBirthTypeMax =
-    (1U << 24) - 1;  // largest integer that a float represents exactly, with
-                     // all below it
+/// A float represents every integer up to this one exactly.
+inline constexpr std::uint32_t kBirthTypeMax = (1U << 24) - 1;
 
 /// Returns whether a particle system accepts the birth: all numbers are finite and in the ranges above.
 [[nodiscard]] inline bool isValid(const Birth& birth) {

@@ -304,9 +304,8 @@ void ParticleSystem::runBirths(float dt) {
     if (newborn_.empty()) {
         return;
     }
-    if (integrator_ ==
-        Integrator::kVerlet) {  // sets the previous position as if they had moved like this in the
-                                // previous step
+    // Round as if the particles had moved at this velocity during the previous step.
+    if (integrator_ == Integrator::kVerlet) {
         const float rate = 1.0F / dt;
         for (BirthPass::Newborn& newborn : newborn_) {
             const glm::vec3 before = newborn.position - dt * newborn.velocity;

@@ -306,20 +306,19 @@ Result<std::unique_ptr<WorldStream>> WorldStream::create(const World& world,
         std::min({std::uint64_t{texels}, (options.gpu_bytes - coarse_bytes) / kTexelSize, most}));
     auto textures = RELIEF_TRY(WorldTextures::create(bodies, room));
     const std::size_t first = textures.room();
-    auto state =
-        std::make_unique<State>(State{.textures = std::move(textures),
-                                      .plan = StreamPlan(std::move(plan), colliders.size()),
-                                      .planned = std::move(planned),
-                                      .ranges = TexelRanges(first, room),
-                                      .source = std::move(source),
-                                      .options = options,
-                                      .colliders = std::move(colliders),
-                                      .names = std::move(names),
-                                      .coarse_bytes = coarse_bytes,
-                                      .room = room,
-                                      // Without it, gaps between other ranges would be too short for the last
-                                      // ones.
-                                      .spare = room < texels ? room / 8 : 0});
+    auto state = std::make_unique<State>(
+        State{.textures = std::move(textures),
+              .plan = StreamPlan(std::move(plan), colliders.size()),
+              .planned = std::move(planned),
+              .ranges = TexelRanges(first, room),
+              .source = std::move(source),
+              .options = options,
+              .colliders = std::move(colliders),
+              .names = std::move(names),
+              .coarse_bytes = coarse_bytes,
+              .room = room,
+              // Otherwise the gaps between ranges would be too short for the last ones.
+              .spare = room < texels ? room / 8 : 0});
     for (std::size_t i = 0; i < state->colliders.size(); ++i) {
         if (state->colliders[i].texels > room) {
             state->giveUp(
