@@ -8,7 +8,7 @@
 #include "runtime/bodies/world_bodies.h"
 #include "runtime/c_api/objects.h"
 
-using namespace relief;  // NOLINT: what C sees has C's names
+using namespace relief;  // NOLINT: the C functions are outside of it
 
 namespace {
 
@@ -16,7 +16,7 @@ constexpr FieldRange kResolution{0.0, 4096.0};
 constexpr std::uint32_t kResolutionMin = 16;
 constexpr FieldRange kSeconds = within(1e9);
 
-/// An index, below `count`.
+/// Checks that an index is below `count`.
 Result<void> index(const Call& call, std::size_t i, std::size_t count, const char* argument) {
     if (i < count) {
         return {};

@@ -19,7 +19,7 @@ std::string numberText(double value) {
 constexpr int kKindBits = 3;
 constexpr std::uintptr_t kHighest = ~(~std::uintptr_t{0} >> 1);
 
-/// 0: of none.
+/// Returns 0 if the number is not a handle.
 std::uintptr_t kindOf(std::uintptr_t handle) {
     const std::uintptr_t kind = handle & ((1U << kKindBits) - 1);
     return (handle & kHighest) != 0 && kind <= kHandleKinds ? kind : 0;
@@ -64,7 +64,7 @@ HandleTable& handleTable() {
 void CallErrors::fail(const char* message) noexcept {
     ++count_;
     try {
-        // The message may be this object's own.
+        // The message may point into text_.
         std::string text = message;
         std::replace(text.begin(), text.end(), '\n', ' ');
         text_.swap(text);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One call of C: its arguments looked at, its outcome kept for relief_error(). No exception passes.
+// One call of the C API: validates its arguments and stores its error for relief_error(). No exception leaves it.
 #pragma once
 
 #include <array>
@@ -33,31 +33,30 @@ enum class HandleKind : std::uint8_t {
 };
 inline constexpr std::size_t kHandleKinds = 7;
 
-/// Handles of C. A handle is a number in the shape of a pointer: the highest bit, which no address of a program has, a
-/// running number, and the kind, by which it is no address of an aligned object. It is looked up, never followed, so that
-/// whatever a caller passes on is answered and cannot crash. No number is given out twice.
+/// Handles of the C API. A handle is a number in the form of a pointer: the highest bit (which no user-space address
+/// has set), a serial number, and the kind in the low bits (so it is never the address of an aligned object). Handles
+/// are looked up, never dereferenced, so an invalid handle cannot crash. Numbers are never reused.
 ///
-/// All calls may be made by several threads at once. Removing an object while another thread uses it is a race, as
-/// with any object.
+/// All functions are thread-safe. Removing an object while another thread uses it is a race.
 class HandleTable {
   public:
-    /// Never 0. Throws std::bad_alloc, also where all numbers are used up; nothing has changed then.
+    /// Returns a handle, never 0. Throws std::bad_alloc without memory or unused numbers, and then changes nothing.
     [[nodiscard]] std::uintptr_t add(HandleKind kind, std::shared_ptr<void> object);
-    /// Null: the handle has been freed, is of another kind, or has never been given out.
+    /// Returns null if the handle was freed, is of another kind, or was never issued.
     [[nodiscard]] const std::shared_ptr<void>* find(HandleKind kind, std::uintptr_t handle) const;
-    /// The object, which the caller may be the last to hold; null as find().
+    /// Removes and returns the object, of which the caller may be the last owner. Returns null if find() does.
     [[nodiscard]] std::shared_ptr<void> remove(HandleKind kind, std::uintptr_t handle);
 
   private:
     mutable std::shared_mutex mutex_;
     std::unordered_map<std::uintptr_t, std::shared_ptr<void>> objects_;
-    std::uintptr_t given_ = 0;  // how many so far
+    std::uintptr_t given_ = 0;  // handles so far
 };
 
-/// The process's own. It is never destroyed: what the program does not free goes with the process.
+/// The table of the process. It is never destroyed; the system reclaims objects that the program does not free.
 [[nodiscard]] HandleTable& handleTable();
 
-/// The object behind a handle of C's type H: specialised with Object, kKind and kName.
+/// Maps a handle type H of the C API to its object: specialisations define Object, kKind and kName.
 template <class H>
 struct HandleType;
 template <>
@@ -67,17 +66,17 @@ struct HandleType<relief_collider> {
     static constexpr const char* kName = "relief_collider";
 };
 
-/// The errors of this thread's calls.
+/// The errors of the calls of one thread.
 class CallErrors {
   public:
     [[nodiscard]] const char* last() const { return shown_; }
     [[nodiscard]] std::uint64_t count() const { return count_; }
 
     void fail(const char* message) noexcept;
-    /// Making an object of this kind has failed with last(): its NULL may be handed on.
+    /// Records that creating an object of this kind failed with last(); its NULL may be passed to other functions.
     void failedToMake(HandleKind kind) noexcept;
     void made(HandleKind kind) noexcept { of(kind).clear(); }
-    /// The unread failure that a NULL of this kind comes from; else empty.
+    /// The unread error that a NULL of this kind stands for, or empty.
     [[nodiscard]] const std::string& unreadOf(HandleKind kind) const {
         return unread_[static_cast<std::size_t>(kind) - 1];
     }
@@ -87,14 +86,14 @@ class CallErrors {
     [[nodiscard]] std::string& of(HandleKind kind) { return unread_[static_cast<std::size_t>(kind) - 1]; }
 
     std::string text_;
-    const char* shown_ = "";  // text_, or what needs no memory
+    const char* shown_ = "";  // text_, or a literal if memory is exhausted
     std::uint64_t count_ = 0;
     std::array<std::string, kHandleKinds> unread_;
 };
 
 [[nodiscard]] CallErrors& callErrors();
 
-/// The place of a number, for messages: "births[3].velocity[1]".
+/// Locates a number in messages: "births[3].velocity[1]".
 struct NumberName {
     static constexpr std::size_t kNone = ~std::size_t{0};
     const char* argument;
@@ -105,7 +104,7 @@ struct NumberName {
     [[nodiscard]] std::string text() const;
 };
 
-/// The checks of arguments; an error names the function, the argument and the cure.
+/// Validates arguments. Errors name the function, the argument and the cure.
 class Call {
   public:
     explicit Call(const char* function) : function_(function) {}
@@ -120,13 +119,13 @@ class Call {
         const std::shared_ptr<void>& found = *RELIEF_TRY(find(handle, argument));
         return std::static_pointer_cast<typename HandleType<H>::Object>(found);
     }
-    /// As shared(); the caller's handle keeps it.
+    /// Like shared(), without ownership: the caller's handle owns the object.
     template <class H>
     [[nodiscard]] Result<typename HandleType<H>::Object*> object(const H* handle,
                                                                  const char* argument) const {
         return static_cast<typename HandleType<H>::Object*>(RELIEF_TRY(find(handle, argument))->get());
     }
-    /// As shared(), null for NULL; but a NULL of an unread failure is that failure.
+    /// Like shared(), but returns null for NULL. Returns the error if the NULL comes from an unread failure.
     template <class H>
     [[nodiscard]] Result<std::shared_ptr<typename HandleType<H>::Object>> optional(
         const H* handle, const char* argument) const {
@@ -137,7 +136,7 @@ class Call {
     }
 
     [[nodiscard]] Result<void> notNull(const void* pointer, const char* argument) const;
-    /// Memory of `count` items of T: not NULL unless there are none, and no more than an address space holds.
+    /// Checks an array of `count` items: not NULL unless `count` is 0, and within the address space.
     template <class T>
     [[nodiscard]] Result<void> array(const T* items, const char* argument, std::size_t count,
                                      const char* count_argument) const {
@@ -147,8 +146,8 @@ class Call {
         }
         return count == 0 ? Result<void>() : notNull(items, argument);
     }
-    /// A structure that begins with its size. All have had one size so far.
-    /// \param name  the structure's.
+    /// Copies a structure that starts with its size. Each has had only one size so far.
+    /// \param name  the name of its type.
     template <class T>
     [[nodiscard]] Result<T> structure(const T* given, const char* argument, const char* name) const {
         std::size_t size = 0;
@@ -160,7 +159,7 @@ class Call {
         return *given;
     }
 
-    /// A number, or each of an array.
+    /// Checks the range of a number, or of each number of an array.
     template <class T>
     [[nodiscard]] Result<void> number(const T& value, const FieldRange& range, NumberName name) const {
         if constexpr (std::is_array_v<T>) {
@@ -173,7 +172,7 @@ class Call {
             return range.holds(given) ? Result<void>() : wrongNumber(given, range, name);
         }
     }
-    /// That a context is current, which every function of the GL needs.
+    /// Checks that a GL context is current.
     [[nodiscard]] Result<void> context() const;
 
   private:
@@ -193,7 +192,7 @@ class Call {
     const char* function_;
 };
 
-/// The result of body(call), or `failed`; callErrors() has the reason.
+/// Returns the result of body(call); on failure, stores the error in callErrors() and returns `failed`.
 template <class T, class F>
 T answer(const char* function, T failed, const F& body) noexcept {
     try {
@@ -212,7 +211,7 @@ T answer(const char* function, T failed, const F& body) noexcept {
     return failed;
 }
 
-/// A new handle of the object that body(call) makes, or NULL.
+/// Returns a new handle of the object that body(call) creates, or NULL on failure.
 template <class H, class F>
 H* create(const char* function, const F& body) noexcept {
     constexpr HandleKind kKind = HandleType<H>::kKind;

@@ -8,11 +8,11 @@
 #include "runtime/c_api/objects.h"
 #include "runtime/gl/gl_functions.h"
 
-using namespace relief;  // NOLINT: what C sees has C's names
+using namespace relief;  // NOLINT: the C functions are outside of it
 
 namespace {
 
-/// Of a FieldSample or a SurfaceSample.
+/// Converts a FieldSample or a SurfaceSample.
 template <class Sample>
 relief_sample sampleOf(const Sample& from) {
     relief_sample sample{from.distance, {}, from.map};
@@ -20,7 +20,7 @@ relief_sample sampleOf(const Sample& from) {
     return sample;
 }
 
-/// The binding of the collider in a program's own shader.
+/// Validates texture units and the uniform block binding.
 Result<WorldTextures::Binding> bindingOf(const Call& call, const TexturesObject& textures, int first_unit,
                                          int uniform_block) {
     const int units = textures.world ? 4 : 3;

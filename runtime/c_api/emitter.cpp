@@ -14,7 +14,7 @@
 #include "runtime/bodies/pose_keys.h"
 #include "runtime/c_api/objects.h"
 
-using namespace relief;  // NOLINT: what C sees has C's names
+using namespace relief;  // NOLINT: the C functions are outside of it
 
 namespace {
 
@@ -63,7 +63,7 @@ Result<EmitterSettings> settingsOf(const Call& call, const relief_emitter_option
     return settings;
 }
 
-/// The error of an argument.
+/// Prefixes an error with the name of the argument.
 template <class T>
 Result<T> ofArgument(const Call& call, const char* argument, Result<T> result) {
     return result ? std::move(result)
@@ -94,8 +94,8 @@ Result<EmitterSurface> surfaceOf(const Call& call, const AnimatedMesh& mesh, con
                       EmitterSurface::create(triangles, std::move(weights), posed(mesh, firstPose(mesh))));
 }
 
-/// \param mesh     of an animation; null: of a collider.
-/// \param surface  the mesh at rest, or the collider's.
+/// \param mesh     animated mesh; null for a collider.
+/// \param surface  surface of the mesh at rest, or of the collider.
 Result<std::shared_ptr<EmitterObject>> emitterOf(const Call& call, const relief_emitter_options& options,
                                                  std::shared_ptr<const AnimatedMesh> mesh,
                                                  EmitterSurface surface) {
@@ -106,7 +106,7 @@ Result<std::shared_ptr<EmitterObject>> emitterOf(const Call& call, const relief_
         EmitterObject{std::move(mesh), Emitter(std::move(settings), options.seed), options.inherit});
 }
 
-/// Poses the emitter's mesh as a body has it, that comes to its pose within the last dt seconds.
+/// Deforms the emitter's mesh like the body, which reached its current pose during the last dt seconds.
 Result<void> bendWith(const Call& call, EmitterObject& emitter, relief_textures* textures, std::uint32_t body,
                       double dt) {
     AnimatedBody& on = *RELIEF_TRY(animatedOf(call, textures, body));
@@ -115,7 +115,7 @@ Result<void> bendWith(const Call& call, EmitterObject& emitter, relief_textures*
             return call.refuse("emitter is of another animation than body " + std::to_string(body) +
                                "; make one of the animation that the body was added with");
         }
-        emitter.mesh = on.collider.shared();  // alike, and known to be from now on
+        emitter.mesh = on.collider.shared();  // equal; share it to skip the next comparison
     }
     if (emitter.emitter.isDue(dt)) {
         on.trail.bend(emitter.emitter, dt);
@@ -123,7 +123,7 @@ Result<void> bendWith(const Call& call, EmitterObject& emitter, relief_textures*
     return {};
 }
 
-/// The way of a body within the last `seconds`, and on at the same speed, so that it moves at their end, too.
+/// Returns the motion of a body during the last `seconds`, extrapolated so that its velocity at the end is defined.
 std::vector<PoseKey> wayOf(const Pose& before, const Pose& now, double seconds) {
     const Pose next{now.position + (now.position - before.position),
                     glm::normalize(now.rotation * glm::conjugate(before.rotation) * now.rotation), now.scale};

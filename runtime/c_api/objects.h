@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The objects behind the handles of relief.h, and what its functions share.
+// The objects behind the handles of relief.h, and helpers that its functions share.
 #pragma once
 
 #include <algorithm>
@@ -22,14 +22,14 @@
 
 namespace relief {
 
-/// A body that moves by clips, on the GPU.
+/// An animated body on the GPU.
 struct AnimatedBody {
-    std::uint32_t body;  // of the world's textures
+    std::uint32_t body;  // index in the world's textures
     AnimatedCollider collider;
-    MeshTrail trail;                    // of its mesh, by calls
-    std::optional<MeshPose> next = {};  // that it gets with the poses
-    bool fresh = true;                  // it has had no pose of the caller's: the first one is no motion
-    double shown = 0.0;                 // poses of its trail
+    MeshTrail trail;                    // motion of its mesh; its time is `shown`
+    std::optional<MeshPose> next = {};  // applied by the next relief_textures_set_poses()
+    bool fresh = true;                  // no pose was set yet: the first one is not motion
+    double shown = 0.0;                 // number of poses in the trail
 
     void show(const MeshPose& pose, bool jumps) {
         trail.show(
@@ -38,32 +38,31 @@ struct AnimatedBody {
 };
 
 struct TexturesObject {
-    std::optional<WorldTextures> own;          // or those of
-    std::unique_ptr<WorldStream> stream = {};  // a world that is streamed
+    std::optional<WorldTextures> own;          // empty if streamed
+    std::unique_ptr<WorldStream> stream = {};  // null if not streamed
     std::string glsl = {};
     GLint units = 0;                   // texture units of the context
     GLint blocks = 0;                  // uniform block bindings
-    std::optional<Bounds> world = {};  // of bodies, where they were placed; nullopt: of a single collider
-    float texel = 0.0F;                // the finest of a world
-    std::vector<Pose> poses = {};      // of its bodies, at the end of the next step
-    std::vector<Pose> before = {};     // the same at its beginning; of animated bodies alone
-    std::vector<Pose> placed =
-        {};  // the same of what lies on the GPU: those of animated bodies have their middle
+    std::optional<Bounds> world = {};  // initial bounds of the bodies; nullopt: a single collider
+    float texel = 0.0F;                // finest texel of a world, in world units
+    std::vector<Pose> poses = {};      // of the bodies, at the end of the next step
+    std::vector<Pose> before = {};     // of the bodies, at its beginning
+    std::vector<Pose> placed = {};     // as uploaded: an animated body is placed by its centre
     std::vector<AnimatedBody> animated = {};
-    std::vector<std::string> warnings = {};  // of the stream, not told yet
-    std::string warning = {};                // that was told last
+    std::vector<std::string> warnings = {};  // of the stream, not returned yet
+    std::string warning = {};                // the last one returned
 
     [[nodiscard]] const WorldTextures& textures() const { return stream ? stream->textures() : *own; }
 };
 
 struct ParticlesObject {
-    std::shared_ptr<const TexturesObject> textures;  // outlives the system, which points to it; may be null
+    std::shared_ptr<const TexturesObject> textures;  // the system points to it; may be null
     ParticleSystem system;
-    std::vector<Birth> births;  // of a call, kept for its memory
+    std::vector<Birth> births;  // scratch memory of a call
 };
 
 struct PictureObject {
-    std::shared_ptr<const TexturesObject> textures;  // as above
+    std::shared_ptr<const TexturesObject> textures;  // may be null
     ParticleRenderer renderer;
     float diameter = 0.01F;
 };
@@ -79,7 +78,7 @@ struct EmitterObject {
     float inherit = 0.0F;
 };
 
-/// A body of a world that moves by clips, behind those of its file.
+/// An animated body of a world; its number follows those of the file.
 struct AddedBody {
     AnimationObject animation;
     Pose pose{};
@@ -130,7 +129,7 @@ struct HandleType<relief_emitter> {
     static constexpr const char* kName = "relief_emitter";
 };
 
-// As relief.h has them. Speeds beyond 10^15 are those of particles that are lost (isLost()).
+// Ranges of relief.h. A particle beyond 1e15 counts as lost (isLost()).
 inline constexpr FieldRange kAny{-1e15, 1e15};
 inline constexpr FieldRange kNotNegative{0.0, 1e15};
 inline constexpr FieldRange kShare{0.0, 1.0};
@@ -151,20 +150,20 @@ inline glm::vec3 pointAt(const float* points, std::size_t i) {
     return {points[3 * i], points[3 * i + 1], points[3 * i + 2]};
 }
 
-/// The animated body of that number of a world's textures.
+/// Finds an animated body by its number.
 [[nodiscard]] Result<AnimatedBody*> animatedOf(const Call& call, relief_textures* animated_textures,
                                                std::uint32_t body);
 
-/// A pose of C's. \param rest  whose scale stays.
+/// Validates and converts a pose. \param rest  provides the scale.
 [[nodiscard]] Result<Pose> poseOf(const Call& call, const relief_pose& given, NumberName name,
                                   const Pose& rest);
 
-/// Whether GL names go with its objects.
+/// Whether objects of this kind own GL objects.
 [[nodiscard]] constexpr bool hasGlNames(HandleKind kind) {
     return kind == HandleKind::kTextures || kind == HandleKind::kParticles || kind == HandleKind::kPicture;
 }
 
-/// Frees an object. The context must be current if GL names go with it.
+/// Frees an object. Fails without a current context if the object owns GL objects.
 template <class H>
 void release(const char* function, H* handle, const char* argument) noexcept {
     answer(function, false, [&](const Call& call) -> Result<bool> {
@@ -180,8 +179,8 @@ void release(const char* function, H* handle, const char* argument) noexcept {
     });
 }
 
-/// Answers each point by sampleAt(object, point), a relief_sample; where that cannot be, by NaN.
-/// \param argument  the handle's name.
+/// Writes sampleAt(object, point) for each point, or NaN for points that cannot be evaluated.
+/// \param argument  the parameter name of the handle.
 template <class H, class F>
 void query(const char* function, const H* handle, const char* argument, const float* points,
            std::size_t count, relief_sample* samples, const F& sampleAt) {
@@ -209,7 +208,7 @@ void query(const char* function, const H* handle, const char* argument, const fl
     });
 }
 
-/// Writes the result of boundsOf(call); where it fails, NaN.
+/// Writes the result of boundsOf(call), or NaN on failure.
 template <class F>
 void writeBounds(const char* function, float* min, float* max, const F& boundsOf) {
     answer(function, false, [&](const Call& call) -> Result<bool> {
@@ -227,7 +226,7 @@ void writeBounds(const char* function, float* min, float* max, const F& boundsOf
     });
 }
 
-/// Textures with all that calls about them need. Needs a current context.
+/// Completes textures with their GLSL and the limits of the context, which must be current.
 [[nodiscard]] Result<TexturesObject> texturesObject(WorldTextures textures);
 [[nodiscard]] Result<TexturesObject> texturesObject(std::unique_ptr<WorldStream> stream);
 

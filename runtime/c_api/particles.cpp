@@ -13,7 +13,7 @@
 #include "runtime/particles/particle_system.h"
 #include "runtime/picture/particle_renderer.h"
 
-using namespace relief;  // NOLINT: what C sees has C's names
+using namespace relief;  // NOLINT: the C functions are outside of it
 
 namespace {
 

@@ -1,32 +1,33 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Relief from C and from whatever calls C: colliders on the CPU and on the GPU, particles, pictures of both.
+/* The C API of Relief: colliders on the CPU and the GPU, particles, and pictures of both.
  *
- * librelief.so exports these functions and nothing else; librelief_c.a has the same ones. No exception leaves one.
+ * librelief.so exports only these functions; librelief_c.a contains the same ones. No C++ exception leaves them.
  *
- * Errors. Whatever is passed on is answered and does not crash, but for memory that is shorter than its count, and text
- * without an end. A call that fails changes nothing; relief_error() names the argument and the cure in one line, and
- * relief_error_count() counts failures. What is returned then: NULL by functions that make something, a
- * negative number by those of type int and int64_t, 0 as a count, "" as a text; what is written: NaN.
+ * Errors. Arguments are validated. An invalid argument never crashes; the exceptions are arrays shorter than their
+ * count and strings without a terminating zero. A failed call changes nothing. relief_error() returns one line that
+ * names the argument and the cure; relief_error_count() counts failures. On failure, functions that create an object
+ * return NULL, functions of type int and int64_t return a negative number, counts are 0, and strings are "". Output
+ * values are NaN.
  *
- * Handles are numbers that are looked up at each call, in some nanoseconds. NULL, a handle that has been freed, one of
- * another kind and what never was one are errors; no value is given out twice. Freeing NULL does nothing. They are freed by
- * the function of their name, once, in any order: particles and pictures keep the textures that they were made with, until
- * they go themselves.
- * A NULL that a failed call returned brings its error along: relief_textures_create(relief_collider_load(path)) fails as
- * loading did. Where NULL is also a choice, as for the textures of particles, it is that failure until the thread has called
- * relief_error(), or has made one of that kind, and the choice from then on.
+ * Handles. A handle is looked up at each call, in a few nanoseconds; values are never reused. NULL, a freed handle, a
+ * handle of another type and an arbitrary value are errors. Free each handle once, with the free function of its type,
+ * in any order: particles and pictures keep their textures alive. Freeing NULL does nothing. A NULL returned by a
+ * failed call carries its error: relief_textures_create(relief_collider_load(path)) fails with the error of the load.
+ * If NULL is also a valid argument, such as the textures of particles, it is treated as that failure until the thread
+ * calls relief_error() or creates an object of that type. After that, it is valid again.
  *
- * Functions marked (GL) need an OpenGL context (3.3 or OpenGL ES 3.0 with float render targets) current on the calling
- * thread, the same one for all that belongs together, and leave its state as it was. Where none is current they fail; what is
- * to be freed then stays.
- * Several threads may call at once with handles of their own, and relief_collider_query() and relief_collider_nearest()
- * also with one and the same. Errors are kept for each thread.
+ * OpenGL. Functions marked (GL) need a current OpenGL context on the calling thread: OpenGL 3.3, or OpenGL ES 3.0 with
+ * renderable float textures. Use the same context for all objects that work together. These functions restore the GL
+ * state that they change. They fail if no context is current; a handle to be freed then stays valid.
  *
- * Lengths are in the mesh's units, times in seconds, vectors of three floats in a row, matrices of sixteen by columns, as
- * OpenGL has them. Every number is finite; where no range stands beside it, no greater than 1e15 either way.
+ * Threads. Several threads may call at once with different handles. relief_collider_query() and
+ * relief_collider_nearest() may also share a handle. Errors are stored per thread.
  *
- * Structures only ever grow at their end: set `size` to sizeof(the structure), and leave what you do not need 0. A size that
- * no version of the structure had, 0 for one, is an error. */
+ * Units. Lengths are in the units of the mesh, times in seconds. A vector is three consecutive floats; a matrix is
+ * sixteen floats in column-major order. All numbers must be finite. Where no range is given, it is -1e15 to 1e15.
+ *
+ * Structures only grow at their end. Set `size` to sizeof(the structure), and members that you do not need to 0. A
+ * `size` that matches no version of the structure, such as 0, is an error. */
 #ifndef RELIEF_H
 #define RELIEF_H
 
@@ -37,51 +38,56 @@
 extern "C" {
 #endif
 
-/* What this header describes. A library has relief_api_version() >= the header's, and the same major number, or must not be
- * used with it. */
+/* The version of this header. A library is compatible if its major number is the same and relief_api_version() is not
+ * lower than RELIEF_API_VERSION. */
 #define RELIEF_API_MAJOR 1
 #define RELIEF_API_MINOR 2
 #define RELIEF_API_VERSION (RELIEF_API_MAJOR * 1000 + RELIEF_API_MINOR)
 int relief_api_version(void);
-const char* relief_version(void); /* of the library: "0.1.0" */
+const char* relief_version(void); /* version of the library, such as "0.1.0" */
 
-/* Why this thread's last call that failed did so; "" before that. Valid until the next call. */
+/* Returns the message of the last failed call of this thread, or "" if none has failed. Valid until the next call. */
 const char* relief_error(void);
-/* How many of this thread's calls have failed so far. Since 1.1. */
+/* Returns the number of failed calls of this thread. Since 1.1. */
 uint64_t relief_error_count(void);
 
 /* --- colliders, on the CPU --- */
 
 typedef struct relief_collider relief_collider;
 
+/* Reads a .relief file. */
 relief_collider* relief_collider_load(const char* path);
-/* From memory, which is copied. */
+/* Reads a collider from memory, which is copied. */
 relief_collider* relief_collider_read(const void* bytes, size_t size);
 void relief_collider_free(relief_collider* collider);
 
+/* Writes the bounds of the collider in object space. */
 void relief_collider_bounds(const relief_collider* collider, float min[3], float max[3]);
 size_t relief_collider_map_count(const relief_collider* collider);
-const char* relief_collider_unit(const relief_collider* collider); /* "m", or ""; as long as the collider */
+/* Returns the unit of length, such as "m", or "" if unknown. Valid until the collider is freed. */
+const char* relief_collider_unit(const relief_collider* collider);
 
-/* Materials of its surface, whose numbers are from 0; 0: it is all the same. Since 1.2. */
+/* Returns the number of surface materials; 0 if the collider has none. Since 1.2. */
 size_t relief_collider_material_count(const relief_collider* collider);
-/* "" of surfaces without a name; as long as the collider. Since 1.2. */
+/* Returns the name of a material, numbered from 0; it may be "". Valid until the collider is freed. Since 1.2. */
 const char* relief_collider_material_name(const relief_collider* collider, size_t material);
-/* The material at a point on the surface with this normal, of any length; -1: it has none, or an error. Since 1.2. */
+/* Returns the material at a point on the surface, or -1 if the collider has no materials or on error. `normal`: the
+ * surface normal at the point, of any length. Since 1.2. */
 int64_t relief_collider_material_at(const relief_collider* collider, const float point[3],
                                     const float normal[3]);
 
 typedef struct relief_sample {
-    float
-        distance; /* to the plane that decides the side: negative inside; 1e30: outside, and no more is known; NaN: an error */
-    float normal[3]; /* outwards; zero where no more than "outside" is known */
-    int32_t map;     /* that decides; -1: no map votes */
+    float distance;  /* to the plane that decides the side; < 0 inside; 1e30 far outside; NaN: error */
+    float normal[3]; /* outwards; zero if the point is far outside */
+    int32_t map;     /* the map that decides; -1: no map votes */
 } relief_sample;
 
-/* What the particles collide with, at `count` points. A point that is not finite is an error; the others are answered. */
+/* Evaluates the field that particles collide with at `count` points. `points` holds 3 * count floats. A non-finite
+ * point is an error; the other points are still evaluated. */
 void relief_collider_query(const relief_collider* collider, const float* points, size_t count,
                            relief_sample* samples);
-/* To the nearest surface, which is searched for: some thirteen times the work. */
+/* Like relief_collider_query(), but searches for the nearest surface and returns the distance to it. Takes about
+ * thirteen times as long. */
 void relief_collider_nearest(const relief_collider* collider, const float* points, size_t count,
                              relief_sample* samples);
 
@@ -89,54 +95,57 @@ void relief_collider_nearest(const relief_collider* collider, const float* point
 
 typedef struct relief_world relief_world;
 
-/* Without bodies: for relief_world_add(). */
+/* Creates a world without bodies; add them with relief_world_add(). */
 relief_world* relief_world_create(void);
-/* A world.json of `relief bake LEVEL --world`, with the colliders that it names: up to 65536 bodies of 4096 colliders. Lengths
- * are world units. A body is a number, from 0, in the file's order. */
+/* Reads a world.json written by `relief bake LEVEL --world`, and the colliders that it names: at most 65536 bodies and
+ * 4096 colliders. Lengths are in world units. Bodies are numbered from 0, in the order of the file. */
 relief_world* relief_world_load(const char* world_path);
 void relief_world_free(relief_world* world);
 
 size_t relief_world_body_count(const relief_world* world);
-/* The bodies of the node of this name, in their order: several in one place where its mesh was cut into tiles, which move as one.
- * Writes the first `count` of them, and returns how many there are; that there is none is an error, and 0. */
+/* Finds the bodies of the node with this name. A node has several bodies if its mesh was cut into tiles; move them
+ * together. Writes the first `count` body numbers, in ascending order, and returns the number of bodies found. If there
+ * is none, it fails and returns 0. */
 size_t relief_world_find(const relief_world* world, const char* node, uint32_t* bodies, size_t count);
-const char* relief_world_node(const relief_world* world, size_t body); /* as long as the world */
-/* The box that holds all bodies, those of clips at any time of them. */
+/* Returns the name of a body's node. Valid until the world is freed. */
+const char* relief_world_node(const relief_world* world, size_t body);
+/* Writes the bounds of all bodies; those of an animated body cover its clips at all times. */
 void relief_world_bounds(const relief_world* world, float min[3], float max[3]);
 
 typedef struct relief_pose {
-    float position[3]; /* of the collider's origin */
-    float rotation[4]; /* a unit quaternion x, y, z, w; of length 1 to a thousandth */
+    float position[3]; /* position of the collider's origin */
+    float rotation[4]; /* unit quaternion x, y, z, w; length 1 ± 0.001 */
 } relief_pose;
 
-/* Where the file places a body. */
+/* Writes the initial pose of a body: as in the file, or as passed to relief_world_add(). */
 int relief_world_pose(const relief_world* world, size_t body, relief_pose* pose);
 
-/* As relief_collider_query(), of all bodies where the file places them; `map` is the body that decides, -1: none votes. Takes
- * time by the number of bodies. */
+/* Like relief_collider_query(), for all bodies in the poses of the file. `map` is the body that decides, or -1 if no
+ * body votes. The cost is proportional to the number of bodies. */
 void relief_world_query(const relief_world* world, const float* points, size_t count, relief_sample* samples);
 
-/* --- colliders that move by clips: characters, machines. Since 1.2 --- */
+/* --- animated colliders: characters, machines. Since 1.2 --- */
 
 typedef struct relief_animation relief_animation;
 
-/* The animated mesh of a container of `relief bake --animated`. The collider may be freed at once. */
+/* Reads the animated mesh of a collider baked with `relief bake --animated`. The collider may be freed afterwards. */
 relief_animation* relief_animation_create(const relief_collider* collider);
 void relief_animation_free(relief_animation* animation);
 
 size_t relief_animation_clip_count(const relief_animation* animation);
-const char* relief_animation_clip_name(const relief_animation* animation,
-                                       size_t clip); /* as long as the animation */
+/* Names of clips and joints are valid until the animation is freed. */
+const char* relief_animation_clip_name(const relief_animation* animation, size_t clip);
 float relief_animation_clip_seconds(const relief_animation* animation, size_t clip);
-/* Joints as glTF's skins have them; that of a mesh without a skin is its node. */
+/* Joints as in a glTF skin; the only joint of a mesh without a skin is its node. */
 size_t relief_animation_joint_count(const relief_animation* animation);
-const char* relief_animation_joint_name(const relief_animation* animation,
-                                        size_t joint);                   /* as long as the animation */
-size_t relief_animation_weight_count(const relief_animation* animation); /* of morph targets */
+const char* relief_animation_joint_name(const relief_animation* animation, size_t joint);
+/* Returns the number of morph targets. */
+size_t relief_animation_weight_count(const relief_animation* animation);
 
-/* Adds a body that moves by clips, behind the others, and returns its number; relief_world_query() leaves it out. The animation may be
- * freed at once. `pose` is that of the mesh's origin; `resolution` texels of its three maps along its longest side, 16 to 4096, or 0: 512; `room`
- * the sides of a box that holds it in every pose, or NULL: those that its clips need. */
+/* Appends an animated body to the world and returns its number. relief_world_query() ignores animated bodies. The
+ * animation may be freed afterwards. `pose`: pose of the mesh's origin. `resolution`: texels of its three maps along
+ * the longest side, 16 to 4096; 0: 512. `room`: the sides of a box that contains the body in every pose; NULL: the
+ * extent of its clips. */
 int64_t relief_world_add(relief_world* world, const relief_animation* animation, const relief_pose* pose,
                          uint32_t resolution, const float room[3]);
 
@@ -144,48 +153,56 @@ int64_t relief_world_add(relief_world* world, const relief_animation* animation,
 
 typedef struct relief_textures relief_textures;
 
+/* Uploads a collider. The collider may be freed afterwards. */
 relief_textures* relief_textures_create(const relief_collider* collider);
-/* Of all bodies of a world, which may be freed at once. Since 1.2. */
+/* Uploads all bodies of a world. The world may be freed afterwards. Since 1.2. */
 relief_textures* relief_textures_create_world(const relief_world* world);
 void relief_textures_free(relief_textures* textures);
-/* Moves bodies of a world: poses[i] is that of bodies[i] at the end of the next step, and the others stay; where a body was after
- * the call before is its place at the step's beginning. Call it before each step while anything moves, and once more, with a
- * count of 0 perhaps, when all has stopped. Scales stay. A body that is named twice has its last pose. Since 1.2. */
+/* Moves bodies of a world: poses[i] is the pose of bodies[i] at the end of the next step. The poses of the previous
+ * call apply at the beginning of the step; bodies that are not listed stay. Call it before each step while any body
+ * moves, and once more after the last one stops (count may be 0). Scales do not change. If a body is listed twice, the
+ * last pose applies. Since 1.2. */
 int relief_textures_set_poses(relief_textures* world_textures, const uint32_t* bodies,
                               const relief_pose* poses, size_t count);
-/* The pose that a clip has at a time; before its first key and behind its last one it rests. The next relief_textures_set_poses()
- * shows it; after a jump, to another clip say, call that twice, or the jump throws what it meets. `body`: that relief_world_add() returned. Since 1.2. */
+/* Sets an animated body to the pose of a clip at a time, clamped to its first and last key. The next call of
+ * relief_textures_set_poses() applies it. After a jump, such as a change of clip, call relief_textures_set_poses()
+ * twice; otherwise the jump counts as motion and pushes particles. `body`: a number returned by relief_world_add().
+ * Since 1.2. */
 int relief_textures_play(relief_textures* animated_textures, uint32_t body, const char* clip, double seconds);
-/* The same of a pose of your own: for each joint 16 floats, from the space of the mesh's vertices to its own space (glTF's joint
- * matrices: the joint's transform times its inverse bind matrix), and the weight of each morph target. Since 1.2. */
+/* Like relief_textures_play(), with your own pose. `matrices`: 16 floats per joint, the glTF joint matrix (the joint's
+ * transform times its inverse bind matrix). `weights`: one weight per morph target. The counts must match those of the
+ * animation. Since 1.2. */
 int relief_textures_set_joints(relief_textures* animated_textures, uint32_t body, const float* matrices,
                                size_t joint_count, const float* weights, size_t weight_count);
-/* A world with as much of it in full detail as so many bytes of the GPU hold, up to 2^40; 268435456 is a good number. A coarse
- * collider stands in for each that is not there. Files are read by a thread. Since 1.2. */
+/* Streams a world: keeps full-detail colliders within a budget of `gpu_bytes`, 1 to 2^40; 268435456 is a good value.
+ * The coarse collider replaces each one that is not loaded. A background thread reads the files. Since 1.2. */
 relief_textures* relief_textures_stream_world(const char* world_path, uint64_t gpu_bytes);
 
 typedef struct relief_ball {
-    float center[3]; /* world units, as the radius */
-    float radius;    /* > 0 */
+    float center[3]; /* world units */
+    float radius;    /* world units; > 0 */
 } relief_ball;
 
-/* Call it before each step with the places that matter, such as the camera and the emitters: what reaches into these balls is loaded, and
- * what did not for the longest time goes. It copies a little at a time and waits for nothing, unless `waits` is 1 and not 0: then for all that
- * there is room for, so that runs are alike. Of textures that are not streamed it does nothing.
- * Returns how many colliders in the balls are not there in full detail, those that could not be loaded among them; -1: an error. Since 1.2. */
+/* Updates a streamed world. Call it before each step with the places that need full detail, such as the camera and the
+ * emitters. Colliders that intersect the balls are loaded; the least recently needed ones are evicted. `waits` 0:
+ * uploads a little per call and never blocks. `waits` 1: blocks until everything that fits is loaded, for reproducible
+ * runs. Does nothing for textures that are not streamed. Returns the number of colliders in the balls without full
+ * detail, including those that failed to load; -1 on error. Since 1.2. */
 int64_t relief_textures_stream(relief_textures* world_textures, const relief_ball* balls, size_t count,
                                int waits);
-/* One line about a collider that could not be loaded, which is told once; "": there is none. Valid until the next call of it. Since 1.2. */
+/* Returns one line about a collider that failed to load, once per collider; "" if there is none. Valid until the next
+ * call of this function. Since 1.2. */
 const char* relief_textures_warning(relief_textures* world_textures);
 
-/* What a shader of your own begins with, behind its #version and precision lines: defines and collider.glsl, which has
- * reliefEvaluate(vec3), of a world in its space. Valid as long as the textures. */
+/* Returns GLSL to insert into your own shader after its #version and precision lines: defines and collider.glsl, with
+ * reliefEvaluate(vec3). The point is in object space, or in world space for a world. Valid until the textures are
+ * freed. */
 const char* relief_textures_glsl(const relief_textures* textures);
-/* Sets the samplers of a linked program to units first_unit … first_unit + 2 (+ 3 of a world) and its block to uniform_block; once a program.
- * Leaves the program in use. */
+/* Sets the samplers of a linked program to the texture units from first_unit on (three units; four for a world), and
+ * its uniform block to binding uniform_block. Call it once per program. Leaves the program in use. */
 void relief_textures_attach(const relief_textures* textures, uint32_t program, int first_unit,
                             int uniform_block);
-/* Binds textures and block there, before a draw; they stay bound. */
+/* Binds the textures and the uniform block before a draw; they stay bound. */
 void relief_textures_bind(const relief_textures* textures, int first_unit, int uniform_block);
 
 /* --- particles (GL) --- */
@@ -194,13 +211,13 @@ typedef struct relief_particles relief_particles;
 
 typedef struct relief_particles_options {
     size_t size;
-    uint32_t capacity;  /* particles that may live at once, up to 16777216; 0: 65536 */
-    float gravity[3];   /* units a second squared */
-    float wind[3];      /* units a second */
+    uint32_t capacity;  /* maximum number of live particles, up to 16777216; 0: 65536 */
+    float gravity[3];   /* units/s^2 */
+    float wind[3];      /* units/s */
     float drag;         /* 1/s; 0 or more */
-    float restitution;  /* 0…1: speed kept across a surface */
-    float friction;     /* 0…1: speed lost along it, per collision */
-    float radius;       /* of collision; 0 or more */
+    float restitution;  /* 0…1: fraction of the normal speed kept at a collision */
+    float friction;     /* 0…1: fraction of the tangential speed lost at a collision */
+    float radius;       /* collision radius; 0 or more */
     int32_t has_ground; /* 1: a floor at ground_height; 0: none */
     float ground_height;
 } relief_particles_options;
@@ -209,7 +226,7 @@ typedef struct relief_birth {
     float position[3];
     float velocity[3];
     float lifetime; /* > 0 */
-    uint32_t type;  /* a mark of your own, below 16777216: relief_particle has it again */
+    uint32_t type;  /* user data, below 16777216; copied to relief_particle */
 } relief_birth;
 
 typedef struct relief_particle {
@@ -219,7 +236,7 @@ typedef struct relief_particle {
     float age;
     float lifetime;
     uint32_t type;
-    uint32_t collisions; /* steps in contact so far */
+    uint32_t collisions; /* number of steps in contact */
 } relief_particle;
 
 typedef struct relief_counts {
@@ -227,18 +244,19 @@ typedef struct relief_counts {
     uint32_t alive;
 } relief_counts;
 
-/* `textures` may be NULL: nothing to collide with. `options` may be NULL: all 0. */
+/* Creates a particle system. `textures`: NULL for no collider. `options`: NULL for all 0. */
 relief_particles* relief_particles_create(const relief_textures* textures,
                                           const relief_particles_options* options);
 void relief_particles_free(relief_particles* particles);
-/* Takes over all but the capacity. `options` is not NULL. */
+/* Sets all options except the capacity. `options` must not be NULL. */
 int relief_particles_set(relief_particles* particles, const relief_particles_options* options);
-/* For the next step; returns how many there was room for. Needs no context. */
+/* Queues births for the next step and returns the number accepted. Needs no context. */
 size_t relief_particles_spawn(relief_particles* particles, const relief_birth* births, size_t count);
-/* `seconds`: above 0, up to 1e9. */
+/* Advances the particles. `seconds`: above 0, up to 1e9. */
 int relief_particles_step(relief_particles* particles, float seconds);
 relief_counts relief_particles_counts(const relief_particles* particles);
-/* Waits for the GPU. Writes at most `room` particles, in the order of their indices; returns how many live, or -1. */
+/* Reads the particles back, which waits for the GPU. Writes at most `room` particles, in index order. Returns the
+ * number of live particles, or -1 on error. */
 int64_t relief_particles_read(const relief_particles* particles, relief_particle* out, size_t room);
 
 /* --- births on the surface of characters, machines and colliders. Since 1.2 --- */
@@ -247,32 +265,34 @@ typedef struct relief_emitter relief_emitter;
 
 typedef struct relief_emitter_options {
     size_t size;
-    float rate;         /* births a second; 0…1e9 */
-    uint32_t burst;     /* births of the first call on top of them; up to 16777216 */
-    float direction[3]; /* of any length; all 0: the surface's normal, outwards */
-    float cone;         /* half angle about it, 0…180 degrees, uniform over its solid angle */
-    float speed_min;    /* along the direction, units a second; 0 or more, uniform between the two */
+    float rate;         /* births/s; 0…1e9 */
+    uint32_t burst;     /* additional births in the first call; up to 16777216 */
+    float direction[3]; /* of any length; all 0: the outward surface normal */
+    float cone;         /* half angle around the direction, 0…180 degrees; uniform over the solid angle */
+    float speed_min;    /* units/s; 0 or more; uniform between minimum and maximum */
     float speed_max;
-    float inherit; /* 0…1000: share of the surface's own velocity at the very place, bending included */
-    float lifetime_min; /* > 0; uniform between the two */
+    float inherit; /* 0…1000: factor of the surface velocity at the point of birth, deformation included */
+    float lifetime_min; /* seconds, > 0; uniform between minimum and maximum */
     float lifetime_max;
-    uint32_t type; /* as relief_birth has it */
-    uint64_t seed; /* up to 2^53: the same one gives the same births */
+    uint32_t type; /* as in relief_birth */
+    uint64_t seed; /* up to 2^53; equal seeds give equal births */
 } relief_emitter_options;
 
-/* Births are uniform by the area of the posed mesh. `group`: the name of a joint, whose weights are their density; NULL: all of the mesh.
- * `material`: the name of the material that has them; NULL: any. The animation may be freed at once. */
+/* Creates an emitter on the surface of an animated mesh. Births are uniform by area of the posed mesh. `group`: the
+ * joint whose weights are the density; NULL: the whole mesh. `material`: the name of the emitting material; NULL: all.
+ * The animation may be freed afterwards. */
 relief_emitter* relief_emitter_create(const relief_animation* animation, const char* group,
                                       const char* material, const relief_emitter_options* options);
-/* The same on the surface of a collider as it lies in its maps, but for parts thinner than a 96th of its longest side. The collider may
- * be freed at once. Takes some tenths of a second. */
+/* Creates an emitter on the surface that the maps of a collider represent. Parts thinner than 1/96 of its longest side
+ * may be missing. The collider may be freed afterwards. Takes some tenths of a second. */
 relief_emitter* relief_emitter_create_on(const relief_collider* collider, const char* material,
                                          const relief_emitter_options* options);
 void relief_emitter_free(relief_emitter* emitter);
-/* The births of the last `seconds`, above 0 up to 1e9: of the step that has been taken, in which a body of that animation or collider came
- * to where it is now; of textures of a single collider it is body 0. They go with the next step, each from where the surface was at its
- * own moment, in a straight line between the two poses. Call it before the relief_textures_set_poses() of the next step. Returns
- * how many there was room for; -1: an error. Needs no context. */
+/* Queues the births of the last step for the next step. `seconds`: the length of the last step, above 0, up to 1e9.
+ * `body`: a body with the emitter's animation or collider; 0 for textures of a single collider. Each birth starts where
+ * the surface was at its time of birth, interpolated linearly between the last two poses. Call it before the
+ * relief_textures_set_poses() of the next step. Returns the number of births accepted, or -1 on error. Needs no
+ * context. */
 int64_t relief_particles_emit(relief_particles* particles, relief_emitter* emitter, relief_textures* textures,
                               uint32_t body, float seconds);
 
@@ -282,7 +302,7 @@ typedef struct relief_picture relief_picture;
 
 typedef struct relief_picture_options {
     size_t size;
-    float diameter; /* of a particle; 0: a hundredth of the collider's longest side, or 0.01 in the open */
+    float diameter; /* of a particle; 0: 1/100 of the collider's longest side, or 0.01 without a collider */
     float color[3]; /* sRGB, 0…1; all 0: white */
     float opacity;  /* 0…1; 0: 0.95 */
 } relief_picture_options;
@@ -291,16 +311,17 @@ typedef struct relief_view {
     size_t size;
     float view[16];
     float projection[16];  /* perspective */
-    uint32_t framebuffer;  /* with colour and depth; 0: the window's */
-    int32_t width, height; /* its pixels (0, 0) … (width - 1, height - 1); up to 65536 */
-    int32_t srgb;          /* 1: it takes sRGB values, as a window does; 0: linear light */
+    uint32_t framebuffer;  /* with colour and depth; 0: the default framebuffer */
+    int32_t width, height; /* in pixels; up to 65536 */
+    int32_t srgb;          /* 1: the framebuffer stores sRGB values, as a window does; 0: linear */
 } relief_view;
 
-/* `textures` and the `collider` that they are of light the particles; both NULL: they lie in the open. Of a world's textures the
- * collider is NULL, and light is that of the box where the file places its bodies. The collider may be freed at once. */
+/* Creates a renderer of particles that the collider shades. `textures` and `collider`: of the same collider, or both
+ * NULL for no shading. For textures of a world, `collider` must be NULL; shading then covers the initial bounds of the
+ * bodies. The collider may be freed afterwards. */
 relief_picture* relief_picture_create(const relief_textures* textures, const relief_collider* collider);
 void relief_picture_free(relief_picture* picture);
-/* Over what is there, hidden where its depth is nearer. `options` may be NULL: all 0. */
+/* Draws the particles over the framebuffer's contents, with its depth test. `options`: NULL for all 0. */
 int relief_picture_draw(relief_picture* picture, const relief_particles* particles,
                         const relief_picture_options* options, const relief_view* view);
 

@@ -14,11 +14,11 @@
 #include "runtime/gl/gl_object.h"
 #include "runtime/picture/collider_view.h"
 
-using namespace relief;  // NOLINT: what C sees has C's names
+using namespace relief;  // NOLINT: the C functions are outside of it
 
 namespace {
 
-/// As relief.h and the format have them.
+// Limits of relief.h and of the format.
 constexpr FieldRange kRotation = within(1.001);
 constexpr float kUnitTolerance = 1e-3F;
 constexpr double kStreamBytesMax = 1099511627776.0;
@@ -41,7 +41,7 @@ Pose poseIn(const WorldObject& world, std::size_t body) {
     return body < bodies.size() ? poseOf(bodies[body]) : world.added[body - bodies.size()].pose;
 }
 
-/// The bodies of the world on the GPU, those that move by clips behind the others.
+/// Uploads the bodies of the world; animated bodies follow the others.
 Result<TexturesObject> upload(const WorldObject& world) {
     const LoadedWorld& loaded = world.field.loaded();
     std::vector<ColliderBody> bodies = worldBodies(loaded);

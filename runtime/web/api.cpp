@@ -338,7 +338,7 @@ T inPass(const char* function, T failed, const F& body) {
 }  // namespace
 }  // namespace relief
 
-using namespace relief;  // NOLINT: the functions below have C's names
+using namespace relief;  // NOLINT: the C functions are outside of it
 
 extern "C" {
 
