@@ -1,58 +1,60 @@
 // SPDX-License-Identifier: Apache-2.0
 // relief-particles: particles that collide with baked meshes, in WebGL2.
 //
-// Lengths are in the collider's units, times in seconds, angles in degrees, colours in sRGB. Points and other lists are
-// flat: x, y, z of the first, then of the second. What goes wrong throws a ReliefError of one sentence. Colliders, systems
-// and GpuColliders hold memory that only dispose() gives back.
+// Lengths are in the collider's units, times in seconds, angles in degrees, colours in sRGB. Lists of points are flat:
+// x, y, z of the first point, then of the second. Functions throw ReliefError on failure. Call dispose() on colliders,
+// worlds, systems and GpuColliders to free their memory.
 
-/** Everything that this package throws. Its message is one sentence that names the thing and mostly the cure. */
+/** The error type of this package. The message is one line that names the fault and, in most cases, the cure. */
 export class ReliefError extends Error {
     constructor(message: string);
 }
 
 export type Vec3 = [number, number, number];
-/** Numbers in a row. A Float32Array is taken as it is, others are converted. */
+/** A flat list of numbers. A Float32Array is used without conversion. */
 export type Numbers = ArrayLike<number> & (readonly number[] | ArrayBufferView);
-/** 16 numbers, column by column, as WebGL takes them; or what keeps them in `elements`, such as three.js's Matrix4. */
+/** 16 numbers in column-major order, or an object with such `elements`, such as a three.js Matrix4. */
 export type Matrix = Numbers | { readonly elements: Numbers };
-/** A URL, what fetch() answered, a dropped file, or the bytes. */
+/** A URL, a request or response of fetch(), a file, or the bytes. */
 export type Source = string | URL | Request | Response | Blob | ArrayBuffer | Uint8Array;
 
 export interface InitOptions {
-    /** Where relief_wasm.wasm lies, if not beside relief.js. */
+    /** URL of relief_wasm.wasm (default: beside relief.js). */
     wasmUrl?: string | URL;
-    /** Its bytes, where there is nothing to fetch. */
+    /** The bytes of relief_wasm.wasm, instead of fetching it. */
     wasmBinary?: ArrayBuffer | Uint8Array;
 }
 
-/** Starts the WebAssembly, once; load() does so itself. Only the first call's options count. */
+/** Starts the WebAssembly module. load() calls this itself. Only the options of the first call apply. */
 export function init(options?: InitOptions): Promise<unknown>;
 
-/** Fetches and reads a .relief file. */
+/** Loads a .relief file. */
 export function load(source: Source): Promise<Collider>;
 
-/** Fetches and reads a world.json of `relief bake LEVEL --world`, and the containers that it names, from beside it. */
+/** Loads a world.json written by `relief bake LEVEL --world`, and the containers that it names, from the same folder.
+ * */
 export function loadWorld(source: string | URL | Request | Response): Promise<World>;
 
 export interface StreamOptions {
-    /** How far from emitters, from the eye of draw() and from points of near() a world has full detail: world units, above 0. */
+    /** Full detail within this distance of emitters, the camera of draw() and points of near(); world units, above 0.
+     * */
     radius: number;
-    /** Megabytes of the GPU that the colliders of a system may take, the coarse ones included. Default 256. */
+    /** GPU memory budget for the colliders of a system in megabytes, coarse colliders included. Default 256. */
     memory?: number;
 }
 
 export interface WorldSource extends StreamOptions {
     /**
-     * Brings a container, named as in world.json; it may be any bytes, which are compared with the world's hash. Called again
-     * where one has made room for others in between. The signal aborts when no system waits for it any more.
+     * Loads a container, named as in world.json. The bytes are verified against the hash in world.json. It is called
+     * again for containers that were evicted. The signal aborts when no system needs the file any more.
      */
     load(file: string, signal: AbortSignal): Promise<Uint8Array> | Uint8Array;
 }
 
 /**
- * As loadWorld(), for worlds that are too large: of each collider that has a coarse container it fetches that one only. A
- * ParticleSystem fetches the others when its emitters, the eye of its pictures or near() come near, up to six at a time, and
- * copies 128 kB a step to the GPU.
+ * Like loadWorld(), for worlds too large to load completely. Loads only the coarse container of each collider that has
+ * one. A ParticleSystem loads the full containers near its emitters, the camera of draw() and the points of near(): up
+ * to six requests at a time, and 128 kB of uploads per step.
  */
 export function streamWorld(source: string | URL | Request | Response, options: StreamOptions): Promise<World>;
 
@@ -61,13 +63,13 @@ export interface Bounds {
     max: Vec3;
 }
 
-/** A collider at n points. */
+/** Results of Collider.query() at n points. */
 export interface Answers {
-    /** n: to the surface, below 0 inside. About 1e30 or beyond where a point is outside, and no more is known. */
+    /** n: distance to the surface, below 0 inside; about 1e30 or more if the point is far outside. */
     distance: Float32Array;
-    /** 3 n: of the surface, outwards; 0 where there is none. */
+    /** 3 n: outward surface normal; 0 if the point is far outside. */
     normal: Float32Array;
-    /** n: the map that decides; -1 where none votes. */
+    /** n: the map that decides; -1 if no map votes. */
     map: Int32Array;
 }
 
@@ -77,14 +79,14 @@ export interface MapInfo {
     encoding: string;
     compare: string;
     decode: string;
-    /** local: of patches, each with an axis of its own. */
+    /** local: patches, each with its own axis. */
     projection: "orthographic" | "cube" | "local";
-    /** Texels; those of patches only lie in rows, and have no place. */
+    /** In texels. Texels of patches are stored in rows without a spatial meaning. */
     width: number;
     height: number;
-    /** 6 of a cube, else 1. */
+    /** 6 for a cube, otherwise 1. */
     faces: number;
-    /** Object space to map space: three rows of four. */
+    /** Object space to map space: three rows of four numbers. */
     rows: [number, number, number, number][];
     object_per_map: [number, number, number, number];
     encloses: boolean;
@@ -100,58 +102,62 @@ export interface ColliderInfo {
     options: string;
     bytes: number;
     gpu_bytes: number;
-    /** Side of the finest texel, in object units. */
+    /** Side length of the finest texel, in object units. */
     finest_texel: number;
     maps: MapInfo[];
 }
 
-/** A collider in memory. It needs no WebGL; systems made of it keep what they need of it. */
+/** A collider in memory. Needs no WebGL. You can dispose of it after creating systems from it. */
 export class Collider {
-    /** @param bytes of a .relief file; kept, so do not change them. init() must have ended. */
+    /** @param bytes  a .relief file; kept by reference, so do not modify it. Await init() first. */
     constructor(bytes: Uint8Array);
     readonly bytes: Uint8Array;
     readonly info: ColliderInfo;
     readonly bounds: Bounds;
-    /** On the CPU. @param points 3 n numbers. */
+    /** Evaluates the collider on the CPU. @param points  3 n numbers. */
     query(points: Numbers): Answers;
     /**
-     * The texels of a map, 8 numbers each: depth and normal of the front, then of the back; a depth of NaN where nothing
-     * is. Row y = 0 comes first, the faces of a cube one after the other. A map of patches has a tree instead.
+     * Returns the texels of a map, 8 numbers each: depth and normal of the front surface, then of the back surface; the
+     * depth is NaN if there is no surface. Row y = 0 comes first; the faces of a cube follow each other. Use tree() for
+     * patches.
      */
     texels(map: number): Float32Array;
-    /** The tree of a map of patches: two words a texel, low and high, as "Patches" of the container's description has them. */
+    /** Returns the tree of a map of patches: two words per texel, low and high. See "Patches" in the format
+     * specification. */
     tree(map: number): Uint32Array;
     dispose(): void;
 }
 
-/** A world at n points. */
+/** Results of World.query() at n points. */
 export interface WorldAnswers {
-    /** n: the least of all bodies, in world units; as that of Answers. */
+    /** n: the least distance over all bodies, in world units; otherwise as in Answers. */
     distance: Float32Array;
-    /** 3 n: of the surface, outwards, in the world; 0 where there is none. */
+    /** 3 n: outward surface normal in world space; 0 if the point is far outside. */
     normal: Float32Array;
-    /** n: the body that decides; -1 where none votes. */
+    /** n: the body that decides; -1 if no body votes. */
     body: Int32Array;
 }
 
 export interface WorldBody {
     /** Index of its collider. */
     collider: number;
-    /** Name of its node in the level; may be empty. */
+    /** Name of the node in the level; may be empty. */
     node: string;
     position: Vec3;
-    /** A unit quaternion x, y, z, w. */
+    /** Unit quaternion x, y, z, w. */
     rotation: [number, number, number, number];
     scale: number;
     restitution: number;
     friction: number;
 }
 
-/** A level in memory: placed bodies. It needs no WebGL; systems made of it keep what they need of it. */
+/** A level in memory: placed bodies. Needs no WebGL. You can dispose of it after creating systems from it. */
 export class World {
     /**
-     * @param files world.json and the containers, by the names it has for them; kept. init() must have ended.
-     * @param stream for a world that is streamed, whose files are the coarse containers, and others of colliders without one
+     * @param files  world.json and the containers, keyed by their names in world.json; kept by reference. Await init()
+     * first.
+     * @param stream  for a streamed world; `files` then holds the coarse containers, and the full ones of colliders
+     * without
      */
     constructor(files: Record<string, Collider | Uint8Array | string>, stream?: WorldSource);
     readonly files: Record<string, Collider | Uint8Array | string>;
@@ -159,30 +165,35 @@ export class World {
     readonly colliders: { file: string; hash: string; gpu_bytes: number; mesh: string; min: Vec3; max: Vec3;
                           coarse?: { file: string; hash: string; gpu_bytes: number } }[];
     readonly bodies: WorldBody[];
-    /** Null: all of it is there in full detail. */
+    /** Null if the world is not streamed. */
     readonly stream: WorldSource | null;
-    /** The box that holds all bodies. */
+    /** Bounds of all bodies. */
     readonly bounds: Bounds;
-    /** On the CPU, where the file places the bodies; of a world that is streamed the coarse ones. Takes time by their number. @param points 3 n numbers. */
+    /**
+     * Evaluates the world on the CPU, with bodies in the poses of the file; a streamed world uses its coarse colliders.
+     * The cost is proportional to the number of bodies.
+     * @param points  3 n numbers.
+     */
     query(points: Numbers): WorldAnswers;
     dispose(): void;
 }
 
-/** A collider as textures, for one's own shaders in that context. A lost context takes it along: make a new one. */
+/** A collider as textures, for your own shaders in that context. Create a new one after the context was lost. */
 export class GpuCollider {
     constructor(gl: WebGL2RenderingContext, collider: Collider);
     readonly collider: Collider;
     /**
-     * What a fragment or vertex shader has behind its `#version 300 es` line. It then calls
-     * `ReliefField reliefEvaluate(vec3 p)`, whose members are `float distance`, `vec3 normal` and `int map`, and
+     * GLSL to insert into a vertex or fragment shader after its `#version 300 es` line. It defines
+     * `ReliefField reliefEvaluate(vec3 p)`, with members `float distance`, `vec3 normal` and `int map`, and
      * `bool reliefInside(ReliefField)`.
      */
     readonly glsl: string;
-    /** Tells a linked program its three samplers (units `unit` to `unit` + 2) and its uniform block. Once is enough. */
+    /** Sets the three samplers (units `unit` to `unit` + 2) and the uniform block of a linked program. Call once per
+     * program. */
     attach(program: WebGLProgram, unit?: number, block?: number): void;
     /**
-     * Before a draw with that program: binds three textures to units `unit` to `unit` + 2, and a buffer to the uniform
-     * block binding `block`. It leaves them bound, on purpose; it is all in this package that changes a context's state.
+     * Binds three textures to units `unit` to `unit` + 2 and a buffer to uniform block binding `block`. Call it before
+     * drawing. The bindings stay; this is the only function of the package that changes the state of the context.
      */
     bind(unit?: number, block?: number): void;
     dispose(): void;
@@ -191,43 +202,43 @@ export class GpuCollider {
 // Scene, with the keys of scene.toml: package.py puts it here, made of runtime/scene/scene.schema.json.
 
 export interface ParticleSystemOptions {
-    /** The one collider of a scene that names none. */
+    /** The collider, if the scene names none. */
     collider?: Collider;
-    /** The world of a scene that names none, in place of a collider; as a file it is "world/world.json". */
+    /** The world, if the scene names no collider. Its file name in the scene is "world/world.json". */
     world?: World;
-    /** Defaults for whatever it leaves out. As text it is scene.toml itself, and names its colliders. */
+    /** The scene; missing keys have defaults. A string is the text of a scene.toml, which must name its colliders. */
     scene?: Scene | string;
-    /** The files that the scene names, by their paths in it. */
+    /** The files that the scene names, keyed by their paths in the scene. */
     files?: Record<string, Collider | Uint8Array | string>;
-    /** False: the collider casts no shade on particles, which is cheaper. */
+    /** Whether the collider shades particles; false is faster. Default true. */
     shaded?: boolean;
-    /** Takes a line for each collider of a world that is streamed that cannot be loaded, once. Default: console.warn(). */
+    /** Called with one line for each collider of a streamed world that fails to load. Default: console.warn(). */
     warn?: (line: string) => void;
     /**
-     * Takes the hits of each step, new contacts with a surface, in the order of steps. step() calls it, two steps late, so that
-     * nothing waits for the GPU.
+     * Called by step() with the hits (new contacts with a surface) of each step, in order. Hits arrive two steps late,
+     * so that the CPU does not wait for the GPU.
      */
     hits?: (hits: StepHits) => void;
-    /** Hits that approach the surface slower are left out. Default 0. */
+    /** Minimum normal speed of reported hits. Default 0. */
     hitSpeed?: number;
 }
 
 export interface StepHits {
-    /** From 1; since the system began or was restarted. */
+    /** Number of the step since the system was created or restarted, from 1. */
     step: number;
-    /** Its end, in seconds. */
+    /** Time at the end of the step, in seconds. */
     time: number;
-    /** Events beyond the 262,144 that a step has room for, some of which were hits. */
+    /** Number of events lost because the step had more than 262,144; some of them may be hits. */
     dropped: number;
     /**
-     * 16 numbers each: position of the contact; seconds before `time`; velocity that it came with; speed of approach along the
-     * normal; the surface's normal; body (-1: the floor); material (index into info.materials; -1: none); type; 1 where the
-     * particle dies of it, else 0; id, as read() has it.
+     * 16 numbers per hit: contact position (3), seconds before `time`, velocity before the contact (3), approach speed
+     * along the normal, surface normal (3), body (-1: the floor), material (index into info.materials; -1: none), type,
+     * 1 if the hit kills the particle or 0, id as in read().
      */
     rows: Float32Array;
 }
 
-/** A ball in the world. */
+/** A ball in world space. */
 export interface PointOfInterest {
     position: Vec3 | Numbers;
     /** Above 0. */
@@ -236,7 +247,7 @@ export interface PointOfInterest {
 
 export interface Birth {
     position: Vec3 | Numbers;
-    /** Default: 0. */
+    /** Default 0, 0, 0. */
     velocity?: Vec3 | Numbers;
     /** Seconds; default 1. */
     lifetime?: number;
@@ -245,16 +256,16 @@ export interface Birth {
 }
 
 export interface DrawOptions {
-    /** World to eye. Of a three.js camera: matrixWorldInverse. */
+    /** World space to eye space. For a three.js camera: matrixWorldInverse. */
     view: Matrix;
-    /** Eye to clip space, of a perspective. Of a three.js camera: projectionMatrix. */
+    /** Eye space to clip space; perspective. For a three.js camera: projectionMatrix. */
     projection: Matrix;
-    /** Default: the one that is bound; null: the canvas. */
+    /** Target; null: the canvas. Default: the bound framebuffer. */
     framebuffer?: WebGLFramebuffer | null;
-    /** Pixels of the target. Default: those of the canvas; of another framebuffer those of the viewport. */
+    /** Size of the target in pixels. Default: the size of the canvas, or of the viewport for other framebuffers. */
     width?: number;
     height?: number;
-    /** False: the target holds linear light, as a float target for tone mapping does. Default true. */
+    /** Whether the target stores sRGB values; false: linear, such as a float target for tone mapping. Default true. */
     srgb?: boolean;
 }
 
@@ -263,9 +274,9 @@ export interface SystemInfo {
     alive: number;
     born: number;
     died: number;
-    /** Births for which there was no room. */
+    /** Number of births rejected because the system was full. */
     refused: number;
-    /** Texels of the state textures that may hold a particle: 0 … extent - 1, row by row. */
+    /** Texels 0 to extent - 1 of the state textures, row by row, may hold a particle. */
     extent: number;
     capacity: number;
     /** Width of the state textures. */
@@ -276,77 +287,95 @@ export interface SystemInfo {
     ground: number | null;
     camera: { eye: Vec3; target: Vec3; fov: number };
     background: Vec3;
-    /** Whether the scene has `render.meshes`, which drawMeshes() draws. */
+    /** Whether the scene has `render.meshes` for drawMeshes(). */
     meshes: boolean;
-    /** Names of the materials of all colliders, which hits number. */
+    /** Names of the materials of all colliders; hits refer to them by index. */
     materials: string[];
     /**
-     * Of a world that is streamed, else null: colliders wanted in full detail, those of them that are there, those that cannot
-     * be loaded, and the bytes of all that is there.
+     * Null unless the world is streamed: the numbers of colliders wanted in full detail, of those loaded and of those
+     * that failed to load, and the GPU bytes of everything loaded.
      */
     stream: { wanted: number; present: number; failed: number; gpu_bytes: number } | null;
-    /** The scene's colliders, each where it stands now: object to world, by columns. One that deforms names its mesh. */
+    /** The colliders of the scene; `matrix`: object space to world space, column-major. `file` of a deforming one is
+     * its mesh. */
     bodies: { file: string; node: string; deforms: boolean; moves: boolean; matrix: number[] }[];
 }
 
-/** A mesh whose vertices move on the GPU, in object space. Item i of a texture lies at (i & ((1 << shift) - 1), i >> shift). */
+/** A mesh deformed on the GPU, in object space. Item i of a texture is at texel (i & ((1 << shift) - 1), i >> shift).
+ * */
 export interface LiveMesh {
-    /** Floats, xyz of each vertex. */
+    /** Float texture: xyz of each vertex. */
     positions: WebGLTexture;
     vertexShift: number;
-    /** Unsigned integers, the vertices of each triangle. */
+    /** Unsigned integer texture: the three vertex indices of each triangle. */
     corners: WebGLTexture;
     triangleShift: number;
     triangles: number;
 }
 
-/** Particles in a WebGL2 context. All it does leaves the context's state as it was. */
+/** Particles in a WebGL2 context. All functions restore the state of the context. */
 export class ParticleSystem {
     constructor(gl: WebGL2RenderingContext, options: ParticleSystemOptions);
     readonly info: SystemInfo;
-    /** @param dt seconds, 0 … 1; default: the scene's. Take Math.min(seconds since the last frame, 1 / 30). */
+    /**
+     * Advances the simulation.
+     * @param dt  seconds, 0 to 1 (default: the scene's); in a frame loop, Math.min(seconds since the last frame, 1 /
+     * 30).
+     */
     step(dt?: number): void;
-    /** Draws over what is there, hidden by nearer depths of the target; writes no depth. */
+    /** Draws the particles over the contents of the target, with its depth test. Writes no depth. */
     draw(options: DrawOptions): void;
     /**
-     * Before draw(): the colliders by the meshes that the scene's `render.meshes` names, files of the option `files`, in their
-     * colours and under `render.weather`, as relief-sim's pictures show them. Fills the target's colour, where there is no mesh
-     * with the sky, and its depth. Footprints are those since the last call, or the beginning. Figures are as their clips have them.
+     * Draws the meshes of the scene's `render.meshes` (from the option `files`) with their colours and
+     * `render.weather`, like the pictures of relief-sim. Call it before draw(). Overwrites the colour and depth of the
+     * target, and draws the sky as background. Footprints are added since the last call. Characters are drawn in the
+     * poses of their clips.
      */
     drawMeshes(options: DrawOptions): void;
-    /** Births on top of the emitters'. Also 8 numbers each: position, velocity, lifetime, type. Returns how many found room. */
+    /**
+     * Queues births in addition to those of the emitters. As numbers, a birth is 8 of them: position, velocity,
+     * lifetime, type. Returns the number accepted.
+     */
     spawn(births: readonly Birth[] | Numbers): number;
     /**
-     * Changes a part of a scene given as an object; not its capacity or integrator, and of its colliders only the pose and the clip:
-     * `set({ collider: { position, axis, angle } })`, or a list with one for each of several, {} for those that stay. Before
-     * each step of a collider that moves: it pushes what it meets on its way there. A single collider moves if the scene gave it
-     * a pose from the beginning, such as `collider: { position: [0, 0, 0] }`; a body of a world, if the scene named its node, as
-     * in `collider: [{ node: "door" }]`.
+     * Changes part of a scene that was given as an object, except capacity and integrator. Only the pose and the clip
+     * of a collider can change: `set({ collider: { position, axis, angle } })`, or a list with one entry per collider,
+     * {} for no change. Call it before each step while a collider moves; the collider pushes particles on its way. A
+     * single collider can move only if the scene gave it a pose, such as `collider: { position: [0, 0, 0] }`; a body of
+     * a world, only if the scene names its node, as in `collider: [{ node: "door" }]`.
      */
     set(patch: Scene): void;
     /**
-     * Places beside the emitters and the eye of draw() where a world that is streamed has full detail, from the next step on, in
-     * place of those before.
+     * Sets additional points around which a streamed world has full detail, besides the emitters and the camera of
+     * draw(). Replaces the previous points. Takes effect with the next step.
      */
     near(points: readonly PointOfInterest[]): void;
-    /** Waits until all that is wanted now of a world that is streamed is there or has failed; before a first step, say. */
+    /** Resolves when all wanted colliders of a streamed world are loaded or have failed. Useful before the first step.
+     * */
     loaded(): Promise<void>;
-    /** Starts over with nothing alive, and asks again for what could not be loaded; also after 'webglcontextrestored'. */
+    /** Restarts without particles, and retries failed loads. Call it after 'webglcontextrestored', too. */
     restart(): void;
-    /** The particles, 12 numbers each: position, age, velocity, lifetime, type, steps in contact, contact, id. Waits for the GPU. */
+    /**
+     * Reads the particles back, which waits for the GPU. 12 numbers each: position, age, velocity, lifetime, type,
+     * steps in contact, contact in the last step, id.
+     */
     read(): Float32Array;
-    /** The state, for one's own shaders; other textures after each step. They belong to the system. */
+    /** Returns the state textures for your own shaders. They are owned by the system and differ after each step. */
     textures(): { position: WebGLTexture; velocity: WebGLTexture; birth: WebGLTexture };
-    /** The mesh of a body that deforms, as it is now; null of one that does not. It belongs to the system. */
+    /** Returns the current mesh of a deforming body, owned by the system; null for other bodies. */
     mesh(body: number): LiveMesh | null;
-    /** Of a body that plays a clip (`play` of its collider), else null. Joints are glTF's, or the node of a mesh without a skin. */
+    /**
+     * Describes the animation of a body whose collider has `play`; null for other bodies. Joints are those of the glTF
+     * skin, or the node of a mesh without a skin.
+     */
     animation(body: number): { clips: { name: string; seconds: number }[]; joints: string[]; weights: number } | null;
     /**
-     * A pose of one's own for a body that plays a clip, from the next step on; without joints its clip again. It may take up as much
-     * space as the clips do, times `room` of `play`.
-     * @param joints  a matrix each, by columns: glTF's joint matrices. Of a three.js skeleton: boneMatrices, with the mesh's
-     *                bindMatrix and bindMatrixInverse about them.
-     * @param weights  of the morph targets, as many as there are.
+     * Sets the pose of a body that plays a clip, from the next step on. Without `joints`, the clip continues. The pose
+     * may not exceed the extent of the clips, scaled by `room` of `play`.
+     * @param joints  the glTF joint matrices, column-major, one per joint. For a three.js skeleton: boneMatrices,
+     * multiplied by
+     *                the mesh's bindMatrix on the right and bindMatrixInverse on the left.
+     * @param weights  one weight per morph target.
      */
     pose(body: number, joints?: Numbers, weights?: Numbers): void;
     dispose(): void;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief-particles: Relief's runtime in a browser. relief.d.ts documents it.
+// relief-particles: the Relief runtime in a browser. relief.d.ts documents the API.
 //
-// One WebAssembly instance serves all contexts of a page. Whatever draws or steps leaves the context's state as it was.
+// One WebAssembly instance serves all contexts of a page. Functions that draw or step restore the state of the context.
 import { decompress } from "fzstd";
 
 import { Fetches, ReliefError, bytesOf, urlIn, worldFiles } from "./fetch.js";
@@ -10,13 +10,13 @@ import createReliefWasm from "./relief_wasm.mjs";
 
 export { ReliefError };
 
-let loading = null; // promise of the instance
+let loading = null; // promise of the WebAssembly instance
 let wasm = null;
-const contexts = new WeakMap(); // WebGL2 context to recordOf() it
-let nowhere = 0; // emscripten's handle of a context that does nothing
+const contexts = new WeakMap(); // WebGL2 context to its record (recordOf())
+let nowhere = 0; // emscripten handle of a context whose functions do nothing
 let folders = 0;
 
-// Vite's development server serves this module from its cache of dependencies, where no file lies beside it.
+// The development server of Vite serves this module from its dependency cache, which lacks the .wasm file.
 const cached = /^(.*\/node_modules\/)\.vite\/deps[^/]*\//.exec(import.meta.url);
 const besides = cached ? `${cached[1]}relief-particles/relief_wasm.wasm` : null;
 
@@ -44,14 +44,14 @@ function instance() {
     return wasm;
 }
 
-/** A text of the WebAssembly, where files have no folders. */
+/** Reads a string of the WebAssembly memory, without the folder of scene files. */
 const textAt = (at) => wasm.UTF8ToString(at).replaceAll(/\/scene\d+\//g, "");
 
 function lastError() {
     return new ReliefError(textAt(wasm._relief_error()));
 }
 
-/** An argument in the WebAssembly's memory: a text or a typed array. */
+/** Copies a string or a typed array to WebAssembly memory and returns its address. */
 function copied(value) {
     const size = typeof value === "string" ? wasm.lengthBytesUTF8(value) + 1 : Math.max(value.byteLength, 1);
     const at = wasm._malloc(size);
@@ -69,8 +69,8 @@ function copied(value) {
 const bytesIn = ({ buffer, byteOffset, byteLength }) => new Uint8Array(buffer, byteOffset, byteLength);
 
 /**
- * Calls an exported function. Texts and typed arrays go there as copies; arrays of numbers come back with what it wrote. A
- * trap, which ends the instance, becomes a sentence.
+ * Calls an exported function. Strings and typed arrays are passed as copies; arrays other than Uint8Array are copied
+ * back afterwards. A trap, which ends the instance, is rethrown as a ReliefError.
  */
 function call(name, ...args) {
     const functions = instance();
@@ -98,7 +98,7 @@ function call(name, ...args) {
     }
 }
 
-/** As call(), of a function that fails by null or a number below 0. */
+/** Like call(), for functions that return null on failure. */
 function made(name, ...args) {
     const handle = call(name, ...args);
     if (handle === 0) {
@@ -107,6 +107,7 @@ function made(name, ...args) {
     return handle;
 }
 
+/** Like call(), for functions that return a negative number on failure. */
 function done(name, ...args) {
     const code = call(name, ...args);
     if (code < 0) {
@@ -115,7 +116,7 @@ function done(name, ...args) {
     return code;
 }
 
-/** The record of a context: emscripten's handle, its losses so far, and whether its extension is on. */
+/** Returns the record of a context: emscripten handle, number of losses, and whether its extension is enabled. */
 function recordOf(gl) {
     let known = contexts.get(gl);
     if (known === undefined) {
@@ -135,7 +136,7 @@ function recordOf(gl) {
     return known;
 }
 
-/** Makes a context the current one; refuses those that cannot hold particles. Returns how often it was lost before. */
+/** Makes a context current and returns its number of losses. Throws if the context cannot hold particles. */
 function use(gl) {
     instance();
     const known = recordOf(gl);
@@ -154,14 +155,14 @@ function use(gl) {
     return known.losses;
 }
 
-/** As use(), for what was made when the context had been lost so often. */
+/** Like use(), but also throws if the context was lost since it had `losses` losses. */
 function useAsOf(gl, losses, cure) {
     if (use(gl) !== losses) {
         throw new ReliefError(`the WebGL context was lost since; ${cure}`);
     }
 }
 
-/** Frees an object of a context. Objects that were lost with the context are only crossed off emscripten's lists. */
+/** Frees an object of a context. For objects lost with their context, only the emscripten tables are updated. */
 function free(gl, losses, name, handle) {
     const known = recordOf(gl);
     if (known.losses !== losses || gl.isContextLost()) {
@@ -176,7 +177,7 @@ function free(gl, losses, name, handle) {
 
 // --- arguments
 
-/** Numbers of an array or a typed array, a multiple of `each`. */
+/** Validates an array or typed array whose length is a multiple of `each`, and returns it as a Float32Array. */
 function numbers(what, values, each) {
     if (!Array.isArray(values) && !ArrayBuffer.isView(values)) {
         throw new ReliefError(`${what} are an array of numbers, ${each} for each`);
@@ -197,7 +198,7 @@ function checkFinite(what, list) {
 }
 
 function matrix(what, value) {
-    const list = value?.elements ?? value; // three.js keeps them there
+    const list = value?.elements ?? value; // a three.js Matrix4
     if (!(Array.isArray(list) || ArrayBuffer.isView(list)) || list.length !== 16) {
         throw new ReliefError(`draw() needs ${what}: 16 numbers, column by column`);
     }
@@ -253,7 +254,7 @@ export async function streamWorld(source, options = {}) {
     return worldOf(source, options);
 }
 
-/** @param what takes the options. */
+/** @param what  the function that takes the options, for messages. */
 function checkStream(what, options, keys) {
     const wrong = Object.keys(options).find((key) => !keys.includes(key));
     if (wrong !== undefined) {
@@ -267,7 +268,7 @@ function checkStream(what, options, keys) {
     }
 }
 
-/** A new folder of the WebAssembly, to be given back as a whole. */
+/** Creates a folder in the file system of the WebAssembly module; free it with removeFolder(). */
 function makeFolder() {
     const folder = `/scene${folders++}`;
     wasm.FS.mkdir(folder);
@@ -286,7 +287,7 @@ function writeIn(folder, name, content) {
         throw new ReliefError(`'${name}' is no file of the scene's folder`);
     }
     if (content instanceof Collider) {
-        content.handle; // throws where it is disposed of
+        content.handle; // throws if disposed
     } else if (!(content instanceof Uint8Array) && typeof content !== "string") {
         throw new ReliefError(`the file '${name}' is a Collider, a Uint8Array or a text`);
     }
@@ -294,7 +295,7 @@ function writeIn(folder, name, content) {
     wasm.FS.writeFile(`${folder}/${name}`, content instanceof Collider ? content.bytes : content);
 }
 
-/** The members of n relief_samples (runtime/c_api/relief.h) that a query writes; the last is named by `which`. */
+/** Runs a query and splits its relief_samples (runtime/c_api/relief.h) into arrays; `which` names the last one. */
 function asked(query, handle, points, which) {
     const xyz = checkFinite("points", numbers("points", points, 3));
     const count = xyz.length / 3;
@@ -461,7 +462,6 @@ export class GpuCollider {
         gl.useProgram(before);
     }
 
-    /** Leaves its three textures and its block bound: that is what it is for. */
     bind(unit = 0, block = 0) {
         this.#ready();
         this.#places(unit, block);
@@ -482,7 +482,7 @@ export class GpuCollider {
 
 const isTable = (value) => value !== null && typeof value === "object" && !Array.isArray(value);
 
-/** A scene as JSON. Numbers that it has not become texts, which the reader refuses by name. */
+/** Converts a scene to JSON. Non-finite numbers become strings, which the reader rejects with their key. */
 const jsonOf = (scene) => JSON.stringify(scene, (key, value) => {
     if (typeof value === "function" || typeof value === "symbol") {
         throw new ReliefError(`a scene holds numbers, texts, true, false, lists and tables, but no ${String(value)}`);
@@ -506,10 +506,10 @@ export class ParticleSystem {
     #scene;
     #shaded;
     #warn;
-    #hits; // takes those of a step; or undefined
+    #hits; // callback, or undefined
     #hitSpeed;
-    #fetches = null; // of a world that is streamed
-    #near = null; // 4 numbers each
+    #fetches = null; // for a streamed world
+    #near = null; // 4 numbers per point
 
     constructor(gl, options = {}) {
         const wrong = Object.keys(options).find((key) => !["collider", "files", "hits", "hitSpeed", "scene", "shaded", "warn", "world"].includes(key));
@@ -526,7 +526,7 @@ export class ParticleSystem {
             if (options.collider) {
                 throw new ReliefError("give the option 'world' or 'collider'; more colliders are the scene's, with 'files'");
             }
-            options.world.handle; // throws where it is disposed of
+            options.world.handle; // throws if disposed
         }
         if (options.warn !== undefined && typeof options.warn !== "function") {
             throw new ReliefError("the option 'warn' is a function that takes a line");
@@ -581,7 +581,7 @@ export class ParticleSystem {
         }
     }
 
-    /** The scene's text, and its name in messages. */
+    /** Returns the text of the scene and its name in messages. */
     #text() {
         return typeof this.#scene === "string" ? [this.#scene, `${this.#folder}/scene.toml`]
             : [jsonOf(this.#scene), `${this.#folder}/scene`];
@@ -598,7 +598,7 @@ export class ParticleSystem {
         }
     }
 
-    /** A world of loadWorld() has no coarse containers. */
+    /** Throws if the world lacks coarse containers, like one from loadWorld(). */
     #checkCoarse({ colliders, files }) {
         const missing = colliders.find(({ coarse }) => coarse && !(coarse.file in files));
         if (missing) {
@@ -619,7 +619,6 @@ export class ParticleSystem {
         useAsOf(this.#gl, this.#losses, "restart() the system");
     }
 
-    /** Starts over, with nothing alive; also after 'webglcontextrestored'. */
     restart() {
         if (this.#folder === null) {
             throw new ReliefError("this system is disposed of");
@@ -669,7 +668,7 @@ export class ParticleSystem {
         }
     }
 
-    /** Of the steps whose hits have come. The function that takes them may dispose of the system. */
+    /** Passes on the hits that have arrived. The callback may dispose of the system. */
     #passHits() {
         const head = new Float64Array(4);
         while (this.#handle && this.#hits && call("relief_player_next_hits", this.#handle, head)) {
@@ -680,14 +679,14 @@ export class ParticleSystem {
         }
     }
 
-    /** Passes on what of a world that is streamed could not be loaded. */
+    /** Passes on warnings about colliders that failed to load. */
     #tell() {
         for (const line of JSON.parse(textAt(call("relief_player_warnings", this.#handle)))) {
             this.#warn(line);
         }
     }
 
-    /** Fetches what the runtime wants. */
+    /** Starts the fetches that the runtime requests. */
     #fetch() {
         for (let next; this.#fetches && (next = JSON.parse(textAt(call("relief_player_next", this.#handle))));) {
             const { collider, file } = next;
@@ -702,14 +701,14 @@ export class ParticleSystem {
                 if (bytes) {
                     done("relief_player_give", this.#handle, collider, bytes, bytes.length);
                 }
-            } catch (error) { // no room for the bytes
+            } catch (error) { // out of memory
                 fault = `${file}: ${error.message}`;
             }
             if (fault !== null) {
                 done("relief_player_refuse", this.#handle, collider, fault);
             }
         } catch {
-            // The instance has ended, as the next step reports.
+            // The instance has ended; the next step reports it.
         }
     }
 
@@ -771,7 +770,7 @@ export class ParticleSystem {
             : [gl.drawingBufferWidth, gl.drawingBufferHeight];
         const size = [pixels("width", width ?? wide), pixels("height", height ?? high)];
         if (size.includes(0)) {
-            return; // a page that is hidden
+            return; // hidden page
         }
         let name = 0;
         if (target) {
