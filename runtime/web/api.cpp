@@ -1,7 +1,6 @@
-// SPDX-License-Identifier: Apache-2.0
-// Functions for relief.js beside those of runtime/c_api: scenes, and facts about a collider. Objects of this file
-// are pointers; every function but those that end one fails by returning null or a negative number, as relief_error() has it.
-// All that touch the GL need a current context, whose state they leave as it was.
+// SPDX-License-Identifier: Apache-2.0 Functions for relief.js in addition to those of runtime/c_api: scenes, and facts
+// about a collider. Objects of this file are plain pointers. Functions return null or a negative number on failure;
+// relief_error() has the reason. Functions that use GL need a current context and restore its state.
 #include <emscripten.h>
 
 #include <cstdint>
@@ -39,14 +38,14 @@
 namespace relief {
 namespace {
 
-std::string g_text;  // what a call that returns text returned last
+std::string g_text;  // the last returned string
 
 const char* returned(std::string text) {
     g_text = std::move(text);
     return g_text.c_str();
 }
 
-/// With names of files, which may be any bytes.
+/// Serialises JSON with file names, which may be invalid UTF-8.
 std::string lineOf(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -63,8 +62,8 @@ Json describeStream(const std::optional<StreamCounts>& counts) {
                   : Json();
 }
 
-/// A scene's colliders as they are now: where each stands, by columns, and of which file it is.
-/// \param poses  one a collider.
+/// Describes the colliders of a scene: file, node and current matrix, column-major.
+/// \param poses  one per collider.
 Json describeBodies(const std::vector<SceneCollider>& colliders, const std::vector<Pose>& poses) {
     Json bodies = Json::array();
     for (std::size_t at = 0; at < colliders.size(); ++at) {
@@ -85,7 +84,7 @@ Json describeBodies(const std::vector<SceneCollider>& colliders, const std::vect
     return bodies;
 }
 
-/// Adds a value to a toml::table, or to a toml::array, in which each has a place.
+/// Adds a JSON value to a toml::table, or appends it to a toml::array.
 template <class To>
 void add(To& to, const std::string& key, const Json& value) {
     constexpr bool kTable = std::is_same_v<To, toml::table>;
@@ -115,12 +114,12 @@ void add(To& to, const std::string& key, const Json& value) {
     } else if (value.is_number()) {
         put(value.get<double>());
     } else if (!kTable) {
-        put(std::string("null"));  // nothing expects it, so that a message names the place
+        put(std::string("null"));  // no key accepts it, so the error message names the place
     }
 }
 
-/// \param text  a scene file, or an object with its keys in JSON.
-/// \param path  of the file, which ends in .toml, or what messages call the object.
+/// \param text  a scene file, or a JSON object with the same keys.
+/// \param path  a path with extension .toml for a file; otherwise the name of the object in messages.
 Result<Scene> readScene(std::string_view text, const std::filesystem::path& path) {
     if (path.extension() == ".toml") {
         return parseScene(text, path);
@@ -133,23 +132,23 @@ Result<Scene> readScene(std::string_view text, const std::filesystem::path& path
     return scene;
 }
 
-/// A scene that plays: all that a page keeps of it.
+/// A running scene with its renderers.
 struct Player {
     LoadedScene loaded;
     std::optional<Simulation> simulation;
     std::unique_ptr<SpriteAtlas> atlas;
     std::optional<ParticleRenderer> renderer;
     std::optional<DepthSorter> sorter;
-    std::optional<MeshPicture> meshes;  // once they are drawn
+    std::optional<MeshPicture> meshes;  // created by the first drawPlayerMeshes()
     ParticleStyle style;
-    std::vector<ParticleState> read;  // kept for its memory
-    FetchedSource* source = nullptr;  // of the simulation, if it has one
-    std::optional<glm::vec3> eye;     // of the last picture
+    std::vector<ParticleState> read;  // reused buffer
+    FetchedSource* source = nullptr;  // owned by the simulation; null unless the page fetches
+    std::optional<glm::vec3> eye;     // camera position of the last picture
     std::vector<PointOfInterest> near;
-    std::vector<std::string> warnings;  // not told yet
-    std::deque<StepEvents> hits;        // not passed on yet
+    std::vector<std::string> warnings;  // not returned yet
+    std::deque<StepEvents> hits;        // not returned yet
 
-    /// The points that a world is streamed for, besides the emitters.
+    /// Sets the points around which a world is streamed, besides the emitters.
     void setPoints() {
         std::vector<PointOfInterest> points = near;
         if (eye && loaded.scene.stream) {
@@ -157,7 +156,7 @@ struct Player {
         }
         simulation->setPoints(std::move(points));
     }
-    /// How many warnings there are.
+    /// Collects the warnings of the simulation and returns their number.
     int takeWarnings() {
         for (std::string& line : simulation->takeWarnings()) {
             warnings.push_back(std::move(line));
@@ -200,13 +199,13 @@ Result<Player*> createPlayer(const char* text, const char* path, bool shaded, bo
     return player.release();
 }
 
-/// Whether both play no clip, or both one in maps of the same size.
+/// Returns whether neither plays a clip, or both play one with maps of the same size.
 bool sameMaps(const SceneCollider& a, const SceneCollider& b) {
     return a.play.has_value() == b.play.has_value() &&
            (!a.play || (a.play->resolution == b.play->resolution && a.play->room == b.play->room));
 }
 
-/// The colliders with the poses and clips that are wanted of them, which is all of a collider that may change as it plays.
+/// Applies the wanted poses and clips; fails if anything else of a collider changes.
 Result<void> takePoses(std::vector<SceneCollider>& now, const std::vector<SceneCollider>& wanted) {
     for (std::size_t i = 0; i < now.size(); ++i) {
         SceneCollider& body = now[i];
@@ -238,8 +237,8 @@ Result<void> takePoses(std::vector<SceneCollider>& now, const std::vector<SceneC
     return {};
 }
 
-/// Everything of a scene that needs no other colliders, no other capacity and no other integrator.
-/// \param emitters  those of the scene begin anew.
+/// Applies all changes of a scene except those of colliders, capacity, integrator and materials, which fail.
+/// \param emitters  whether the emitters restart.
 Result<int> changePlayer(Player& player, const char* text, const char* path, bool emitters) {
     Scene& now = player.loaded.scene;
     Scene read = RELIEF_TRY(readScene(text, path));
@@ -317,7 +316,7 @@ Result<int> drawPlayerMeshes(Player& player, const CameraMatrices& camera, const
     return 0;
 }
 
-/// Of what a page draws into. matrices: view, then projection, by columns.
+/// \param matrices  view matrix, then projection matrix, column-major.
 CameraMatrices cameraOf(const float* matrices) {
     glm::mat4 view;
     glm::mat4 projection;
@@ -326,7 +325,7 @@ CameraMatrices cameraOf(const float* matrices) {
     return {view, projection};
 }
 
-/// The result of body(), or `failed`; the context's state is then as before.
+/// Returns the result of body(), or `failed`; restores the state of the context.
 template <class T, class F>
 T inPass(const char* function, T failed, const F& body) {
     return answer(function, failed, [&](const Call&) -> Result<T> {
@@ -342,7 +341,7 @@ using namespace relief;  // NOLINT: the C functions are outside of it
 
 extern "C" {
 
-/// As relief_world_load(), with the coarse containers of the colliders that have one.
+/// Like relief_world_load(), but loads the coarse container of each collider that has one.
 EMSCRIPTEN_KEEPALIVE relief_world* relief_world_load_coarse(const char* path) {
     return create<relief_world>(__func__, [&](const Call&) -> Result<std::shared_ptr<WorldObject>> {
         return std::make_shared<WorldObject>(
@@ -350,15 +349,15 @@ EMSCRIPTEN_KEEPALIVE relief_world* relief_world_load_coarse(const char* path) {
     });
 }
 
-/// JSON.
+/// Returns JSON.
 EMSCRIPTEN_KEEPALIVE const char* relief_collider_info(const relief_collider* collider) {
     return answer<const char*>(__func__, nullptr, [&](const Call& call) -> Result<const char*> {
         return returned(colliderInfo(*RELIEF_TRY(call.object(collider, "collider"))).dump());
     });
 }
 
-/// Texels of a map as the reader understands them, from the row y = 0 up, the faces of a cube in their order: for each
-/// the depth and the normal of its front, then those of its back: 8 floats. A depth of NaN: nothing there.
+/// Writes the decoded texels of a map, 8 floats each: depth and normal of the front surface, then of the back surface. The
+/// depth is NaN if there is no surface. Row y = 0 comes first; the faces of a cube follow each other.
 EMSCRIPTEN_KEEPALIVE int relief_collider_texels(const relief_collider* collider, int map, float* out) {
     return answer(__func__, -1, [&](const Call& call) -> Result<int> {
         const Collider& of = *RELIEF_TRY(call.object(collider, "collider"));
@@ -382,7 +381,7 @@ EMSCRIPTEN_KEEPALIVE int relief_collider_texels(const relief_collider* collider,
     });
 }
 
-/// The texels of a map of patches as they are: two numbers of 32 bits each, low and high.
+/// Writes the raw texels of a map of patches: two 32-bit words each, low and high.
 EMSCRIPTEN_KEEPALIVE int relief_collider_tree(const relief_collider* collider, int map, std::uint32_t* out) {
     return answer(__func__, -1, [&](const Call& call) -> Result<int> {
         const Collider& of = *RELIEF_TRY(call.object(collider, "collider"));
@@ -394,10 +393,11 @@ EMSCRIPTEN_KEEPALIVE int relief_collider_tree(const relief_collider* collider, i
 
 // --- particles
 
-/// \param text    a scene file, or an object with its keys in JSON.
-/// \param path    of the file, in emscripten's file system, which ends in .toml, or what messages call the object.
-/// \param shaded  1: particles are lit and shaded by the collider.
-/// \param fetches  1: the colliders of a world that is streamed come by relief_player_give().
+/// \param text     a scene file, or a JSON object with the same keys.
+/// \param path     path of the file in the emscripten file system, ending in .toml; otherwise the name of the object in
+///                 messages.
+/// \param shaded   1: the collider shades particles.
+/// \param fetches  1: the page passes the colliders of a streamed world by relief_player_give().
 EMSCRIPTEN_KEEPALIVE Player* relief_player_create(const char* text, const char* path, int shaded,
                                                   int fetches) {
     return inPass<Player*>(__func__, nullptr,
@@ -408,8 +408,8 @@ EMSCRIPTEN_KEEPALIVE void relief_player_free(Player* player) {
     delete player;
 }
 
-/// Has the new hits of each step from the next one on kept for relief_player_next_hits(). 0, or -1.
-/// \param min_speed  of approach; slower ones are left out.
+/// Records the new hits of each step, from the next one on, for relief_player_next_hits(). Returns 0, or -1 on failure.
+/// \param min_speed  minimum approach speed of recorded hits.
 EMSCRIPTEN_KEEPALIVE int relief_player_list_hits(Player* player, float min_speed) {
     return inPass(__func__, -1, [&]() -> Result<int> {
         RELIEF_TRY(player->simulation->listHits(min_speed, [=](const StepEvents& events) -> Result<void> {
@@ -423,8 +423,8 @@ EMSCRIPTEN_KEEPALIVE int relief_player_list_hits(Player* player, float min_speed
     });
 }
 
-/// Of the first step whose hits have come and were not written yet: step, time, events dropped, and how many hits there are.
-/// \return 0: no step.
+/// Writes step, time, dropped events and number of hits of the next step whose hits are available.
+/// \return 0 if there is no such step, otherwise 1.
 EMSCRIPTEN_KEEPALIVE int relief_player_next_hits(const Player* player, double* out) {
     if (player->hits.empty()) {
         return 0;
@@ -436,8 +436,9 @@ EMSCRIPTEN_KEEPALIVE int relief_player_next_hits(const Player* player, double* o
     return 1;
 }
 
-/// Those of relief_player_next_hits(), which then has the next step: 16 floats each, position, seconds before the end of the
-/// step, velocity, speed of approach, normal, body, material, type, 1 where it dies of it, and the low 24 bits of the id.
+/// Writes the hits of the step of relief_player_next_hits() and removes that step. 16 floats each: position, seconds
+/// before the end of the step, velocity, approach speed, normal, body, material, type, 1 if the particle dies, low 24
+/// bits of the id.
 EMSCRIPTEN_KEEPALIVE void relief_player_hits(Player* player, float* out) {
     const StepEvents& step = player->hits.front();
     for (const ParticleEvent& one : step.events) {
@@ -463,7 +464,7 @@ EMSCRIPTEN_KEEPALIVE void relief_player_hits(Player* player, float* out) {
     player->hits.pop_front();
 }
 
-/// The number of lines that relief_player_warnings() has, or -1.
+/// Advances the scene. Returns the number of lines for relief_player_warnings(), or -1 on failure.
 EMSCRIPTEN_KEEPALIVE int relief_player_step(Player* player, float dt) {
     return inPass(__func__, -1, [&]() -> Result<int> {
         RELIEF_TRY(player->simulation->step(dt));
@@ -472,13 +473,14 @@ EMSCRIPTEN_KEEPALIVE int relief_player_step(Player* player, float dt) {
     });
 }
 
-/// JSON, a list of lines: what of a world that is streamed could not be loaded since the last call.
+/// Returns a JSON list of warnings since the last call: colliders of a streamed world that failed to load.
 EMSCRIPTEN_KEEPALIVE const char* relief_player_warnings(Player* player) {
     player->takeWarnings();
     return returned(lineOf(Json(std::exchange(player->warnings, {}))));
 }
 
-/// Places where a world that is streamed has full detail: 4 floats each, position and radius. 0 or -1, as those below.
+/// Sets the points around which a streamed world has full detail: 4 floats each, position and radius. Returns 0, or -1
+/// on failure.
 EMSCRIPTEN_KEEPALIVE int relief_player_near(Player* player, const float* balls, int count) {
     return answer(__func__, -1, [&](const Call&) -> Result<int> {
         if (!player->loaded.scene.stream) {
@@ -495,14 +497,15 @@ EMSCRIPTEN_KEEPALIVE int relief_player_near(Player* player, const float* balls, 
     });
 }
 
-/// The next collider to fetch, JSON: its number, and its file relative to the folder of the world; null: none.
+/// Returns the next collider to fetch as JSON: its number, and its file relative to the folder of the world; "null" if
+/// there is none.
 EMSCRIPTEN_KEEPALIVE const char* relief_player_next(Player* player) {
     const auto next = player->source != nullptr ? player->source->next() : std::nullopt;
     return returned(next ? lineOf({{"collider", *next}, {"file", player->loaded.world.colliders[*next].file}})
                          : "null");
 }
 
-/// The bytes of a container that relief_player_next() has named.
+/// Passes the bytes of a container that relief_player_next() returned.
 EMSCRIPTEN_KEEPALIVE int relief_player_give(Player* player, int collider, const std::byte* bytes, int size) {
     return answer(__func__, -1, [&](const Call&) -> Result<int> {
         player->source->give(static_cast<std::size_t>(collider), {bytes, static_cast<std::size_t>(size)});
@@ -510,7 +513,7 @@ EMSCRIPTEN_KEEPALIVE int relief_player_give(Player* player, int collider, const 
     });
 }
 
-/// Or why there are none.
+/// Reports that a fetch failed, and why.
 EMSCRIPTEN_KEEPALIVE int relief_player_refuse(Player* player, int collider, const char* reason) {
     return answer(__func__, -1, [&](const Call&) -> Result<int> {
         player->source->refuse(static_cast<std::size_t>(collider), reason);
@@ -518,7 +521,7 @@ EMSCRIPTEN_KEEPALIVE int relief_player_refuse(Player* player, int collider, cons
     });
 }
 
-/// Uploads all that has come and is wanted. How many colliders are being fetched, or wait for it, or -1.
+/// Uploads all wanted colliders that have arrived. Returns the number of pending fetches, or -1 on failure.
 EMSCRIPTEN_KEEPALIVE int relief_player_load(Player* player) {
     return inPass(__func__, -1, [&]() -> Result<int> {
         RELIEF_TRY(player->simulation->load());
@@ -527,13 +530,14 @@ EMSCRIPTEN_KEEPALIVE int relief_player_load(Player* player) {
     });
 }
 
-/// \param emitters  1: those of the scene begin anew.
+/// \param emitters  1: the emitters restart.
 EMSCRIPTEN_KEEPALIVE int relief_player_change(Player* player, const char* text, const char* path,
                                               int emitters) {
     return inPass(__func__, -1, [&] { return changePlayer(*player, text, path, emitters != 0); });
 }
 
-/// Births on top of the emitters': 8 floats each, position, velocity, lifetime, type. The number accepted.
+/// Queues births in addition to those of the emitters: 8 floats each, position, velocity, lifetime, type. Returns the
+/// number accepted.
 EMSCRIPTEN_KEEPALIVE int relief_player_spawn(Player* player, const float* births, int count) {
     return answer(__func__, -1, [&](const Call&) -> Result<int> {
         std::vector<Birth> list;
@@ -551,23 +555,23 @@ EMSCRIPTEN_KEEPALIVE int relief_player_spawn(Player* player, const float* births
     });
 }
 
-/// Draws to the framebuffer that is bound, its pixels (0, 0) … (width - 1, height - 1).
-/// \param matrices  view, then projection, by columns.
-/// \param srgb      1: the framebuffer holds sRGB values.
+/// Draws the particles to the pixels (0, 0) … (width - 1, height - 1) of a framebuffer.
+/// \param matrices  view matrix, then projection matrix, column-major.
+/// \param srgb      1: the framebuffer stores sRGB values.
 EMSCRIPTEN_KEEPALIVE int relief_player_draw(Player* player, const float* matrices, int framebuffer, int width,
                                             int height, int srgb) {
     const RenderTarget target{static_cast<GLuint>(framebuffer), width, height, srgb != 0};
     return inPass(__func__, -1, [&] { return drawPlayer(*player, cameraOf(matrices), target); });
 }
 
-/// The meshes of render.meshes, over all of the framebuffer. Parameters as those of relief_player_draw().
+/// Draws the meshes of render.meshes, overwriting the framebuffer. Parameters as for relief_player_draw().
 EMSCRIPTEN_KEEPALIVE int relief_player_draw_meshes(Player* player, const float* matrices, int framebuffer,
                                                    int width, int height, int srgb) {
     const RenderTarget target{static_cast<GLuint>(framebuffer), width, height, srgb != 0};
     return inPass(__func__, -1, [&] { return drawPlayerMeshes(*player, cameraOf(matrices), target); });
 }
 
-/// JSON.
+/// Returns JSON.
 EMSCRIPTEN_KEEPALIVE const char* relief_player_info(const Player* player) {
     const ParticleSystem& particles = player->simulation->particles();
     const ParticleCounts counts = particles.counts();
@@ -597,7 +601,7 @@ EMSCRIPTEN_KEEPALIVE const char* relief_player_info(const Player* player) {
             .dump());
 }
 
-/// The names of the state textures: which 0: positions, 1: velocities, 2: births.
+/// Returns the GL name of a state texture. \param which  0: positions, 1: velocities, 2: births.
 EMSCRIPTEN_KEEPALIVE int relief_player_texture(const Player* player, int which) {
     const ParticleSystem& particles = player->simulation->particles();
     const GlTexture& texture = which == 0   ? particles.positions()
@@ -606,8 +610,8 @@ EMSCRIPTEN_KEEPALIVE int relief_player_texture(const Player* player, int which) 
     return static_cast<int>(texture.name());
 }
 
-/// The mesh of a collider that deforms, as it is now: names of the textures of its positions and corners, their shifts, and
-/// how many triangles. 0: that one does not deform.
+/// Writes the current mesh of a deforming collider: GL names of the position and corner textures, their shifts, and the
+/// number of triangles. Returns 0 if the collider does not deform.
 EMSCRIPTEN_KEEPALIVE int relief_player_mesh(const Player* player, int body, int* out) {
     const GpuMesh* mesh = player->simulation->mesh(static_cast<std::size_t>(body));
     if (mesh == nullptr) {
@@ -621,7 +625,7 @@ EMSCRIPTEN_KEEPALIVE int relief_player_mesh(const Player* player, int body, int*
     return 1;
 }
 
-/// The clips, joints and morph targets of a collider that plays clips; "null": that one does not.
+/// Returns clips, joints and morph targets of an animated collider as JSON; "null" for other colliders.
 EMSCRIPTEN_KEEPALIVE const char* relief_player_animation(const Player* player, int body) {
     const AnimatedMesh* mesh = player->simulation->animatedMesh(static_cast<std::size_t>(body));
     if (mesh == nullptr) {
@@ -638,7 +642,8 @@ EMSCRIPTEN_KEEPALIVE const char* relief_player_animation(const Player* player, i
     return returned(Json{{"clips", clips}, {"joints", joints}, {"weights", mesh->weights.size()}}.dump());
 }
 
-/// A pose of the page's own for it: matrices of 16 floats by columns, and weights. Without matrices: its clip again. 0, or -1.
+/// Sets the pose of an animated collider: matrices of 16 floats, column-major, and weights. Without matrices, its clip
+/// continues. Returns 0, or -1 on failure.
 EMSCRIPTEN_KEEPALIVE int relief_player_pose(Player* player, int body, const float* matrices, int joints,
                                             const float* weights, int weight_count) {
     return inPass(__func__, -1, [&]() -> Result<int> {
@@ -657,7 +662,7 @@ EMSCRIPTEN_KEEPALIVE int relief_player_pose(Player* player, int body, const floa
     });
 }
 
-/// Reads the particles back, and waits for the GPU to that end; how many live, or -1.
+/// Reads the particles back, which waits for the GPU. Returns the number of live particles, or -1 on failure.
 EMSCRIPTEN_KEEPALIVE int relief_player_read(Player* player) {
     return inPass(__func__, -1, [&]() -> Result<int> {
         player->read = RELIEF_TRY(player->simulation->particles().readState());
@@ -665,8 +670,8 @@ EMSCRIPTEN_KEEPALIVE int relief_player_read(Player* player) {
     });
 }
 
-/// The particles of relief_player_read(): 12 floats each, position, age, velocity, lifetime, type, steps in contact, contact in
-/// the last step, and the low 24 bits of the id.
+/// Writes the particles of relief_player_read(), 12 floats each: position, age, velocity, lifetime, type, steps in
+/// contact, contact in the last step, low 24 bits of the id.
 EMSCRIPTEN_KEEPALIVE void relief_player_states(const Player* player, float* out) {
     for (const ParticleState& one : player->read) {
         const float row[12] = {one.position.x,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files by fetch(), for relief.js: colliders, and the containers that a world names. No WebAssembly here.
+// Fetches files for relief.js: colliders, and the containers that a world names. Independent of the WebAssembly.
 
 export class ReliefError extends Error {
     constructor(message) {
@@ -8,13 +8,14 @@ export class ReliefError extends Error {
     }
 }
 
-/** What answers for a source that is to be fetched. */
+/** Fetches a source, or returns it if it already is a Response. */
 async function answerOf(source, signal) {
     return source instanceof Response ? source : fetch(source, { signal }).catch((error) => {
         throw new ReliefError(`${source?.url ?? source}: the server does not answer (${error.message})`);
     });
 }
 
+/** Returns the bytes of a source; see Source in relief.d.ts. */
 export async function bytesOf(source, signal) {
     if (source instanceof Uint8Array) {
         return source;
@@ -37,11 +38,11 @@ export async function bytesOf(source, signal) {
 }
 
 /**
- * A world.json, and beside it the containers that it names: of each collider its own, or the coarse one where it has that.
- * { files: all of these, base: where they lie }
+ * Fetches a world.json and the containers that it names. With `coarse`, fetches the coarse container of each collider
+ * that has one. Returns { files, base: the URL of world.json }.
  */
 export async function worldFiles(source, coarse) {
-    // The containers lie beside the file that answers, wherever the way to it was sent on to.
+    // The containers are relative to the final URL, after redirects.
     const response = await answerOf(source);
     if (!response.url) {
         throw new ReliefError("loadWorld() and streamWorld() have to know where the containers lie, and this Response has no URL; " +
@@ -52,7 +53,7 @@ export async function worldFiles(source, coarse) {
     const files = { "world.json": text };
     const names = namesOf(text, base, coarse);
     const next = names.values();
-    // A browser refuses thousands of requests at once.
+    // Browsers reject thousands of simultaneous requests.
     await Promise.all(Array.from({ length: 32 }, async () => {
         for (const name of next) {
             files[name] = await bytesOf(urlIn(base, name));
@@ -61,18 +62,18 @@ export async function worldFiles(source, coarse) {
     return { files, base };
 }
 
-/** Fetches that bring files to whoever wants them, and never fail. */
+/** Running fetches. Results and failures go to a callback. */
 export class Fetches {
     #load;
     #stop = new AbortController();
     #coming = new Set();
 
-    /** @param load  brings the bytes of a file: load(file, signal). */
+    /** @param load  load(file, signal) returns the bytes of a file. */
     constructor(load) {
         this.#load = load;
     }
 
-    /** Calls done(bytes, null) or done(null, reason) when the file has come; not after stop(). */
+    /** Starts a fetch, which ends with done(bytes, null) or done(null, reason); neither is called after stop(). */
     start(file, done) {
         const fetched = this.#bring(file, this.#stop.signal, done);
         this.#coming.add(fetched);
@@ -95,7 +96,7 @@ export class Fetches {
         }
     }
 
-    /** When one of them has ended. */
+    /** Resolves when any fetch has ended. */
     next() {
         return Promise.race(this.#coming);
     }
@@ -106,12 +107,12 @@ export class Fetches {
     }
 }
 
-/** The URL of a file that lies in the folder of a world. */
+/** Returns the URL of a file in the folder of a world. */
 export function urlIn(base, name) {
     return new URL(name.split("/").map(encodeURIComponent).join("/"), base);
 }
 
-/** The files that a world names, which lie in its folder; all else is checked when it is made. */
+/** Returns the files that a world names. Only checks that they are in its folder; World validates the rest. */
 function namesOf(text, base, coarse) {
     let colliders;
     try {

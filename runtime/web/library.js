@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The functions of JavaScript that stand_ins.cpp calls. emscripten puts them into its module, whose GLctx is the
-// current context.
+// JavaScript functions that stand_ins.cpp calls, linked into the emscripten module. GLctx is the current context.
 mergeInto(LibraryManager.library, {
     relief_js_has_extension: function (name) {
         return GLctx.getSupportedExtensions().includes(UTF8ToString(name).replace(/^GL_/, "")) ? 1 : 0;
@@ -12,14 +11,14 @@ mergeInto(LibraryManager.library, {
 
     relief_js_is_software: function () {
         let name = GLctx.getParameter(GLctx.RENDERER);
-        if (/^WebKit/.test(name)) { // which hides it; asking a browser that does not is warned of on its console
+        if (/^WebKit/.test(name)) { // masked; do not query the extension otherwise, because some browsers log a warning
             const info = GLctx.getExtension("WEBGL_debug_renderer_info");
             name = info ? GLctx.getParameter(info.UNMASKED_RENDERER_WEBGL) : name;
         }
         return /llvmpipe|softpipe|swrast|SwiftShader|Software|Basic Render/i.test(name) ? 1 : 0;
     },
 
-    // --- of pass_state.js
+    // --- implemented by pass_state.js
     relief_js_save_state: function (units) {
         GLctx.savePassState(units);
     },
@@ -35,7 +34,7 @@ mergeInto(LibraryManager.library, {
         GLctx.bindBuffer(GLctx.PIXEL_PACK_BUFFER, bound);
     },
 
-    // Returns the bytes of the result; -1: not a frame.
+    // Returns the size of the result, or -1 if the input is not a zstd frame.
     relief_js_decompress: function (stored, storedSize, raw, rawSize) {
         try {
             const bytes = Module.decompress(HEAPU8.slice(stored, stored + storedSize), rawSize);

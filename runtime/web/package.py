@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes what of the npm package is text: a package is read far from the sources, so no link may leave it.
+"""Writes the text files of the npm package.
 
     package.py SOURCE PACKAGE VERSION
 
-README.md keeps its words; a link to the scene's keys goes to SCENE.md, which comes along, and any other link out of the
-package becomes its text. package.json gets the version.
-relief.d.ts gets the types of a scene, made of its JSON Schema.
+README.md: links to the scene keys point to SCENE.md, which is included; other links out of it become plain text.
+package.json: gets the version.
+relief.d.ts: gets the scene types, generated from the JSON Schema of scenes.
 """
 import json
 import pathlib
@@ -18,7 +18,7 @@ TYPES = re.compile(r"^// Scene, with the keys of scene\.toml: package\.py .*\n",
 
 
 def typescript(schema, name, interfaces):
-    """The type of a JSON Schema. An object becomes an interface of that name."""
+    """Returns the TypeScript type of a JSON Schema. Adds objects to `interfaces`, under `name`."""
     if "oneOf" in schema:
         return " | ".join(typescript(one, name, interfaces) for one in schema["oneOf"])
     if "enum" in schema or "const" in schema:
@@ -48,7 +48,7 @@ def scene_types(schema):
 
 
 def within(text, files, renamed):
-    """The text, whose links lead to files of the package, to its own headings or into the web."""
+    """Replaces links by their text unless they point to files of the package, to headings or to the web."""
 
     def link(found):
         words, target = found[1], renamed.get(found[2], found[2])

@@ -1,11 +1,11 @@
-// SPDX-License-Identifier: Apache-2.0
-// PassState in a browser: a WebGL2 context as the WebAssembly sees it, which leaves the page's state as it was.
+// SPDX-License-Identifier: Apache-2.0 PassState for browsers: wraps the WebGL2 context for the WebAssembly and restores
+// the state of the page after each pass.
 //
-// A browser answers some questions about the state at once (bindings, switches) and others only after a round trip to its
-// GPU process, which costs as much as a whole step. The latter are the pieces below, queried when a pass first
-// sets them, not before; from then on their values are known, since passes set them by this object only.
+// Some state (bindings, switches) can be queried at once. Other state needs a round trip to the GPU process of the
+// browser, which takes as long as a whole step. kPieces lists the slow state: it is queried only when a pass first sets
+// it. From then on its value is known, because passes set it only through this object.
 const kPack = ["PACK_ALIGNMENT", "PACK_ROW_LENGTH", "PACK_SKIP_ROWS", "PACK_SKIP_PIXELS"];
-const kPieces = { // function that sets it: parameters that query it
+const kPieces = { // setter: parameters to query
     scissor: ["SCISSOR_BOX"],
     blendFuncSeparate: ["BLEND_SRC_RGB", "BLEND_DST_RGB", "BLEND_SRC_ALPHA", "BLEND_DST_ALPHA"],
     blendEquationSeparate: ["BLEND_EQUATION_RGB", "BLEND_EQUATION_ALPHA"],
@@ -16,20 +16,20 @@ const kPieces = { // function that sets it: parameters that query it
     clearColor: ["COLOR_CLEAR_VALUE"],
     pack: kPack,
 };
-const kBlocks = [0, 1]; // indices of uniform blocks that passes set
+const kBlocks = [0, 1]; // uniform block bindings that passes use
 const kBuffers = ["ARRAY_BUFFER", "COPY_READ_BUFFER", "COPY_WRITE_BUFFER", "PIXEL_PACK_BUFFER", "PIXEL_UNPACK_BUFFER",
                   "UNIFORM_BUFFER"];
 const kSwitches = ["BLEND", "DEPTH_TEST", "CULL_FACE", "SCISSOR_TEST", "STENCIL_TEST", "DITHER", "SAMPLE_ALPHA_TO_COVERAGE",
-                   "SAMPLE_COVERAGE", "RASTERIZER_DISCARD", "POLYGON_OFFSET_FILL"]; // off in a pass
+                   "SAMPLE_COVERAGE", "RASTERIZER_DISCARD", "POLYGON_OFFSET_FILL"]; // disabled during a pass
 const kStores = { UNPACK_ALIGNMENT: 1, UNPACK_ROW_LENGTH: 0, UNPACK_SKIP_ROWS: 0, UNPACK_SKIP_PIXELS: 0, UNPACK_IMAGE_HEIGHT: 0,
                   UNPACK_SKIP_IMAGES: 0, UNPACK_FLIP_Y_WEBGL: false, UNPACK_PREMULTIPLY_ALPHA_WEBGL: false,
                   UNPACK_COLORSPACE_CONVERSION_WEBGL: 0 };
-// emscripten's own, of the program and of pixel buffers
+// properties that emscripten stores on the context: current program and pixel buffers
 const kNotes = ["currentProgram", "currentPixelPackBufferBinding", "currentPixelUnpackBufferBinding"];
 
 export function withPassState(gl) {
-    const levels = []; // of passes within passes: { kept, undo }
-    let known = {}; // values of pieces, as long as a pass runs
+    const levels = []; // one entry per nested pass: { kept, undo }
+    let known = {}; // values of pieces during the outermost pass
     const get = (name) => gl.getParameter(gl[name]);
     const own = {};
     for (const key in gl) {
@@ -41,7 +41,7 @@ export function withPassState(gl) {
     writers.pack = (values) => kPack.forEach((name, i) => gl.pixelStorei(gl[name], values[i]));
     const askers = Object.fromEntries(Object.entries(kPieces).map(([piece, names]) =>
         [piece, () => names.map(get).flatMap((one) => (one.length === undefined ? one : [...one]))]));
-    for (const index of kBlocks) { // the buffer, and the part of it; 0, 0: all
+    for (const index of kBlocks) { // buffer, start and size; 0, 0: the whole buffer
         writers[blockPiece(index)] = ([buffer, start, size]) => (size > 0
             ? gl.bindBufferRange(gl.UNIFORM_BUFFER, index, buffer, start, size) : gl.bindBufferBase(gl.UNIFORM_BUFFER, index, buffer));
         askers[blockPiece(index)] = () => {
@@ -59,7 +59,7 @@ export function withPassState(gl) {
         }
         write(piece, values);
     };
-    // Values that a pass counts on; queried only where they matter.
+    // Values that a pass requires; set (and queried) only if they matter.
     const need = (piece, values) => known[piece] ?? set(piece, values);
     const needPack = () => need("pack", [1, 0, 0, 0]);
     const needDepth = (matters) => matters && need("depthMask", [true]);
@@ -71,7 +71,7 @@ export function withPassState(gl) {
         own[how] = (target, index, buffer, ...rest) => (target === gl.UNIFORM_BUFFER && kBlocks.includes(index)
             ? set(blockPiece(index), [buffer, ...part(...rest)]) : gl[how](target, index, buffer, ...rest));
     }
-    own.isBuffer = (buffer) => Boolean(buffer); // emscripten forgets those that it deletes
+    own.isBuffer = (buffer) => Boolean(buffer); // emscripten removes deleted buffers from its table
     own.blendFunc = (from, to) => own.blendFuncSeparate(from, to, from, to);
     own.blendEquation = (mode) => own.blendEquationSeparate(mode, mode);
     own.enable = (what) => (needDepth(what === gl.DEPTH_TEST), gl.enable(what));
@@ -87,8 +87,8 @@ export function withPassState(gl) {
         }
     };
 
-    // A page that captures vertices does so with a buffer bound, and can use no other program until it pauses. A pass has an
-    // object of its own: the default one may be the page's, and busy.
+    // While transform feedback of the page is active, no other program can be used; pause it. A pass binds its own
+    // transform feedback object, because the page may be using the default one.
     const leaveFeedback = () => {
         const [object, buffer] = [get("TRANSFORM_FEEDBACK_BINDING"), get("TRANSFORM_FEEDBACK_BUFFER_BINDING")];
         const pauses = gl.getIndexedParameter(gl.TRANSFORM_FEEDBACK_BUFFER_BINDING, 0) !== null &&
@@ -108,7 +108,7 @@ export function withPassState(gl) {
         };
     };
 
-    /** Keeps bindings and switches, whose queries cost nothing, and sets the values that a pass counts on. */
+    /** Saves bindings and switches, which are cheap to query, and sets the values that a pass requires. */
     own.savePassState = (units) => {
         const undo = [];
         const keep = (value, put) => undo.push(() => put(value));
@@ -123,7 +123,7 @@ export function withPassState(gl) {
         }
         keep(get("VIEWPORT"), (box) => gl.viewport(...box));
         const active = get("ACTIVE_TEXTURE");
-        for (let unit = units - 1; unit >= 0; --unit) { // the first stays active: what makes a texture binds it there
+        for (let unit = units - 1; unit >= 0; --unit) { // unit 0 stays active: new textures are bound there
             gl.activeTexture(gl.TEXTURE0 + unit);
             keep([get("TEXTURE_BINDING_2D"), get("TEXTURE_BINDING_3D"), get("SAMPLER_BINDING")], ([flat, solid, sampler]) => {
                 gl.activeTexture(gl.TEXTURE0 + unit);
@@ -160,7 +160,7 @@ export function withPassState(gl) {
 
     own.restorePassState = () => {
         const { kept, undo } = levels.pop();
-        // Before the bindings: a block binds a buffer, too.
+        // Before the bindings, because binding a uniform block also binds a buffer.
         Object.entries(kept).forEach(([piece, values]) => write(piece, known[piece] = values));
         undo.forEach((put) => put());
     };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures in a browser: PNG by stb_image, as no package has libpng for WebAssembly.
+// Decodes PNG in browsers with stb_image; libpng is not packaged for WebAssembly.
 #include "runtime/files/png.h"
 
 #include <algorithm>

@@ -1,6 +1,7 @@
-// SPDX-License-Identifier: Apache-2.0
-// Stand-ins for files of the desktop: what a WebGL2 context can do, the state around a pass, reading back, zstd by the
-// page's decoder, a world's files without a thread; and the calls of OpenGL ES 3.1 that a context has not: hasCompute() is false, and nothing reaches them.
+// SPDX-License-Identifier: Apache-2.0 Browser implementations of functions that other files define on desktops:
+// capabilities of a WebGL2 context, state around a pass, read-back, zstd by the decoder of the page, and loading files
+// of a world without a thread. The functions of OpenGL ES 3.1 are stubs that are never called, because hasCompute()
+// returns false.
 #include <cstdlib>
 #include <deque>
 #include <optional>
@@ -48,7 +49,7 @@ bool gpuWasReset() {
     return relief_js_is_lost() != 0;
 }
 
-// The state belongs to a page whose textures and buffers have no names here: pass_state.js keeps the objects themselves.
+// The page's textures and buffers have no GL names in this module, so pass_state.js saves the state.
 struct PassState::Saved {};
 
 PassState::PassState() {
@@ -59,7 +60,7 @@ PassState::~PassState() {
     relief_js_restore_state();
 }
 
-// WebGL2 maps no buffers and cannot wait: getBufferSubData() does both.
+// WebGL2 cannot map buffers or wait for fences; getBufferSubData() replaces both.
 bool waitToRead(const GlFence&, GLuint64) {
     return true;
 }
@@ -90,7 +91,7 @@ Result<std::vector<std::byte>> decompress(std::span<const std::byte> stored, std
 
 namespace {
 
-/// Files of a page are in memory, and are read when they are taken.
+/// Reads files in memory when their colliders are taken.
 class MemorySource : public ColliderSource {
   public:
     MemorySource(World world, std::filesystem::path folder, const ContainerLimits& limits)
@@ -123,7 +124,7 @@ Result<std::unique_ptr<ColliderSource>> makeFileSource(World world, std::filesys
     return std::make_unique<MemorySource>(std::move(world), std::move(folder), limits);
 }
 
-// A browser watches over its GPU itself: there is never a Watchdog.
+// Browsers have their own GPU watchdog, so no Watchdog exists.
 void Watchdog::feed(const std::string&) {}
 void Watchdog::rest() {}
 
