@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Adds to the page of `relief view` what plays scenes: relief-particles and its WebAssembly.
+"""Adds the scene player to the page of `relief view`: relief-particles and its WebAssembly module.
 
     assemble.py PAGE PLAYER_SCRIPT RELIEF_WASM OUTPUT
 """

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bodies of a scene by their names: which one is under the pointer, what is known of it, and what is wrong near it.
+// The bodies of a scene: picking, names, facts and errors.
 import { bindTexture, drawScreen, kScreenVertex, program } from "./gl.js";
 import { inverse, length, mix, shortNumber, sub, transform } from "./math.js";
 
-// Colours of shares that are wrong, percent: as those of the verdict's grades end at 1 and 5.
+// Colours for percentages of wrong points. Their limits, 1 and 5, are those of the grades of the verdict.
 const kGood = [0.42, 0.62, 0.45];
 const kFair = [0.93, 0.66, 0.20];
 const kPoor = [0.85, 0.18, 0.13];
@@ -25,7 +25,7 @@ void main() {
     o_color = vec4(texelFetch(u_depth, ivec2(u_at), 0).r, 0.0, 0.0, 1.0);
 }`;
 
-/** Reads one depth of a picture, which WebGL2 gives to shaders alone. */
+/** Reads one depth value by a shader, because WebGL2 cannot read depth buffers back. */
 class DepthReader {
     constructor(gl) {
         this.gl = gl;
@@ -40,7 +40,7 @@ class DepthReader {
         gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     }
 
-    /** In [0, 1]. picture: a Target; x, y: its pixel, from the bottom left. */
+    /** Returns the depth in [0, 1]. picture: a Target; x, y: pixel from the bottom left. */
     read(picture, x, y) {
         const { gl } = this;
         gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
@@ -62,19 +62,24 @@ export class Bodies {
     #picked = -1;
     #tint = false;
 
-    /** @param placed  the scene's bodies, each in its place @param info  the same, as ParticleSystem has them @param data  of the page */
+    /**
+     * @param placed  the drawable bodies of the scene
+     * @param info  the same bodies in SystemInfo of the ParticleSystem
+     * @param data  data of the page
+     */
     constructor(gl, placed, info, data) {
         Object.assign(this, { gl, placed, info, data });
         this.depths = new DepthReader(gl);
-        this.meshes = new Map(); // of the worlds' containers, by the name of their file
+        this.meshes = new Map(); // container file name to mesh name
         for (const [name, bytes] of Object.entries(data.files)) {
             if (name.endsWith(".json")) {
                 JSON.parse(new TextDecoder().decode(bytes)).colliders?.forEach((one) => this.meshes.set(one.file, one.mesh));
             }
         }
-        this.nodes = data.check?.accuracy?.bodies; // a mesh in tiles is one there, and several bodies here
+        this.nodes = data.check?.accuracy?.bodies; // a mesh cut into tiles has one entry here, but several bodies
         const measured = this.nodes?.flatMap((node) => Array(node.tiles).fill(node));
-        this.measured = measured?.length === placed.length ? measured : null; // the level has the bodies of the world
+        // Null unless the level and the world have the same bodies.
+        this.measured = measured?.length === placed.length ? measured : null;
     }
 
     get picked() {
@@ -85,18 +90,18 @@ export class Bodies {
         this.#picked = i;
     }
 
-    /** Of what is wrong, or not. */
+    /** Enables colours by wrong points. */
     tint(on) {
         this.#tint = on && this.measured !== null;
     }
 
-    /** A colour in place of the theme's; undefined: none. */
+    /** Returns the colour of a body; undefined: the colour of the theme. */
     color(i) {
         const wrong = this.#tint ? wrongColor(this.measured[i].wrong_percent) : undefined;
         return i === this.#picked ? mix(wrong ?? kPicked, kPicked, 0.6) : wrong;
     }
 
-    /** The body that is drawn at a place of the picture; −1: none. x, y: shares of its sides, from the lower left. */
+    /** Returns the body at a place of the picture, or −1. x, y: fractions of its sides, from the lower left. */
     at(picture, matrices, x, y) {
         const pixel = [x * picture.width, y * picture.height].map((v, k) =>
             Math.min(Math.max(Math.floor(v), 0), [picture.width, picture.height][k] - 1));
@@ -109,14 +114,14 @@ export class Bodies {
         return this.nearest([a / w, b / w, c / w], 1e-3 * length(sub([a / w, b / w, c / w], matrices.eye)));
     }
 
-    /** The body whose surface is nearest to a point, if it is nearer than `within`. */
+    /** Returns the body whose surface is nearest to a point, or −1 if none is nearer than `within`. */
     nearest(point, within) {
         let best = -1;
         let least = within;
         this.placed.forEach((one, i) => {
             const { collider, box } = one.body ?? one;
             if (!collider) {
-                return; // it deforms
+                return; // deforming body
             }
             const scale = length([...one.model.slice(0, 3)]);
             const p = transform(inverse(one.model), point).slice(0, 3);
@@ -124,7 +129,7 @@ export class Bodies {
             if (p.some((v, k) => v < box.min[k] - room || v > box.max[k] + room)) {
                 return;
             }
-            // In its box, for beyond that a collider may know no more than that it is outside.
+            // Query inside the box: beyond it, a collider may return far outside.
             const inside = p.map((v, k) => Math.min(Math.max(v, box.min[k]), box.max[k]));
             const distance = (Math.abs(collider.query(inside).distance[0]) + length(sub(p, inside))) * scale;
             if (distance < least) {
@@ -134,7 +139,7 @@ export class Bodies {
         return best;
     }
 
-    /** Facts about a body: pairs of words. */
+    /** Returns facts about a body as pairs of label and value. */
     facts(i) {
         const { file, deforms } = this.info[i];
         const base = file.split("/").pop();
@@ -152,7 +157,7 @@ export class Bodies {
         ].filter(([, value]) => value !== undefined && value !== "");
     }
 
-    /** Its node, or its file. */
+    /** Returns the node name of a body, or its file name if the node has none. */
     name(i) {
         return this.info[i].node || this.info[i].file.split("/").pop();
     }

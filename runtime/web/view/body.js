@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// A collider in space: its textures, the box that it is drawn in, and the programs that evaluate it.
+// A drawable collider: its textures, its box, and the programs that evaluate it.
 import { add, boxOf, identity, sub } from "./math.js";
 import { cellsOf } from "./cells.js";
 import { Geometry, bindTexture, program } from "./gl.js";
 import { kBodyVertex, kHeatFragment, kSliceFragment, kSurfaceFragment } from "./body_shaders.js";
 
-const kSlack = 0.0035; // round the bounds, in longest sides: a map's inside farther out is not the body
+// Margin around the bounds, in longest sides; anything inside a map beyond it is not part of the body.
+const kSlack = 0.0035;
 const kDeep = 0.014;
-const kClearUnit = 3; // behind those of the collider
+const kClearUnit = 3; // texture unit after those of the collider
 const kBoxSides = [0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5];
 
-/** Of a ray: it crosses each row and each column of a map once. finest: texels along the box's longest side. */
+/** Returns the maximum number of ray steps in a map: each row and column is crossed once. finest: texels along the
+ * longest side. */
 function stepsAcross({ projection, width, height }, finest) {
     return projection === "local" ? 6 * finest : 2 * (width + height);
 }
@@ -38,7 +40,7 @@ export class Body {
         this.sides = new Geometry(gl, Float32Array.from(corners), Uint32Array.from(kBoxSides));
     }
 
-    /** A program with the field's functions in it, ready to be drawn with. */
+    /** Returns a program that can evaluate the collider, and binds the collider. */
     use(kind) {
         const fragments = { surface: kSurfaceFragment, heat: kHeatFragment, slice: kSliceFragment };
         if (!this.#programs[kind]) {
@@ -49,7 +51,7 @@ export class Body {
         return this.#programs[kind];
     }
 
-    /** The inside of the maps, up to the texel. values: uniforms that all bodies have in common. */
+    /** Draws the surface of the maps. values: uniforms shared by all bodies. */
     draw(values) {
         const { gl, box, drawn } = this;
         const { maps, finest_texel: texel } = this.collider.info;
@@ -73,7 +75,7 @@ export class Body {
     }
 }
 
-/** One of several places of a body. */
+/** A second instance of a body. */
 export class BodyPlace {
     constructor(body) {
         this.body = body;
@@ -91,7 +93,7 @@ export class BodyPlace {
     }
 }
 
-/** A body that deforms. mesh(): its LiveMesh of relief.d.ts. */
+/** A deforming body. mesh() returns its LiveMesh (relief.d.ts). */
 export class LiveBody {
     constructor(gl, program, mesh) {
         Object.assign(this, { gl, program, mesh });

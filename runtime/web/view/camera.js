@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-// A camera that goes round a point: by mouse, by touch with two fingers, by arrow keys.
+// An orbit and fly camera with mouse, touch and keyboard input.
 import { add, boxOf, clamp, cross, length, lookAt, multiply, normalize, perspective, scale, sub } from "./math.js";
 
 const kFov = 36 * Math.PI / 180;
-const kSpeed = 0.12; // of flight, in radii of the box a second
-const kHurry = 5; // times as fast, with Shift
-const kArm = 0.005; // from the eye of a flight to what it turns round, in radii
+const kSpeed = 0.12; // flight speed, in box radii per second
+const kHurry = 5; // speed factor with Shift
+const kArm = 0.005; // orbit distance while flying, in box radii
 
 export class Camera {
     constructor(changed) {
         Object.assign(this, { yaw: 0.6, pitch: 0.32, distance: 4, target: [0, 0, 0] });
-        this.taken = true; // in hand: it does not follow a scene's keys
+        this.taken = true; // controlled by the user: it does not follow the scene's camera
         this.changed = () => {
             this.taken = true;
             changed();
         };
         this.box = boxOf({ min: [-1, -1, -1], max: [1, 1, 1] });
         this.fov = kFov;
-        this.shift = [0, 0]; // of the picture's middle, for what lies under a panel
+        this.shift = [0, 0]; // shift of the picture's centre, for the space beside the panel
         this.flying = false;
     }
 
-    /** Round a box. room: what is free of the picture, its shorter side over the picture's height. */
+    /** Frames a box. room: shorter side of the free area, relative to the picture height. */
     frame(box, room = 1) {
         this.box = box;
         this.flying = false;
@@ -32,7 +32,7 @@ export class Camera {
         this.changed();
     }
 
-    /** From an eye to a target, as in a scene. */
+    /** Looks from an eye position to a target. */
     look(eye, target, fov) {
         this.flying = false;
         const away = sub(eye, target);
@@ -44,7 +44,7 @@ export class Camera {
         this.changed();
     }
 
-    /** As look(), for as long as no hand takes it. */
+    /** Like look(), but as the scene's camera: `taken` becomes false. */
     follow(eye, target, fov) {
         this.look(eye, target, fov);
         this.taken = false;
@@ -81,7 +81,8 @@ export class Camera {
         this.changed();
     }
 
-    /** On, by seconds. way: to the right, upwards and ahead, each from −1 to 1. Then the camera turns round its own place. */
+    /** Flies for `seconds`. way: right, up and forward, each from −1 to 1. The camera then rotates about its own
+     * position. */
     fly(way, seconds) {
         const { eye } = this;
         const back = normalize(sub(eye, this.target));
@@ -96,7 +97,7 @@ export class Camera {
         this.changed();
     }
 
-    /** In heights of the picture. */
+    /** Pans. dx, dy: relative to the picture height. */
     pan(dx, dy) {
         const back = normalize(sub(this.eye, this.target));
         const right = normalize(cross([0, 1, 0], back));
@@ -105,7 +106,7 @@ export class Camera {
         this.changed();
     }
 
-    /** At a place, from its normal's side. */
+    /** Looks at a place from the direction of its normal. */
     lookAt(place, normal, distance) {
         const n = normalize(normal);
         this.flying = false;
@@ -121,7 +122,7 @@ const kArrows = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], Arrow
 
 const kFlights = { KeyD: [1, 0, 0], KeyA: [-1, 0, 0], KeyE: [0, 1, 0], KeyQ: [0, -1, 0], KeyW: [0, 0, 1], KeyS: [0, 0, -1] };
 
-/** The keys that are held to fly, by their places on the keyboard. */
+/** Flight keys, by their physical position on the keyboard. */
 export class FlightKeys {
     #held = new Set();
     #hurry = false;
@@ -142,7 +143,7 @@ export class FlightKeys {
         addEventListener("blur", () => this.#held.clear());
     }
 
-    /** With each frame. */
+    /** Call once per frame. */
     advance(seconds) {
         if (this.#held.size > 0) {
             const way = [...this.#held].reduce((sum, code) => add(sum, kFlights[code]), [0, 0, 0]);
@@ -151,12 +152,13 @@ export class FlightKeys {
     }
 }
 
-const kTap = 5; // pixels that a pointer may move while it picks
+const kTap = 5; // maximum pointer movement of a click, in pixels
 
-/** Mouse, pen and fingers on the canvas, and keys. tap(x, y): a click, in shares of the canvas from its lower left. */
+/** Connects pointer, wheel and keyboard input. tap(x, y): called for clicks, in fractions of the canvas from the lower
+ * left. */
 export function followInput(canvas, camera, tap) {
     const down = new Map();
-    let pressed = null; // where, until it moves
+    let pressed = null; // position of a press that may become a click
     const spread = () => {
         const [a, b] = [...down.values()];
         return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2, d: Math.hypot(a.x - b.x, a.y - b.y) || 1 };
@@ -173,7 +175,7 @@ export function followInput(canvas, camera, tap) {
             return;
         }
         if (pressed && Math.hypot(event.clientX - pressed.x, event.clientY - pressed.y) <= kTap) {
-            return; // so far it picks
+            return; // may still become a click
         }
         pressed = null;
         const height = canvas.clientHeight;
@@ -211,7 +213,7 @@ export function followInput(canvas, camera, tap) {
         camera.zoom(Math.exp(clamp(pixels, -240, 240) * (event.ctrlKey ? 0.008 : 0.0014)));
     }, { passive: false });
     addEventListener("keydown", (event) => {
-        if (!event.target.closest?.("input, button")) { // which have keys of their own
+        if (!event.target.closest?.("input, button")) { // controls handle their own keys
             const way = kArrows[event.key];
             if (way) {
                 camera[event.shiftKey ? "pan" : "orbit"](0.08 * way[0], 0.08 * way[1]);

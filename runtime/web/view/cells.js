@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Free space that a ray through a collider may skip: a grid of cells, 255 where a map sees all of the cell outside, else 0.
+// Empty-space skipping for rays: a grid of cells, 255 if a map sees the whole cell outside, otherwise 0.
 import { add, dot, scale } from "./math.js";
 import { treeOf, visitLeaves } from "./patches.js";
 
 const kCells = 24; // along the longest side
-const kSteep = 0.03; // cosine with a map's rays below which a plane bounds nothing along them; writers store none
+const kSteep = 0.03; // cosine between normal and ray below which a plane gives no bound; such planes are not stored
 const kMargin = 0.01; // texels
-const kHalf = 0.505; // of a cell, and a little: the shader's cell of a point may be the next one
+const kHalf = 0.505; // half a cell plus a margin: rounding in the shader may select the next cell
 
-/** From which depth to which a texel may be inside. axes: of a texel and of its ray. */
+/** Returns the depth range in which a texel may be inside. axes: x and y axes of the texel and its ray. */
 function depthsInside(texel, { compare, decode, empty_is_outside: empty }, [x, y, ray]) {
     let [low, high] = empty ? [2, -1] : [-Infinity, Infinity];
     [0, 4].filter((at) => !Number.isNaN(texel[at])).forEach((at, i) => {
@@ -27,7 +27,7 @@ function depthsInside(texel, { compare, decode, empty_is_outside: empty }, [x, y
     return [low, high];
 }
 
-/** Of each block of so many texels a side the same: { columns, low, high }. */
+/** Returns the same range for each block of block × block texels: { columns, low, high }. */
 function blocksInside(collider, index, block) {
     const map = collider.info.maps[index];
     const { width, height, rows, object_per_map: per } = map;
@@ -45,13 +45,13 @@ function blocksInside(collider, index, block) {
     return { columns, low, high };
 }
 
-/** Marks the cells that a map sees outside wholly. */
+/** Marks the cells that a map sees completely outside. */
 function mark(cells, { from, side, n }, collider, index) {
     const { width, height, rows, empty_is_outside: empty } = collider.info.maps[index];
     const size = [width, height, 1];
     const reach = rows.map((row, k) => kHalf * side * size[k] * (Math.abs(row[0]) + Math.abs(row[1]) + Math.abs(row[2])) +
                            (k < 2 ? kMargin : 1e-4));
-    const block = Math.max(Math.ceil(0.5 * Math.max(reach[0], reach[1])), 1); // few of them cover a cell
+    const block = Math.max(Math.ceil(0.5 * Math.max(reach[0], reach[1])), 1); // so that few blocks cover a cell
     const { columns, low, high } = blocksInside(collider, index, block);
     for (let cell = 0; cell < cells.length; ++cell) {
         const p = [cell % n[0], Math.floor(cell / n[0]) % n[1], Math.floor(cell / n[0] / n[1])].map((c, k) => from[k] + side * (c + 0.5));
@@ -71,10 +71,10 @@ function mark(cells, { from, side, n }, collider, index) {
     }
 }
 
-/** The same of a map of patches: those that no patch and no leaf inside reaches into. */
+/** Like mark(), for a map of patches: marks cells that no patch and no inside leaf overlaps. */
 function markPatches(cells, { from, side, n }, collider, index) {
     const { rows, object_per_map: [size] } = collider.info.maps[index];
-    const axes = rows.map((row) => scale(row.slice(0, 3), size * size)); // of map space, in object space
+    const axes = rows.map((row) => scale(row.slice(0, 3), size * size)); // axes of map space in object space
     const reached = new Uint8Array(cells.length);
     visitLeaves(treeOf(collider, index), (kind, corner, leaf) => {
         if (kind === "outside") {
@@ -96,8 +96,10 @@ function markPatches(cells, { from, side, n }, collider, index) {
 }
 
 /**
- * @param bounds  of what is drawn
- * @returns { n, from, side, clear }: cells along each axis, the corner of the first one, their side, and the cells, x fastest
+ * @param bounds  the drawn box
+ * @returns { n, from, side, clear }: number of cells along each axis, corner of the first cell, side length, and the
+ * cells
+ *          with x fastest
  */
 export function cellsOf(collider, { min, max }) {
     const size = max.map((v, k) => v - min[k]);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The false colours of maps and of slices.
+// False colours of maps and slices.
 
-/** Of map i, for the page: mapColor() below. */
+/** CSS colour of map i; equals mapColor() below. */
 export const mapCss = (i) => `oklch(0.74 0.13 ${25 + 137.508 * i})`;
 
-/** Of a cell of map i's patches, for the page: levelColor() below. light: 0 to 1. */
+/** CSS colour of a cell of map i; equals levelColor() below. light: 0 to 1. */
 export const levelCss = (i, level, light) => `oklch(${light * (0.9 - 0.36 * level)} ${0.05 + 0.11 * level} ${25 + 137.508 * i})`;
 
-/** Of distances from inside to outside, for the page: distanceColor() below. */
+/** CSS gradient of distances, from inside to outside; equals distanceColor() below. */
 export const kLegend = `linear-gradient(to right, ${Array.from({ length: 33 }, (_, i) => {
     const amount = Math.abs(i / 16 - 1);
     const chroma = 0.135 * Math.sqrt(amount) * (1 - 0.25 * amount);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Objects of WebGL2 for every pass: programs, targets, buffers.
+// WebGL2 helpers: programs, targets, buffers.
 
-/** Whether no GPU draws. */
+/** Returns whether the context uses a software renderer. */
 export function drawnBySoftware(gl) {
     const name = gl.getParameter(gl.RENDERER);
-    const info = /^WebKit/.test(name) ? gl.getExtension("WEBGL_debug_renderer_info") : null; // some browsers hide it there
+    const info = /^WebKit/.test(name) ? gl.getExtension("WEBGL_debug_renderer_info") : null; // some browsers mask the name
     return /llvmpipe|softpipe|swrast|SwiftShader|Software|Basic Render/i.test(info ? gl.getParameter(info.UNMASKED_RENDERER_WEBGL) : name);
 }
 
@@ -34,7 +34,8 @@ export function program(gl, vertex, fragment, prefix = "") {
             }
             return places.get(name);
         },
-        /** Uniforms by what they hold: numbers, 2 to 4 of them, matrices of 16; { int } for samplers and flags. */
+        /** Sets uniforms by their values: a number, 2 to 4 numbers, or a matrix of 16; { int } for integers and
+         * samplers. */
         set(values) {
             gl.useProgram(made);
             for (const [key, value] of Object.entries(values)) {
@@ -53,7 +54,7 @@ export function program(gl, vertex, fragment, prefix = "") {
     };
 }
 
-/** Triangles or lines of points, three numbers each, and their indices. */
+/** Indexed geometry. positions: three numbers per vertex. */
 export class Geometry {
     constructor(gl, positions, indices) {
         this.gl = gl;
@@ -124,7 +125,7 @@ export function bindTexture(gl, unit, name, target = gl.TEXTURE_2D) {
     gl.bindTexture(target, name);
 }
 
-/** A triangle that covers everything; its program makes the corners of gl_VertexID. */
+/** Draws a triangle that covers the target; kScreenVertex computes its corners. */
 export function drawScreen(gl) {
     gl.bindVertexArray(null);
     gl.drawArrays(gl.TRIANGLES, 0, 3);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page of `relief view`: what it shows, and the loop that draws it.
+// The page of `relief view`: application state and render loop.
 import { Bodies } from "./bodies.js";
 import { Body, BodyPlace, LiveBody } from "./body.js";
 import { Camera, FlightKeys, followInput } from "./camera.js";
@@ -17,7 +17,7 @@ const canvas = $("canvas");
 const kLost = "The GPU was reset; the page begins anew when the browser gives it back.";
 const dark = matchMedia("(prefers-color-scheme: dark)");
 
-/** One sentence in place of a frozen page; null: none. */
+/** Shows a message; null hides it. */
 function say(message) {
     $("message").hidden = !message;
     $("message").querySelector("p").textContent = message ?? "";
@@ -26,23 +26,23 @@ function say(message) {
 class App {
     constructor() {
         this.look = { show: "surface", split: 0.5, map: -1, heat: 0, depth: 0, slice: null, floor: null, box: null };
-        this.data = null; // page_data.js's
-        this.pin = null; // a place that is marked
-        this.placed = false; // are a scene's bodies
-        this.followed = null; // the scene's camera, as it was taken last
+        this.data = null; // from page_data.js
+        this.pin = null; // marked position
+        this.placed = false; // whether the bodies of a scene are placed
+        this.followed = null; // the last camera of the scene
         this.camera = new Camera(() => this.changed());
         this.flight = new FlightKeys(this.camera);
-        this.bodies = null; // bodies.js's, of a scene
+        this.bodies = null; // Bodies of a scene
         this.quality = new Quality();
         this.lastChange = 0;
         this.lastFrame = 0;
-        this.waiting = false; // for a frame
+        this.waiting = false; // a frame is requested
         this.panel = new Panel(this);
         dark.addEventListener("change", () => this.changed());
         $("message").querySelector("button").onclick = () => say(null);
     }
 
-    /** Runs f; a failure becomes a sentence on the page, which goes on. */
+    /** Runs f and shows its error as a message. */
     async attempt(f) {
         try {
             await f();
@@ -113,7 +113,7 @@ class App {
         return scene ? reliefParticles.load(files[file]) : new PageCollider(collider);
     }
 
-    /** The scene of the page, its bodies each where it stands; the first of the page's own collider is the one in the panel. */
+    /** Starts the scene and places its bodies. The first body with the page's own collider is shown in the panel. */
     async #playScene() {
         const { data, gl, view } = this;
         this.particles.start({ scene: data.scene, files: data.files });
@@ -151,7 +151,7 @@ class App {
         this.panel.show(data.check ? "errors" : "particles");
     }
 
-    /** Of a scene the body under the pointer. x, y: shares of the picture from its lower left. */
+    /** Picks the body of a scene under the pointer. x, y: fractions of the picture, from the lower left. */
     #pick(x, y) {
         if (this.bodies && this.view.kept) {
             const { width, height } = canvas;
@@ -159,7 +159,7 @@ class App {
         }
     }
 
-    /** The scene's camera, where it has moved and no hand has taken it. */
+    /** Follows the camera of the scene until the user takes over. */
     #follow({ eye, target, fov }) {
         const now = `${eye} ${target} ${fov}`;
         if (!this.camera.taken && now !== this.followed) {
@@ -168,7 +168,7 @@ class App {
         }
     }
 
-    /** Places moving bodies where they are now. */
+    /** Updates the poses of moving bodies. */
     #moveBodies(bodies) {
         bodies.forEach(({ moves, deforms, matrix }, i) => {
             if (moves || deforms) {
@@ -178,7 +178,7 @@ class App {
         });
     }
 
-    /** From the beginning, where a scene's camera is its own again. */
+    /** Restarts the scene, which controls the camera again. */
     restart() {
         this.particles.restart();
         this.camera.taken = false;
@@ -191,7 +191,7 @@ class App {
         this.changed();
     }
 
-    /** The bodies are drawn again; without `bodies` only what is before them. */
+    /** Requests a frame. bodies: whether the bodies must be redrawn. */
     changed(bodies = true) {
         this.lastChange = performance.now();
         if (this.view && bodies) {
@@ -217,13 +217,13 @@ class App {
         } catch (error) {
             this.particles.paused = true;
             if (this.look.show === "picture") {
-                this.panel.setShow("surface"); // which needs no mesh
+                this.panel.setShow("surface"); // needs no mesh
             }
             this.#sayError(error);
         }
     }
 
-    /** sharp: with all pixels, whatever moves. */
+    /** sharp: at full resolution, even while something moves. */
     #drawFrame(now, sharp = false) {
         const still = now - this.lastChange > 180;
         const playing = this.particles.system && !this.particles.paused;
@@ -241,11 +241,11 @@ class App {
         this.particles.advance(Math.min((now - this.lastFrame) / 1000, 0.1));
         this.lastFrame = now;
         if (this.placed && this.particles.steps !== this.movedAt) {
-            this.movedAt = this.particles.steps; // by the clock, by hand, or back to the beginning
+            this.movedAt = this.particles.steps; // the system stepped or restarted
             const { bodies, camera } = this.particles.system.info;
             this.#moveBodies(bodies);
             this.#follow(camera);
-            this.view.dirty ||= this.look.show === "picture"; // under another weather
+            this.view.dirty ||= this.look.show === "picture"; // the weather changed
         }
         const matrices = this.camera.matrices(width, height);
         this.view.drawBodies(matrices, width, height, { ...this.look, theme: dark.matches ? "dark" : "light" },
@@ -265,7 +265,7 @@ class App {
         $("pin").style.translate = `${50 + 50 * x / w}vw ${50 - 50 * y / w}vh`;
     }
 
-    /** Colours of all pixels, for tests: from the bottom left. */
+    /** Returns the colours of all pixels, from the bottom left; for tests. */
     pixelsNow() {
         this.#drawFrame(performance.now(), true);
         const { gl } = this;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The maps as pictures, and where each looks in space.
+// Pictures and titles of maps.
 import { levelCss } from "./colors.js";
 import { treeOf, visitLeaves } from "./patches.js";
 
 const kSide = 144; // pixels of a picture's longer side
-const kShades = 64; // of a colour, by depth
+const kShades = 64; // shades of a colour, by depth
 
-/** The colours of leaves: a row for each level, from far to near. */
+/** Returns the colours of leaves: one row per level, from far to near. */
 function leafColors(index, levels) {
     const canvas = new OffscreenCanvas(kShades, levels + 1);
     const context = canvas.getContext("2d");
@@ -19,7 +19,7 @@ function leafColors(index, levels) {
     return context.getImageData(0, 0, kShades, levels + 1).data;
 }
 
-/** The cells of a map's patches as one sees them along its −z axis; top up. */
+/** Draws the cells of a map of patches, seen along its −z axis. */
 function drawPatches(canvas, collider, index) {
     const tree = treeOf(collider, index);
     const { roots, levels } = tree;
@@ -51,7 +51,7 @@ function drawPatches(canvas, collider, index) {
     context.putImageData(image, 0, 0);
 }
 
-/** The depths of a map, drawn to a canvas; top up. */
+/** Draws the depths of a map to a canvas. */
 export function drawMap(canvas, collider, index) {
     if (collider.info.maps[index].projection === "local") {
         drawPatches(canvas, collider, index);
@@ -73,7 +73,7 @@ export function drawMap(canvas, collider, index) {
             const tx = Math.min(Math.floor((x + 0.5) * width * columns / canvas.width), width * columns - 1);
             const ty = Math.min(Math.floor((y + 0.5) * height * rows / canvas.height), height * rows - 1);
             const face = Math.floor(ty / height) * columns + Math.floor(tx / width);
-            // The rows of a view go up; those of a cube's faces go down.
+            // Rows of an orthographic map go up; rows of cube faces go down.
             const row = faces === 6 ? ty % height : height - 1 - ty;
             const at = 8 * ((face * height + row) * width + tx % width);
             const depth = texels[Number.isNaN(texels[at]) ? at + 4 : at];

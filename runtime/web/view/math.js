@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors as arrays of three, matrices as 16 numbers by columns.
+// Vectors are arrays of three numbers; matrices are 16 numbers, column-major.
 
 export const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
 export const sub = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
@@ -26,7 +26,7 @@ export function multiply(a, b) {
     return r;
 }
 
-/** Of a matrix that has one: Gauss-Jordan with pivots. */
+/** Inverts a regular matrix by Gauss-Jordan elimination with pivoting. */
 export function inverse(m) {
     const rows = [0, 1, 2, 3].map((i) => [0, 1, 2, 3, 4, 5, 6, 7].map((c) => (c < 4 ? m[4 * c + i] : Number(c - 4 === i))));
     for (let c = 0; c < 4; ++c) {
@@ -42,7 +42,7 @@ export function inverse(m) {
     return [0, 1, 2, 3].flatMap((c) => rows.map((row) => row[4 + c]));
 }
 
-/** Of a vector with w = 1; four numbers. */
+/** Transforms a point (w = 1); returns four numbers. */
 export const transform = (m, p) => [0, 1, 2, 3].map((i) => m[i] * p[0] + m[4 + i] * p[1] + m[8 + i] * p[2] + m[12 + i]);
 
 export function lookAt(eye, target, up) {
@@ -60,7 +60,7 @@ export function perspective(fov, aspect, near, far) {
                              0, 0, 2 * far * near / (near - far), 0]);
 }
 
-/** A box with what every view needs of it. */
+/** Returns bounds with derived values. */
 export function boxOf(bounds) {
     const size = sub(bounds.max, bounds.min);
     return {
@@ -81,5 +81,5 @@ export function shortNumber(v) {
     return (text.includes(".") && !text.includes("e") ? text.replace(/\.?0+$/, "") : text).replace("-", "−");
 }
 
-/** unit: the collider's; empty: it has none. */
+/** unit: of the collider; may be empty. */
 export const lengthText = (v, unit) => shortNumber(v) + (unit ? ` ${unit}` : "");

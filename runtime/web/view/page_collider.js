@@ -1,10 +1,10 @@
-// SPDX-License-Identifier: Apache-2.0
-// The collider of a page that plays nothing: what `relief export --gpu` writes (runtime/layout/LAYOUT.md), and facts. Has the
-// members of relief-particles' Collider and GpuCollider that the page uses.
+// SPDX-License-Identifier: Apache-2.0 The collider of a page without a scene: the output of `relief export --gpu`
+// (runtime/layout/LAYOUT.md), and facts. Has the members of Collider and GpuCollider of relief-particles that the page
+// uses.
 import { damaged, fromBase64 } from "./page_data.js";
 
-const kMapBytes = 144; // of the block, behind 16
-const kFirstTexel = 112; // of a map: place.x
+const kMapBytes = 144; // per map in the uniform block, after a header of 16 bytes
+const kFirstTexel = 112; // byte offset of place.x in a map
 const kDepthSteps = 65534;
 const kCubeDepth = 1.7320509;
 const kTextures = [["u_relief_float", "RGBA32F", "RGBA", "FLOAT", Float32Array], ["u_relief_fixed", "RGBA8", "RGBA", "UNSIGNED_BYTE", Uint8Array],
@@ -12,10 +12,10 @@ const kTextures = [["u_relief_float", "RGBA32F", "RGBA", "FLOAT", Float32Array],
 const kPrecision = ["float", "int", "sampler2D", "usampler2D", "sampler3D"].map((type) => `precision highp ${type};\n`).join("");
 
 const fixedDepth = (code, most) => (code === 0 ? NaN : (code - 1) * most / kDepthSteps);
-/** Of a half float above 0. */
+/** Decodes a half float, which is 0 or more. */
 const halfDepth = (bits) => (bits === 0 ? NaN : bits < 1024 ? bits * 2 ** -24 : (1024 + (bits & 1023)) * 2 ** ((bits >> 10) - 25));
 
-/** Of the index (s, t) into the octahedron. */
+/** Decodes an octahedral normal with index (s, t). */
 function normalAt(s, t) {
     const [x, y] = [(s - 127) / 127, (t - 127) / 127];
     const z = 1 - Math.abs(x) - Math.abs(y);
@@ -48,7 +48,7 @@ export class PageCollider {
         return new DataView(this.block.buffer).getInt32(16 + kMapBytes * map + kFirstTexel, true);
     }
 
-    /** Depth and normal of the front, then of the back, of each texel; a depth of NaN: nothing there. */
+    /** As Collider.texels() in relief.d.ts. */
     texels(map) {
         const { width, height, faces, format, encoding } = this.info.maps[map];
         const first = this.#first(map);
@@ -77,7 +77,7 @@ export class PageCollider {
         return out;
     }
 
-    /** The words of a map of patches. */
+    /** As Collider.tree() in relief.d.ts. */
     tree(map) {
         const first = 4 * this.#first(map);
         return new Uint32Array(this.textures[2].texels.slice(first, first + this.info.maps[map].bytes / 2).buffer);
@@ -114,7 +114,8 @@ class PageTextures {
         gl.bindBuffer(gl.UNIFORM_BUFFER, null);
     }
 
-    /** Once for a program: its samplers are three units from this one on. */
+    /** Sets the samplers of a program to three units from `unit` on, and its uniform block. Call it once per program.
+     * */
     attach(program, unit = 0) {
         const { gl } = this;
         gl.useProgram(program);

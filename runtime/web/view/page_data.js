@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The data that `relief view` put into the page.
+// Reads the data that `relief view` wrote into the page.
 
 export function fromBase64(text, what) {
     try {
@@ -11,7 +11,7 @@ export function fromBase64(text, what) {
 
 export const damaged = (how) => new Error(`this page is damaged: ${how}; make the page again with the tool that made it, 'relief view' or 'relief-sim --page'`);
 
-/** The data, with bytes in place of base64, or null of an empty page. Of a scene `file` names the collider in the panel. */
+/** Returns the decoded data, or null if the page is empty. For a scene, `file` is the collider in the panel. */
 export function readPageData() {
     const place = document.getElementById("relief-page-data");
     const format = Number(place?.dataset.format);
@@ -49,7 +49,7 @@ function meshOf(mesh) {
     return { vertices: new Float32Array(vertices.buffer), triangles: corners };
 }
 
-/** The WebAssembly of a page that plays a scene: gzip in base64. */
+/** Returns the WebAssembly module of a page that plays a scene, which is stored as gzip in base64. */
 export async function readWasm() {
     const packed = fromBase64(document.getElementById("relief-wasm").textContent.trim(), "WebAssembly");
     if (typeof DecompressionStream === "undefined") {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The panel and the title: what the buttons do.
+// The panel and the title bar.
 import { kLegend, mapCss } from "./colors.js";
 import { drawMap, mapTitle } from "./map_images.js";
 import { lengthText, shortNumber } from "./math.js";
@@ -7,7 +7,7 @@ import { lengthText, shortNumber } from "./math.js";
 export const $ = (id) => document.getElementById(id);
 
 const narrow = matchMedia("(max-width: 720px)");
-// The causes of wrong places, as `relief check` names them to programs.
+// Causes of wrong places, keyed as in the JSON report of `relief check`.
 const kCauses = { sheet: "thin sheet", open: "open mesh", unseen: "no map sees it", silhouette: "behind a silhouette",
                  texel: "finer than a texel" };
 
@@ -19,7 +19,7 @@ export function element(tag, attributes = {}, ...children) {
     return made;
 }
 
-/** Radio buttons beside each other. choices: their values and words. Returns what chooses one. */
+/** Creates a row of radio buttons. choices: values and labels. Returns a function that selects a value. */
 function choice(id, choices, changed) {
     const show = (value) => $(id).querySelectorAll("input").forEach((one) => (one.checked = one.value === value));
     $(id).append(...Object.entries(choices).map(([value, words]) => element("label", { id: `${id}-${value}` },
@@ -71,13 +71,13 @@ export class Panel {
         this.app.changed();
     }
 
-    /** The shift of the picture's middle out from under the panel. */
+    /** Returns the shift that centres the picture in the space beside the panel. */
     shift() {
         const box = $("panel").getBoundingClientRect();
         return narrow.matches ? [0, -box.height / innerHeight * 0.9] : [box.width / innerWidth * 0.9, 0];
     }
 
-    /** The shorter side of the space beside the panel, in heights of the picture. */
+    /** Returns the shorter side of the space beside the panel, relative to the picture height. */
     room() {
         const panel = $("panel").getBoundingClientRect();
         const free = narrow.matches ? [innerWidth, innerHeight - panel.height - $("title").offsetHeight]
@@ -90,12 +90,12 @@ export class Panel {
         this.app.camera.frame(this.app.look.box, this.room());
     }
 
-    /** A length as this collider counts them. */
+    /** Formats a length with the unit of the collider. */
     #length(v) {
         return lengthText(v, this.app.body.collider.info.unit);
     }
 
-    /** The scene has a picture by its meshes. */
+    /** Enables the picture of a scene that has render.meshes. */
     offerPicture() {
         for (const value of ["picture", "surface", "mesh", "split"]) {
             $(`show-${value}`).hidden = value === "mesh" || value === "split";
@@ -116,7 +116,7 @@ export class Panel {
         const { look, body } = this.app;
         const on = $("slice-on").checked;
         if (on && this.app.look.show === "picture") {
-            this.setShow("surface"); // which is cut
+            this.setShow("surface"); // only the surface can be sliced
         }
         const at = body.box.min[this.#axis] + Number($("slice-at").value) * body.box.size[this.#axis];
         const range = 0.1 * body.box.longest;
@@ -134,7 +134,7 @@ export class Panel {
 
     // --- maps
 
-    /** None of a scene whose bodies all deform: their maps have texels only while it plays. */
+    /** Returns the maps to list. Empty if all bodies deform: their maps have texels only while the scene plays. */
     #shownMaps() {
         const { data, body } = this.app;
         return data.scene && !data.shows ? [] : body.collider.info.maps;
@@ -152,7 +152,7 @@ export class Panel {
         this.#pictures();
     }
 
-    /** One after the other, so that the page stays alive however many there are. */
+    /** Draws the maps one by one and yields in between, so that the page stays responsive. */
     async #pictures() {
         const { body } = this.app;
         for (const [i, canvas] of [...$("maps").querySelectorAll("canvas")].entries()) {
@@ -164,7 +164,7 @@ export class Panel {
         this.picturesDone = true;
     }
 
-    /** -1: none, -2: all, each in its colour. */
+    /** i: -1 for none, -2 for all, each in its own colour. */
     selectMap(i) {
         this.#map = this.app.look.map = i;
         [...$("maps").children].forEach((button, k) => button.setAttribute("aria-pressed", k === i));
@@ -182,7 +182,7 @@ export class Panel {
         const { distance_error: distance } = (data.check.repaired ?? data.check).accuracy;
         const range = Math.max(2 * distance.p99, 1e-3 * body.box.longest);
         look.heat = $("heat").checked ? range : 0;
-        // Sheets lie in the middle of their shells: half of the thickness, which the record has if there are any.
+        // A sheet lies in the middle of its shell: subtract half of the recorded thickness, if any.
         look.depth = 0.5 * Number(/(?:^| )--thickness (?:auto=)?([0-9.e+-]+)/.exec(body.collider.info.options)?.[1] ?? 0);
         $("sheets-note").textContent = look.depth === 0 ? "" : `Sheets have a thickness of ${this.#length(2 * look.depth)} round ` +
             "the mesh: white is where they lie in its middle.";
@@ -223,7 +223,7 @@ export class Panel {
         this.app.changed(false);
     }
 
-    /** Now and then: how many particles live. share: of the pixels of each side that are drawn. */
+    /** Updates the particle count and the quality note. share: fraction of the resolution per side. */
     tick(now, share) {
         $("quality").hidden = share === 1;
         $("quality").textContent = `Coarser, to keep up: ${Math.round(100 * share)} % of the pixels each way`;
@@ -234,7 +234,7 @@ export class Panel {
         }
     }
 
-    /** The page's data is there. */
+    /** Fills the panel with the data of the page. */
     refresh() {
         const { data, body, look } = this.app;
         const { info } = body.collider;
@@ -259,7 +259,7 @@ export class Panel {
     }
 }
 
-/** The figures of `relief check`, against the mesh that was baked. */
+/** Returns the results of `relief check`, measured against the baked mesh. */
 function checkRows({ accuracy: original, repaired, sampling }, length) {
     const accuracy = repaired?.accuracy ?? original;
     const percent = (v) => `${shortNumber(v)} %`;

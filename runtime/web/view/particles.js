@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The particles of a page that plays a scene: one system of relief-particles.
-const kStepsAFrame = 3; // where the page is slow, time goes slower
+// The particles of a page that plays a scene: one ParticleSystem.
+const kStepsAFrame = 3; // maximum; a slow page runs the simulation slower than real time
 
 export class Particles {
     #owed = 0;
@@ -9,10 +9,10 @@ export class Particles {
         this.gl = gl;
         this.system = null;
         this.paused = false;
-        this.steps = 0; // grows with whatever the system does
+        this.steps = 0; // incremented by every change of the system
     }
 
-    /** @param options  of a ParticleSystem */
+    /** @param options  options of ParticleSystem */
     start(options) {
         this.system = new reliefParticles.ParticleSystem(this.gl, options);
         this.dt = this.system.info.dt;
@@ -29,7 +29,7 @@ export class Particles {
         this.steps += 1;
     }
 
-    /** As many steps as fit into `seconds`. */
+    /** Runs as many steps as fit into `seconds`. */
     advance(seconds) {
         if (!this.system || this.paused) {
             return;

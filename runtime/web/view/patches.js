@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tree of a map of patches, as formats/patch_tree.h has it.
+// The tree of a map of patches; formats/patch_tree.h describes it.
 
 const kKinds = ["outside", "inside", "split", "patch"];
 
-/** { roots, levels, words } */
+/** Returns { roots, levels, words }. */
 export function treeOf(collider, map) {
     const words = collider.tree(map);
     return { roots: [words[0] & 0xffff, words[0] >>> 16, words[1] & 0xffff], levels: words[1] >>> 16, words };
 }
 
-/** Calls visit(kind, corner, size, level) with each leaf: outside, inside or patch. Corner and size in roots. */
+/** Calls visit(kind, corner, size, level) for each leaf. kind: outside, inside or patch; corner and size: in roots. */
 export function visitLeaves({ roots, words }, visit) {
     const cell = (at, corner, size, level) => {
         const [low, high] = [words[2 * at], words[2 * at + 1]];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Beside the page's script in pages that play a scene: relief-particles, which needs WebAssembly.
+// Added to pages that play a scene: relief-particles, which needs WebAssembly.
 import * as particles from "relief-particles";
 
 globalThis.reliefParticles = particles;

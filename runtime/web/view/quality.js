@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps the page moving where a machine is slow: while frames take long, fewer pixels are drawn.
-const kPixels = [1, 0.71, 0.5]; // of each side: half as many pixels each time
-const kFrames = 10; // of which the middle one counts
+// Reduces the resolution while frames take too long.
+const kPixels = [1, 0.71, 0.5]; // fraction of the resolution per side; each level halves the pixels
+const kFrames = 10; // the median of this many frames decides
 const kSlow = 40; // ms
-const kQuick = 19; // with twice the pixels such a frame is not slow
-const kPause = 1000; // a page that slept is not slow
+const kQuick = 19; // ms; below kSlow even with twice the pixels
+const kPause = 1000; // ms; longer gaps are pauses, not slow frames
 
 export class Quality {
     #times = [];
     #last = null;
     #level = 0;
 
-    /** Of each side, while something moves. */
+    /** Fraction of the resolution per side while something moves. */
     get pixels() {
         return kPixels[this.#level];
     }
 
-    /** With each frame. moving: the next one comes as soon as it can. */
+    /** Call once per frame. moving: the next frame follows as soon as possible. */
     frame(now, moving) {
         const took = this.#last === null ? kPause : now - this.#last;
         this.#last = moving ? now : null;

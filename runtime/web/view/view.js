@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// Draws all there is. The bodies are drawn when something about them changes, and kept: particles fall before the kept
-// picture, by its depths.
+// SPDX-License-Identifier: Apache-2.0 Draws the page. Bodies are redrawn only when they change; otherwise their picture
+// is kept, and particles are drawn over it with its depth buffer.
 import { Geometry, Target, bindTexture, drawScreen, drawnBySoftware, kScreenVertex, program } from "./gl.js";
 import { kBodyVertex, kCopyFragment, kFloorFragment, kLiveVertex, kMeshFragment, kSkyFragment } from "./body_shaders.js";
 import { add, identity, normalize, scale } from "./math.js";
@@ -26,11 +25,11 @@ export class View {
 
     constructor(gl) {
         this.gl = gl;
-        this.software = drawnBySoftware(gl); // twice as fine would take seconds
-        this.bodies = []; // all that are drawn
-        this.body = null; // the one in the panel
-        this.mesh = null; // Geometry, in its object space
-        this.picture = null; // draws the scene by its meshes: takes the options of ParticleSystem.drawMeshes()
+        this.software = drawnBySoftware(gl); // supersampling would take seconds
+        this.bodies = []; // all drawn bodies
+        this.body = null; // the body in the panel
+        this.mesh = null; // Geometry, in object space
+        this.picture = null; // ParticleSystem.drawMeshes(), or null
         this.dirty = true;
         this.programs = {
             mesh: program(gl, kBodyVertex, kMeshFragment),
@@ -43,7 +42,7 @@ export class View {
         this.plane = quad(gl);
     }
 
-    /** All of a frame but what moves. look: main.js's; still: as fine as the machine can. */
+    /** Draws everything except particles. look: App.look; still: nothing moves, so supersample if possible. */
     drawBodies(matrices, width, height, look, still) {
         const fine = still && !this.software && width * height <= 2.5e6 ? 2 : 1;
         if (!this.dirty && fine <= this.#fine && this.#kept?.width === width * this.#fine &&
@@ -148,12 +147,12 @@ export class View {
         gl.disable(gl.BLEND);
     }
 
-    /** The picture of the bodies: a Target of gl.js, up to twice as fine as the canvas. */
+    /** The kept picture of the bodies: a Target, up to twice the resolution of the canvas. */
     get kept() {
         return this.#kept;
     }
 
-    /** The kept picture to the canvas, and its depths. */
+    /** Copies the kept picture and its depths to the canvas. */
     copyBodies(width, height) {
         const { gl } = this;
         gl.bindFramebuffer(gl.FRAMEBUFFER, null);

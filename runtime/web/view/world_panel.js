@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of the panel that are about the bodies of a world: the one that was picked, and the errors of a check.
+// The parts of the panel about bodies of a world: the picked body, and the errors of a check.
 import { bytesText, kWrongLegend } from "./bodies.js";
 import { shortNumber } from "./math.js";
 import { $, element } from "./panel.js";
@@ -15,7 +15,7 @@ export class WorldPanel {
         $("picked-close").onclick = () => this.pick(-1);
     }
 
-    /** The bodies are there. */
+    /** Fills the panel with the bodies of the scene. */
     refresh() {
         const { bodies, data } = this.app;
         $("fly-note").hidden = false;
@@ -64,11 +64,11 @@ export class WorldPanel {
         const body = app.bodies.placed[index];
         const longest = body ? (body.body ?? body).box.longest * Math.hypot(...body.model.slice(0, 3)) : app.look.box.longest;
         app.camera.lookAt(place.position, place.normal, 0.5 * longest);
-        app.camera.pitch = Math.max(app.camera.pitch, 0.3); // worlds stand on the ground
+        app.camera.pitch = Math.max(app.camera.pitch, 0.3); // do not look from below the ground
         this.pick(index);
     }
 
-    /** Shows a body's facts; −1: none. */
+    /** Picks a body and shows its facts; −1: none. */
     pick(i) {
         const { bodies } = this.app;
         bodies.pick(i);
