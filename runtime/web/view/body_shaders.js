@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shaders that draw a body: what its maps see, its mesh, a slice through it, the floor.
+// Shaders that draw a body: its maps, its mesh, slices, the floor.
 import { kColorsGlsl } from "./colors.js";
 import { kRayGlsl } from "./ray_shader.js";
 
@@ -15,7 +15,7 @@ void main() {
     gl_Position = u_camera * vec4(v_world, 1.0);
 }`;
 
-// The same of a mesh that deforms: its vertices are in a texture (LiveMesh of relief.d.ts).
+// Like kBodyVertex, for a deforming mesh with vertices in a texture (LiveMesh in relief.d.ts).
 export const kLiveVertex = `
 precision highp int;
 precision highp usampler2D;
@@ -35,17 +35,17 @@ void main() {
     gl_Position = u_camera * vec4(v_world, 1.0);
 }`;
 
-// Two lights: one from above the eye's left, one from behind. normal: in the world.
+// Shading by a key light from above left of the camera, ambient light of sky and earth, and a rim light.
 const kShade = `
 in vec3 v_object;
 in vec3 v_world;
 uniform mat4 u_model;
-uniform vec3 u_eye;     // in the world
-uniform vec3 u_key;     // where the light comes from
+uniform vec3 u_eye;     // world space
+uniform vec3 u_key;     // direction to the key light
 uniform vec3 u_base;    // colour of the body
 uniform vec3 u_sky;
 uniform vec3 u_earth;
-uniform vec4 u_cut;     // what lies before this plane is not drawn: normal, and its place; zero: all is
+uniform vec4 u_cut;     // fragments in front of this plane (normal, offset) are discarded; zero: none
 out vec4 o_color;
 void cut() {
     if (dot(u_cut.xyz, v_world) > u_cut.w) {
@@ -62,14 +62,15 @@ vec3 shade(vec3 base, vec3 n) {
 }
 `;
 
-// Drawn on the far sides of the collider's box: each pixel's ray is followed through the maps to the first point inside.
+// Drawn on the back faces of the collider's box: follows the ray of each pixel through the maps to the first inside
+// point.
 export const kSurfaceFragment = `${kColorsGlsl}${kShade}${kRayGlsl}
 uniform mat4 u_camera;
 uniform vec3 u_box_min;
 uniform vec3 u_box_max;
-uniform float u_deep;   // a vote deeper than this is of no surface nearby: a map's box ends, and its side is flat
-uniform int u_map;      // whose texels are coloured; -1: none, -2: all, each its own colour
-// Of what map i decides at p: of patches by the size of their cells.
+uniform float u_deep;   // a deeper vote is not of a nearby surface: the box of a map ends here with a flat side
+uniform int u_map;      // map whose texels are coloured; -1: none, -2: all maps, each in its own colour
+// Returns the colour of map i at p; for patches, it depends on the cell size.
 vec3 colorOf(int i, vec3 p) {
 #if defined(RELIEF_HAS_PATCHES)
     if (reliefIsPatches(u_relief_maps[i].info)) {
@@ -92,7 +93,7 @@ void main() {
     float until = min(min(leaves.x, leaves.y), leaves.z);
     vec3 side = enters.x == to_box ? vec3(sign(d.x), 0.0, 0.0) : enters.y == to_box ? vec3(0.0, sign(d.y), 0.0)
         : vec3(0.0, 0.0, sign(d.z));
-    vec3 n = -(mat3(u_model) * side);  // of a body that begins where the box does
+    vec3 n = -(mat3(u_model) * side);  // of a body that starts at the box
     float before = dot(u_cut.xyz, u_eye) - u_cut.w;
     float rate = dot(u_cut.xyz, mat3(u_model) * d);
     float behind = 0.0;
@@ -112,9 +113,9 @@ void main() {
     vec3 origin = eye + from * d;
     float far = until - from;
     Hit hit;
-    bool within = false;  // the eye is in the body: its far side is looked for
-    bool begins = false;  // the body does where the ray does
-    for (int k = 0; k < 2; ++k) {  // one call for both, since compilers copy it
+    bool within = false;  // the eye is in the body: search for the exit
+    bool begins = false;  // the ray starts inside
+    for (int k = 0; k < 2; ++k) {  // a single call, because compilers inline each call
         hit = follow(origin, d, 0.0, far, within);
         begins = begins || hit.t == 0.0;
         if (within || !begins || from > 0.0) {
@@ -129,7 +130,7 @@ void main() {
     vec3 within_it;
     ReliefField field;
     bool known = false;
-    for (int k = 0; k < 2 && !known; ++k) {  // deeper, if maps end a little before the surface of another one
+    for (int k = 0; k < 2 && !known; ++k) {  // deeper, in case maps end just before the surface of another map
         within_it = origin + (hit.t + inwards) * d;
         field = reliefSolid(within_it);
         known = field.map >= 0 && abs(field.distance) < u_deep && (k == 0 || field.distance < 0.0);
@@ -138,8 +139,8 @@ void main() {
     if (!begins || within) {
         n = known && dot(field.normal, field.normal) > 0.0 ? field.normal : -d;
 #if defined(RELIEF_HAS_PATCHES)
-        // Nothing that is seen faces away: the ray came through the side of a cell whose patch is of another surface, as in a thin
-        // wall. The surface there is that of the cell before.
+        // Nothing that is seen faces away: the ray came through the side of a cell whose patch is of another surface,
+        // as in a thin wall. The surface there is that of the cell before.
         if (!within && dot(n, d) > 0.0) {
             ReliefField before = reliefEvaluate(origin + (hit.t - u_tiny) * d);
             n = before.distance < u_deep && dot(before.normal, d) < 0.0 ? before.normal : -d;
@@ -159,7 +160,7 @@ void main() {
         base = field.map == u_map ? colorOf(u_map, within_it) : mix(base, vec3(dot(base, vec3(0.333))), 0.7) * 0.75;
     }
     o_color = vec4(shade(base, n), 1.0);
-    // The cut surface lies behind the picture of the slice.
+    // The cut surface is drawn behind the picture of the slice.
     float at = hit.t + (begins && !within ? behind * 100.0 * u_tiny : 0.0);
     vec4 clip = u_camera * (u_model * vec4(origin + at * d, 1.0));
     gl_FragDepth = clamp(0.5 + 0.5 * clip.z / clip.w, 0.0, 1.0);
@@ -178,7 +179,7 @@ void main() {
     o_color = vec4(shade(u_base, meshNormal()), 1.0);
 }`;
 
-// The maps' distances at the mesh's own points, where the truth is 0, or the depth of a sheet in its shell.
+// Colours the mesh by the distance of the maps. The true distance is 0, or the depth of a sheet in its shell.
 export const kHeatFragment = `${kColorsGlsl}${kShade}${kMeshNormal}
 uniform float u_range;
 uniform float u_depth;
@@ -200,7 +201,7 @@ void main() {
     vec3 color = fieldColor(field.distance, field.map, u_range);
     bool known = field.map >= 0 && field.distance < 1e29;
     float f = known ? field.distance : 1e3 * u_range;
-    // The outline, and fainter lines at fifths of the range; none where the distance jumps.
+    // Draw the outline, and fainter lines at fifths of the range, but not where the distance is discontinuous.
     float pixel = length(vec2(dFdx(f), dFdy(f)));
     float size = length(fwidth(v_object));
     if (known && pixel < 4.0 * size && pixel > 0.0) {
@@ -212,7 +213,7 @@ void main() {
     o_color = vec4(color, 1.0);
 }`;
 
-// A floor that fades with the distance from the bodies, with a shadow where they stand.
+// A grid on the floor that fades with the distance from the bodies.
 export const kFloorFragment = `
 in vec3 v_object;
 in vec3 v_world;
@@ -242,7 +243,7 @@ void main() {
     o_color = vec4(mix(u_low, u_high, smoothstep(0.0, 1.0, v_uv.y)), 1.0);
 }`;
 
-// The picture of the bodies, kept from frame to frame: colours averaged, and depths for what comes on top.
+// Copies the kept picture of the bodies: averages the colours, and copies the depths for particles drawn on top.
 export const kCopyFragment = `
 precision highp sampler2D;
 uniform sampler2D u_color;

@@ -26,17 +26,17 @@ vec3 oklch(float lightness, float chroma, float hue) {
                         0.2309699292, -0.3413193965, 1.7076147010) * lms, 0.0, 1.0);
     return mix(12.92 * c, 1.055 * pow(max(c, 1e-6), vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
 }
-// u: distance over its largest shown value; blue inside, orange outside.
+// u: distance divided by the displayed range; blue inside, orange outside.
 vec3 distanceColor(float u) {
     float amount = min(abs(u), 1.0);
     float chroma = 0.135 * sqrt(amount) * (1.0 - 0.25 * amount);
     return oklch(0.97 - 0.56 * amount, chroma, u < 0.0 ? 255.0 : 60.0 - 12.0 * amount);
 }
-// Neighbours in the list look unlike.
+// Consecutive maps have distinct colours.
 vec3 mapColor(int i) {
     return oklch(0.74, 0.13, 25.0 + mod(137.508 * float(i), 360.0));
 }
-// Of a cell of map i's patches. level: 0 of a root, 1 of the smallest.
+// The colour of a cell of map i. level: 0 for a root, 1 for the smallest cells.
 vec3 levelColor(int i, float level) {
     return oklch(0.9 - 0.36 * level, 0.05 + 0.11 * level, 25.0 + mod(137.508 * float(i), 360.0));
 }

@@ -1,33 +1,32 @@
-// SPDX-License-Identifier: Apache-2.0
-// A ray through a collider's maps, without steps that a thin sheet could slip through: within a texel the side that a map sees
-// changes only where the ray meets the texel's planes or its border, and those are found in closed form; so it is within a square
-// between four heights of a patch. While one map sees outside, the ray is outside; so it goes on to where that map's stretch ends,
-// and evaluates the maps again.
+// SPDX-License-Identifier: Apache-2.0 Casts a ray through a collider without fixed steps, which could miss a thin
+// sheet. Within a texel, the side that a map sees changes only where the ray meets the texel's planes or its border.
+// These intersections are computed in closed form, as are those with the bilinear surface of a patch. While any map
+// sees outside, the ray is outside, so it advances to the end of that map's stretch and evaluates the maps again.
 //
-//     map 0   ····o───────────────┐                 o: evaluates; each stretch of a map that sees outside is one step
+//     map 0   ····o───────────────┐                 o: evaluation; each stretch that a map sees outside is one step
 //     map 1                       o─────┐
-//     map 0                             o──┐        here no map sees outside, and one at least sees inside: a hit
+//     map 0                             o──┐        no map sees outside here, and at least one sees inside: a hit
 //                                          x━━━━
 //
-// Behind collider.glsl (GpuCollider.glsl), whose votes it takes apart: it changes with those.
+// Inserted after collider.glsl (GpuCollider.glsl). It repeats parts of the votes of collider.glsl; keep them in sync.
 export const kRayGlsl = `
-uniform float u_tiny;       // lengths along a ray below this are none, object units
-uniform int u_steps;        // of a ray, at most
-uniform highp sampler3D u_clear;  // cells.js
+uniform float u_tiny;       // minimum step along a ray, object units
+uniform int u_steps;        // maximum steps per ray
+uniform highp sampler3D u_clear;  // empty space (cells.js)
 uniform vec3 u_cells_from;
-uniform float u_cell;           // their side
+uniform float u_cell;           // side of a cell
 
 const float NEVER = 1e30;
 
-// The side that a map sees of a ray from t on, up to end: 1 outside, -1 inside, 0 nothing. border: what ends it is no surface but a
-// border of the texel, across axis 0, 1 or 2 of the map; else -1.
+// A stretch of a ray, from t to end, that a map sees on one side: 1 outside, -1 inside, 0 abstains. border: -1 if the
+// stretch ends at a surface; the map axis 0, 1 or 2 if it ends at a border of the texel across that axis.
 struct Stretch {
     int side;
     float end;
     int border;
 };
 
-// The votes of a texel's two surfaces; of a single one the other is inside.
+// Computes the votes of the two surfaces of a texel. If there is only one, the other vote is far inside.
 bool surfaces(ivec4 info, ReliefSight sight, out vec2 votes) {
     bool found;
     votes = vec2(RELIEF_FAR_INSIDE);
@@ -51,7 +50,7 @@ bool surfaces(ivec4 info, ReliefSight sight, out vec2 votes) {
     return found;
 }
 
-// From where to where two votes, which change evenly from (t0, f0) to (t1, f1), are both below 0; empty: from > to.
+// Returns the range where two votes, linear from (t0, f0) to (t1, f1), are both below 0; empty if x > y.
 vec2 bothBelow(float t0, float t1, vec2 f0, vec2 f1) {
     vec2 span = vec2(t0, t1);
     for (int k = 0; k < 2; ++k) {
@@ -65,7 +64,7 @@ vec2 bothBelow(float t0, float t1, vec2 f0, vec2 f1) {
     return span;
 }
 
-// The part at t of a texel's stretch that ends at t1. span: where it is inside; hollow: where it is outside.
+// Returns the stretch at t within a texel that ends at t1. span: the inside range, or the outside range if hollow.
 Stretch partAt(vec2 span, bool hollow, float t, float t1, int border) {
     float begins = hollow ? span.x : span.x - u_tiny;
     float ends = hollow ? span.y - u_tiny : span.y;
@@ -79,7 +78,7 @@ Stretch partAt(vec2 span, bool hollow, float t, float t1, int border) {
     return Stretch(-within, span.x, -1);
 }
 
-// When a ray enters and leaves low … high along each axis.
+// Computes where a ray enters and leaves the range low … high on each axis.
 void slabs(vec3 o, vec3 d, vec3 low, vec3 high, out vec3 enters, out vec3 leaves) {
     vec3 inverse = 1.0 / (d + 1e-20 * (vec3(1.0) - abs(sign(d))));
     vec3 a = (low - o) * inverse;
@@ -92,7 +91,7 @@ int leastOf(vec3 v) {
     return v.x <= v.y && v.x <= v.z ? 0 : v.y <= v.z ? 1 : 2;
 }
 
-// o, d: in the map's space, d for a unit of t. far: where the ray ends.
+// o, d: origin and direction per unit of t, in map space. far: end of the ray.
 Stretch aheadOrthographic(int i, vec3 o, vec3 d, float t, float far) {
     ivec4 info = u_relief_maps[i].info;
     ivec4 place = u_relief_maps[i].place;
@@ -113,7 +112,7 @@ Stretch aheadOrthographic(int i, vec3 o, vec3 d, float t, float far) {
     if (!in_depth && (!encloses || empty_is_outside)) {
         return Stretch(beyond, to_depth, 2);
     }
-    // The texel: a little ahead, so that a border belongs to the next one.
+    // Looks slightly ahead, so that a border belongs to the next texel.
     vec3 q = o + t * d;
     ivec2 at = clamp(ivec2(floor(q.xy + 2e-3 * sign(d.xy))), ivec2(1), ivec2(last) - 1);
     vec3 enters_texel, ends;
@@ -141,7 +140,7 @@ Stretch aheadOrthographic(int i, vec3 o, vec3 d, float t, float far) {
     return partAt(bothBelow(t, t1, votes, votes_then), false, t, t1, border);
 }
 
-// On face f of a cube: s and t times the major axis, and that.
+// Returns coordinates on a cube face: s and t, both times the major axis, and the major axis.
 vec3 onFace(int face, vec3 v) {
     float way = (face & 1) == 0 ? 1.0 : -1.0;
     return face < 2 ? vec3(-way * v.z, -v.y, way * v.x)
@@ -170,7 +169,7 @@ Stretch aheadCube(int i, vec3 o, vec3 d, float t, float far) {
     vec3 st_face = reliefCubeCoordinates(reliefUnit(ahead));
     int face = int(st_face.z);
     ivec2 at = min(ivec2(st_face.xy * width), ivec2(place.w - 1));
-    // The texel's borders are planes through the centre.
+    // The borders of a texel are planes through the centre.
     vec3 from = onFace(face, o);
     vec3 way = onFace(face, d);
     float t1 = in_volume ? volume_ends : to_volume;
@@ -203,7 +202,7 @@ Stretch aheadCube(int i, vec3 o, vec3 d, float t, float far) {
         votes_then.x = reliefOctahedralPlane(normal, depth, reliefFromMap(i, o + t1 * d), ray_object);
         return partAt(bothBelow(t, t1, votes, votes_then), false, t, t1, -1);
     }
-    // A sphere: inside it is inside, or outside where the farthest surface is kept the other way round.
+    // A sphere: its interior is inside, or outside if the map keeps the farthest surface.
     float half_way = -reliefDot(o, d) / reliefDot(d, d);
     vec3 nearest = o + half_way * d;
     float left = depth * depth - reliefDot(nearest, nearest);
@@ -214,8 +213,9 @@ Stretch aheadCube(int i, vec3 o, vec3 d, float t, float far) {
 }
 
 #if defined(RELIEF_HAS_PATCHES)
-// Over a square of a patch, r after a place x of it: the depth less the height of the bilinear surface is f.x r^2 + f.y r + f.z.
-// dx: change of x with r; z, dz: the depth above the height of code 0; codes: of the corners; unit: the height of a step.
+// Returns the coefficients f of the depth above the bilinear surface of a square: f.x r^2 + f.y r + f.z, with r the
+// distance from x along the ray. x, dx: place in the square, and its change with r; z, dz: depth above code 0, and its
+// change with r; codes: of the corners; unit: height of one code step.
 vec3 overSquare(vec2 x, vec2 dx, float z, float dz, vec4 codes, float unit) {
     vec2 by = codes.yz - codes.x;
     float twist = codes.w - codes.z - by.x;
@@ -223,7 +223,7 @@ vec3 overSquare(vec2 x, vec2 dx, float z, float dz, vec4 codes, float unit) {
                 z - unit * (codes.x + by.x * x.x + by.y * x.y + twist * x.x * x.y));
 }
 
-// The first zero of f.x r^2 + f.y r + f.z behind 0; NEVER: none.
+// Returns the first positive zero of f.x r^2 + f.y r + f.z, or NEVER.
 float firstZero(vec3 f) {
     float root = f.y * f.y - 4.0 * f.x * f.z;
     float sum = -0.5 * (f.y + (f.y < 0.0 ? -1.0 : 1.0) * sqrt(max(root, 0.0)));
@@ -233,10 +233,10 @@ float firstZero(vec3 f) {
     return root >= 0.0 ? least : NEVER;
 }
 
-const int SQUARES_MAX = 10;  // that a ray crosses in a patch: 4 + 3, and what rounding adds
+const int SQUARES_MAX = 10;  // squares that a ray can cross in a patch: 4 + 3, plus rounding
 
-// The stretch in a patch. The ray: q + s way in its cell's unit cube, from s = tiny / 2 to ends at most; the stretch ends at an
-// s. border: of the cell.
+// Returns the stretch in a patch. The ray is q + s way in the unit cube of the cell, from s = tiny / 2 to ends; the end
+// of the result is a value of s. border: of the cell.
 Stretch aheadInPatch(int first, uvec2 record, vec3 q, vec3 way, float tiny, float ends, int border) {
     vec3 from = reliefPatchAcross(record, q);
     vec3 across = reliefPatchAcross(record, way) - reliefPatchAcross(record, vec3(0.0));
@@ -244,7 +244,7 @@ Stretch aheadInPatch(int first, uvec2 record, vec3 q, vec3 way, float tiny, floa
     float unit = reliefPatchStep(record);
     int above = (record.x & 16u) != 0u ? -1 : 1;
     float here = 0.5 * tiny;
-    // Above and below all heights there is nothing to look for.
+    // No intersections above or below all heights.
     float inverse = 1.0 / (across.z + (abs(across.z) < 1e-20 ? 1e-20 : 0.0));
     vec2 range = (vec2(-1.0, 256.0) * unit - from.z) * inverse;
     range = vec2(min(range.x, range.y), max(range.x, range.y));
@@ -266,7 +266,7 @@ Stretch aheadInPatch(int first, uvec2 record, vec3 q, vec3 way, float tiny, floa
         vec3 f = overSquare(x + here * dx - corner, dx, from.z + here * across.z, across.z,
                             reliefPatchCodes(first, record, corner, squares), unit);
         over = k == 0 ? f.z >= 0.0 : over;
-        float zero = here + (over == (f.z >= 0.0) ? firstZero(f) : 0.0);  // else rounding hid it behind the square before
+        float zero = here + (over == (f.z >= 0.0) ? firstZero(f) : 0.0);  // otherwise rounding moved it into the square before
         if (zero <= next) {
             return Stretch(over ? above : -above, max(zero, tiny), -1);
         }
@@ -275,8 +275,8 @@ Stretch aheadInPatch(int first, uvec2 record, vec3 q, vec3 way, float tiny, floa
     return Stretch(over ? above : -above, here < last ? here : ends, here < last ? -1 : border);
 }
 
-// The stretch in a leaf's patch or its pair: one patch alone decides that a point is outside of both, or inside of either. One call
-// for both, since compilers copy it.
+// Returns the stretch in the patch or the pair of a leaf. In a pair, one patch can decide the side of a point. The loop
+// keeps a single call, because compilers inline each call.
 Stretch aheadInLeaf(int first, uvec2 record, vec3 q, vec3 way, float tiny, float ends, int border) {
     bool pair = (record.x & 15u) == 15u;
     int at = first + int(record.y & 0xffffffu);
@@ -292,7 +292,7 @@ Stretch aheadInLeaf(int first, uvec2 record, vec3 q, vec3 way, float tiny, float
     return stretch;
 }
 
-// Leaf by leaf of a tree, and in a patch from one crossing of its surface to the next.
+// Advances leaf by leaf through the tree, and from crossing to crossing within a patch.
 Stretch aheadPatches(int i, vec3 o, vec3 d, float t, float far) {
     int beyond = reliefHas(u_relief_maps[i].info, RELIEF_ENCLOSES) ? 1 : 0;
     ivec4 place = u_relief_maps[i].place;
@@ -301,7 +301,7 @@ Stretch aheadPatches(int i, vec3 o, vec3 d, float t, float far) {
     slabs(o, d, vec3(0.0), roots, enters, leaves);
     float volume = max(max(enters.x, enters.y), enters.z);
     float volume_ends = min(min(leaves.x, leaves.y), leaves.z);
-    float next = t + 0.5 * u_tiny;  // a little ahead, so that a border belongs to the next cell
+    float next = t + 0.5 * u_tiny;  // slightly ahead, so that a border belongs to the next cell
     if (next < volume || next >= volume_ends) {
         bool comes = next < volume && volume < volume_ends;
         return Stretch(beyond, comes ? max(volume, t + u_tiny) : NEVER, comes ? leastOf(-enters) : -1);
@@ -347,15 +347,15 @@ Stretch ahead(int i, vec3 origin, vec3 d, float t, float far) {
     return aheadOrthographic(i, o, way, t, far);
 }
 
-// The first point of a ray inside, or the first one outside.
+// The first inside point of a ray, or the first outside one.
 struct Hit {
-    float t;     // NEVER: nowhere
-    float ends;  // where this part of it ends
-    int map;     // that saw outside last; -1: it begins so
-    int border;  // as Stretch has it
+    float t;     // NEVER: none
+    float ends;  // end of the stretch at t
+    int map;     // the last map that saw outside; -1: the ray starts here
+    int border;  // as in Stretch
 };
 
-// Whether a map sees the cell of a point outside, and where the ray leaves that cell.
+// Returns whether a map sees the whole cell of a point outside. ends: where the ray leaves the cell.
 bool clearAhead(vec3 origin, vec3 d, float t, out float ends) {
     vec3 o = (origin - u_cells_from) / u_cell;
     vec3 way = d / u_cell;
@@ -366,7 +366,8 @@ bool clearAhead(vec3 origin, vec3 d, float t, out float ends) {
     return texelFetch(u_clear, ivec3(cell), 0).r > 0.5;
 }
 
-// d: unit length, object space. inside: what is looked for is the first point outside.
+// Follows a ray. d: unit length, object space. inside: search for the first outside point instead of the first inside
+// one.
 Hit follow(vec3 origin, vec3 d, float t, float far, bool inside) {
     Hit hit = Hit(NEVER, NEVER, -1, -1);
     float cell_ends = t;
