@@ -139,8 +139,8 @@ void main() {
     if (!begins || within) {
         n = known && dot(field.normal, field.normal) > 0.0 ? field.normal : -d;
 #if defined(RELIEF_HAS_PATCHES)
-        // Nothing that is seen faces away: the ray came through the side of a cell whose patch is of another surface,
-        // as in a thin wall. The surface there is that of the cell before.
+        // A visible surface cannot face away: the ray entered through the side of a cell whose patch is of another
+        // surface, as in a thin wall. Use the surface of the previous cell.
         if (!within && dot(n, d) > 0.0) {
             ReliefField before = reliefEvaluate(origin + (hit.t - u_tiny) * d);
             n = before.distance < u_deep && dot(before.normal, d) < 0.0 ? before.normal : -d;

@@ -266,7 +266,8 @@ Stretch aheadInPatch(int first, uvec2 record, vec3 q, vec3 way, float tiny, floa
         vec3 f = overSquare(x + here * dx - corner, dx, from.z + here * across.z, across.z,
                             reliefPatchCodes(first, record, corner, squares), unit);
         over = k == 0 ? f.z >= 0.0 : over;
-        float zero = here + (over == (f.z >= 0.0) ? firstZero(f) : 0.0);  // otherwise rounding moved it into the square before
+        // If the signs differ, rounding hid the zero in the previous square.
+        float zero = here + (over == (f.z >= 0.0) ? firstZero(f) : 0.0);
         if (zero <= next) {
             return Stretch(over ? above : -above, max(zero, tiny), -1);
         }
