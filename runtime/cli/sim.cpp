@@ -33,51 +33,105 @@ std::optional<FrameSize> parseFrameSize(std::string_view text) {
     return size[0] > 0 && size[1] > 0 ? std::optional(FrameSize{size[0], size[1]}) : std::nullopt;
 }
 
-/// What is written, and how often.
+// Sections of --help.
+constexpr const char* kOutput = "Output";
+constexpr const char* kFrames = "Frames and pictures";
+constexpr const char* kSimulation = "Simulation";
+constexpr const char* kLimits = "Limits";
+
 void addOutputs(CLI::App& app, SimCommand& command) {
+    PlayerOptions& player = command.player;
+    addOption(app, "--dump", player.dump,
+              "Write the particles at the end as PLY, or as OpenVDB points if the name ends in .vdb; - for "
+              "standard output")
+        ->valueText("OUT.ply")
+        ->group(kOutput);
+    addWords(app, "--dump-format", command.dump_format,
+             WordsFor<DumpFormat>{{"ply", DumpFormat::kPly}, {"vdb", DumpFormat::kVdb}},
+             "Format of --dump and --dump-frames (default: vdb if the name of --dump ends in .vdb, else ply)")
+        ->group(kOutput);
+    addOption(app, "--events", player.events, "Write each hit as a line of JSON; - for standard output")
+        ->valueText("OUT.jsonl")
+        ->group(kOutput);
+    addOption(app, "--events-min-speed", player.events_min_speed,
+              "Omit hits slower than V from --events, in world units per second (default: 0)")
+        ->valueText("V")
+        ->needs("--events")
+        ->transform(number(0.0F, 1e9F, "a speed, 0 or more"))
+        ->group(kOutput);
+}
+
+void addFrames(CLI::App& app, SimCommand& command) {
     PlayerOptions& player = command.player;
     addOption(
         app, "--frames", player.frames,
-        "Write frame_0000.png and so on into this folder, made if missing. Frames of an earlier run are "
-        "overwritten one by one; any beyond this run's last stay")
-        ->valueText("DIR");
+        "Write pictures frame_0000.png and so on to this folder; it is created if missing, and other files "
+        "in it are kept")
+        ->valueText("DIR")
+        ->group(kFrames);
     addParsed(app, "--size", command.size, parseFrameSize, "a size such as 960x720, each side at least 1",
-              "Size of the frames in pixels, instead of the scene's")
+              "Size of the pictures in pixels (default: render.size of the scene)")
         ->valueText("WxH")
-        ->needs("--frames");
-    addOption(app, "--seed", player.overrides.seed, "Seed of the births, instead of the scene's")
-        ->valueText("S")
-        ->transform(wholeNumber(0, kSeedMax));
-    addOption(app, "--dump", player.dump, "Write the final particles; - for standard output")
-        ->valueText("OUT.ply");
+        ->needs("--frames")
+        ->group(kFrames);
     addOption(app, "--dump-frames", player.dump_frames,
-              "Write particles_0000.ply and so on into this folder, made if missing, as often as frames")
-        ->valueText("DIR");
-    addWords(app, "--dump-format", command.dump_format,
-             WordsFor<DumpFormat>{{"ply", DumpFormat::kPly}, {"vdb", DumpFormat::kVdb}},
-             "Of --dump and --dump-frames: PLY, or points of OpenVDB; default: what --dump's name ends with, "
-             "else ply");
+              "Write the particles of each frame as particles_0000.ply and so on to this folder")
+        ->valueText("DIR")
+        ->group(kFrames);
     addOption(app, "--first-frame", player.overrides.first_frame,
-              "Step of the first frame of --frames and --dump-frames, instead of the scene's "
-              "render.first; 0: before the first step")
+              "Step of the first frame; 0: before the first step (default: render.first of the scene)")
         ->valueText("N")
-        ->transform(wholeNumber(0, kStepsMax));
+        ->transform(wholeNumber(0, kStepsMax))
+        ->group(kFrames);
     addOption(app, "--last-frame", player.overrides.last_frame,
-              "Step of the last frame, instead of the scene's render.last; the run goes on to its end")
+              "Step of the last frame; the run continues to its end (default: render.last of the scene)")
         ->valueText("N")
-        ->transform(wholeNumber(0, kStepsMax));
+        ->transform(wholeNumber(0, kStepsMax))
+        ->group(kFrames);
     addOption(app, "--frame-every", player.overrides.frame_every,
-              "Steps from frame to frame, instead of the scene's render.every")
+              "Number of steps from frame to frame (default: render.every of the scene)")
         ->valueText("N")
-        ->transform(wholeNumber(1, kStepsMax));
-    addOption(app, "--events", player.events,
-              "Write the hits while playing, a line of JSON each; - for standard output")
-        ->valueText("OUT.jsonl");
-    addOption(app, "--events-min-speed", player.events_min_speed,
-              "Leave hits out of --events that are slower, world units a second")
-        ->valueText("V")
-        ->needs("--events")
-        ->transform(number(0.0F, 1e9F, "a speed, 0 or more"));
+        ->transform(wholeNumber(1, kStepsMax))
+        ->group(kFrames);
+}
+
+void addSimulation(CLI::App& app, SimCommand& command) {
+    PlayerOptions& player = command.player;
+    addOption(app, "--steps", player.overrides.steps,
+              "Number of steps to simulate (default: time.steps of the scene)")
+        ->valueText("N")
+        ->transform(wholeNumber(0, kStepsMax))
+        ->group(kSimulation);
+    addOption(app, "--seed", player.overrides.seed,
+              "Random seed of the emitters (default: those of the scene)")
+        ->valueText("S")
+        ->transform(wholeNumber(0, kSeedMax))
+        ->group(kSimulation);
+    addOption(
+        app, "--root", player.overrides.root,
+        "Allow the scene to name files in this folder by .. (default: only files in the scene's own "
+        "folder)")
+        ->valueText("DIR")
+        ->group(kSimulation);
+    addWords(app, "--api", player.gpu.api,
+             WordsFor<GlApi>{{"gl", GlApi::kGl33Core}, {"gles", GlApi::kGles30}},
+             "Use OpenGL 3.3 (gl) or OpenGL ES 3.0 (gles) (default: gl)")
+        ->group(kSimulation);
+    addWords(
+        app, "--path", player.path,
+        WordsFor<StepPath>{
+            {"auto", StepPath::kAuto}, {"fragment", StepPath::kFragment}, {"compute", StepPath::kCompute}},
+        "Use fragment or compute shaders (OpenGL 4.3, OpenGL ES 3.1) for particles (default: auto, which "
+        "uses "
+        "compute if the GPU supports it)")
+        ->group(kSimulation);
+}
+
+void addLimits(CLI::App& app, PlayerOptions& player) {
+    const std::vector<OptionRef> gpu = addFields(app, player.gpu);  // --device, --gpu-timeout
+    gpu.front()->group(kSimulation);
+    gpu.back()->group(kLimits);
+    addMemoryOption(app, player.overrides.limits)->group(kLimits);
 }
 
 /// Options that have no effect together.
@@ -162,41 +216,31 @@ void defineSim(CLI::App& app, SimCommand& command) {
     setUpHelp(app);
     describeApp(
         app,
-        "Plays a scene against a baked collider\n\n"
-        "Headless: particles fall, collide and rest. Given a collider or a world alone it lets snow fall on "
-        "it.",
+        "Simulates particles that collide with a baked collider\n\n"
+        "Runs a scene on the GPU, without a window, and writes pictures and particles. A collider or a "
+        "world without a scene\nruns with a default scene, in which snow falls on it.",
         "relief-sim bunny_in_the_snow.toml --frames frames --dump snow.ply");
     addOption(app, "INPUT", command.player.input, "Scene (.toml), collider (.relief) or world (world.json)")
         ->typeName("SCENE.toml|COLLIDER.relief|WORLD.json");
-    addOption(app, "--steps", command.player.overrides.steps, "Steps to play, instead of the scene's")
-        ->valueText("N")
-        ->transform(wholeNumber(0, kStepsMax));
     addOutputs(app, command);
-    addOption(app, "--root", command.player.overrides.root,
-              "Folder whose files the scene may name too, by ..; default: those of its own folder alone")
-        ->valueText("DIR");
-    addMemoryOption(app, command.player.overrides.limits);
     const OptionRef check =
-        addFlag(app, "--check", command.check,
-                "Only check the scene and what it names, without a GPU: one line, or the first error");
-    addWords(app, "--api", command.player.gpu.api,
-             WordsFor<GlApi>{{"gl", GlApi::kGl33Core}, {"gles", GlApi::kGles30}},
-             "gl for OpenGL 3.3 (default), gles for OpenGL ES 3.0");
-    addWords(
-        app, "--path", command.player.path,
-        WordsFor<StepPath>{
-            {"auto", StepPath::kAuto}, {"fragment", StepPath::kFragment}, {"compute", StepPath::kCompute}},
-        "How particles step, are sorted and drawn: fragment shaders, compute shaders (OpenGL 4.3, OpenGL ES "
-        "3.1), or auto "
-        "(default): "
-        "compute on a GPU that has it");
-    addFields(app, command.player.gpu);
-    addFlag(app, "--json", command.json, "Print the report, or what --check finds, as JSON");
+        addFlag(app, "--check", command.check, "Validate the scene and all its files, and exit; needs no GPU")
+            ->group(kOutput);
+    addFlag(app, "--json", command.json, "Print the report, or the result of --check, as JSON")
+        ->group(kOutput);
     const OptionRef page =
-        addOption(app, "--page", command.page,
-                  "Only write a page that plays the scene in a browser, without a GPU: one HTML file that "
-                  "holds every file of the scene. It needs the player that scripts/build.sh web builds once")
-            ->valueText("OUT.html");
+        addOption(
+            app, "--page", command.page,
+            "Write one HTML file that plays the scene in a browser, and exit; needs no GPU, but the player "
+            "that scripts/build.sh web builds")
+            ->valueText("OUT.html")
+            ->group(kOutput);
+    addFlag(app, "-q,--quiet", command.quiet,
+            "Print no progress and no summary; errors and the output of --json remain")
+        ->group(kOutput);
+    addFrames(app, command);
+    addSimulation(app, command);
+    addLimits(app, command.player);
     for (const char* played :
          {"--frames", "--dump", "--dump-frames", "--events", "--path", "--device", "--gpu-timeout"}) {
         check->excludes(played);
@@ -206,8 +250,6 @@ void defineSim(CLI::App& app, SimCommand& command) {
          {"--check", "--json", "--steps", "--seed", "--root", "--api", "--dump-format"}) {
         page->excludes(of_run);
     }
-    addFlag(app, "-q,--quiet", command.quiet,
-            "No progress and no summary; errors still, and what --json asks for");
 }
 
 Result<void> runSim(int argc, char** argv) {

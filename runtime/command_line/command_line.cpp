@@ -70,6 +70,11 @@ class ExampleFormatter : public CLI::Formatter {
                           (app->get_parent() == nullptr ? exitCodes() : ""),
                       column_width_);
     }
+    /// Leaves out "Needs" and "Excludes"; the parser reports them.
+    std::string make_option_opts(const CLI::Option* option) const override {
+        const std::string text = Formatter::make_option_opts(option);
+        return text.substr(0, std::min(text.find(" Needs:"), text.find(" Excludes:")));
+    }
     /// In the list of verbs: the first line of the description.
     std::string make_subcommand(const CLI::App* sub) const override {
         const std::string description = sub->get_description();

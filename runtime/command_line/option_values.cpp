@@ -21,17 +21,17 @@ WordReader fieldValue(const FieldInfo& info, const std::string& must = {}) {
     };
 }
 
-/// The sentence, the default and the largest value of a count.
+/// The help of a field, with its default and the maximum of a count: "Number of … (default: 5; at most 9)".
 std::string helpOf(const FieldWords& field) {
-    std::string help(field.info.help);
+    std::string remarks;
     if (const std::string value = defaultText(field); !value.empty()) {
-        help += "; default: " + value;
+        remarks = "default: " + value;
     }
     const FieldRange& range = field.info.range;
     if (field.number && field.info.must.empty() && range.high < 1e9) {
-        help += "; at most " + numberWord(range.high);
+        remarks += (remarks.empty() ? "at most " : "; at most ") + numberWord(range.high);
     }
-    return help;
+    return std::string(field.info.help) + (remarks.empty() ? "" : " (" + remarks + ")");
 }
 
 }  // namespace
@@ -62,6 +62,10 @@ OptionRef OptionRef::excludes(OptionRef other) const {
 
 OptionRef OptionRef::excludes(const std::string& name) const {
     return option_->excludes(name);
+}
+
+OptionRef OptionRef::group(const std::string& heading) const {
+    return option_->group(heading);
 }
 
 OptionRef OptionRef::transform(const WordReader& read) const {
@@ -106,10 +110,12 @@ WordReader oneOf(std::span<const std::string_view> words) {
     return fieldValue<std::string>({.words = words});
 }
 
-void addMemoryOption(CLI::App& app, ContainerLimits& limits) {
+OptionRef addMemoryOption(CLI::App& app, ContainerLimits& limits) {
     limits.memory = kToolMemory;
-    addOption(app, "--max-memory", limits.memory,
-              "Texels that a collider may unpack to; default 160MB, or 16 times its file if that is more")
+    return addOption(app, "--max-memory", limits.memory,
+                     "Maximum size of the unpacked texels of a collider (default: 160MB, or 16 times its "
+                     "file size if "
+                     "that is larger)")
         ->valueText("BYTES")
         ->transform(fieldValue<std::uint64_t>({.unit = "bytes", .range = kFromOne}));
 }

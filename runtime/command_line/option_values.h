@@ -42,6 +42,7 @@ class OptionRef {
     OptionRef needs(const std::string& name) const;
     OptionRef excludes(OptionRef other) const;
     OptionRef excludes(const std::string& name) const;
+    OptionRef group(const std::string& heading) const;  ///< the section of --help that lists the option
     OptionRef transform(const WordReader& read) const;
     OptionRef range(double least, double most) const;
 
@@ -105,7 +106,7 @@ OptionRef addParsed(CLI::App& app, const std::string& names, std::optional<T>& f
 inline constexpr std::uint64_t kToolMemory = 160'000'000;
 
 /// Lowers limits.memory to kToolMemory, and adds --max-memory, which sets it. `limits` must outlive the app.
-void addMemoryOption(CLI::App& app, ContainerLimits& limits);
+OptionRef addMemoryOption(CLI::App& app, ContainerLimits& limits);
 
 // The fields of a struct as options of a command line: "max_error" is --max-error.
 

@@ -181,16 +181,16 @@ Result<PlayerReport> play(const PlayerOptions& options) {
 
 void fields(FieldVisitor& visit, GpuOptions& options) {
     visit("device", options.device,
-          {.help = "Use this GPU, by its number among EGL's devices",
+          {.help = "Index of the EGL device to use",
            .range = {0.0, 4294967295.0},
            .fallback = "EGL's choice",
            .value = "N",
-           .must = "the number of a device; 'eglinfo -B' lists them"});
+           .must = "the index of a device; 'eglinfo -B' lists them"});
     visit("gpu_timeout", options.timeout,
-          {.help = "Give up, with exit code 4, when the GPU does not answer for so long; 0: never",
+          {.help = "Exit with code 4 if the GPU does not respond for this long; 0: never",
            .unit = "s",
            .range = {0.0, 1e6},
-           .fallback = "60, on a software renderer 600",
+           .fallback = "60; 600 on a software renderer",
            .value = "SECONDS",
            .must = "a number of seconds from 0 (never) to 1000000"});
 }
