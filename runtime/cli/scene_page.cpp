@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The maps of a body that deforms, which have texels only while it is played: without a surface.
+/// Returns a container with empty maps for a deforming body, whose maps have texels only while the scene plays.
 Result<std::vector<std::byte>> emptyMaps(const LiveMesh& live) {
     Collider collider = live.frames;
     for (DepthMap& map : collider.maps) {
@@ -27,7 +27,7 @@ Result<std::vector<std::byte>> emptyMaps(const LiveMesh& live) {
     return writeContainer(collider, {9});
 }
 
-/// The files that the browser reads, without the scene itself.
+/// Returns the files that the browser reads, without the scene itself.
 Result<std::vector<fs::path>> filesForBrowser(const LoadedScene& loaded) {
     std::vector<fs::path> named = filesOf(loaded.scene);
     for (const WorldCollider& collider : loaded.world.colliders) {
@@ -36,7 +36,7 @@ Result<std::vector<fs::path>> filesForBrowser(const LoadedScene& loaded) {
         }
     }
     if (!loaded.scene.render.meshes.empty()) {
-        RELIEF_TRY(loadDrawnMeshes(loaded));  // fails here, not on the page
+        RELIEF_TRY(loadDrawnMeshes(loaded));  // report errors here, not on the page
         const std::vector<fs::path> drawn = RELIEF_TRY(drawnFiles(loaded));
         named.insert(named.end(), drawn.begin(), drawn.end());
     }

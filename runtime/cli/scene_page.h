@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `relief-sim --page`: a page that plays a scene in a browser.
+// Writes the page of `relief-sim --page`, which plays a scene in a browser.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@
 
 namespace relief {
 
-/// Writes the page, which holds the scene and every file that it names. Needs no GPU. The same scene gives the same bytes.
-/// \param options  a scene; only `input`, `overrides.limits` and `guard` count.
+/// Writes a page that contains the scene and every file that it names. Needs no GPU. Equal scenes give equal bytes.
+/// \param options  only `input`, `overrides.limits` and `guard` are used; `input` must be a scene.
 /// \return the warnings of the scene.
-/// Errors: kUsage: not a scene; kUnsupported: a scene with a flow, no player; those of loadAll(), checkPictures(),
-/// loadDrawnMeshes(), Page::make() and of FileGuard.
+/// Errors: kUsage (not a scene), kUnsupported (a scene with a flow; no player); those of loadAll(), checkPictures(),
+/// loadDrawnMeshes(), Page::make() and FileGuard.
 [[nodiscard]] Result<std::vector<std::string>> writeScenePage(PlayerOptions& options,
                                                               const std::string& output);
 

@@ -20,7 +20,7 @@
 namespace relief {
 namespace {
 
-/// "640x480"
+/// Parses "640x480".
 std::optional<FrameSize> parseFrameSize(std::string_view text) {
     const std::vector<std::string_view> sides = split(text, 'x');
     std::uint32_t size[2] = {0, 0};
@@ -107,10 +107,9 @@ void addSimulation(CLI::App& app, SimCommand& command) {
         ->valueText("S")
         ->transform(wholeNumber(0, kSeedMax))
         ->group(kSimulation);
-    addOption(
-        app, "--root", player.overrides.root,
-        "Allow the scene to name files in this folder by .. (default: only files in the scene's own "
-        "folder)")
+    addOption(app, "--root", player.overrides.root,
+              "Allow the scene to name files in this folder by .. (default: only files in the scene's own "
+              "folder)")
         ->valueText("DIR")
         ->group(kSimulation);
     addWords(app, "--api", player.gpu.api,
@@ -134,7 +133,7 @@ void addLimits(CLI::App& app, PlayerOptions& player) {
     addMemoryOption(app, player.overrides.limits)->group(kLimits);
 }
 
-/// Options that have no effect together.
+/// Rejects combinations of options without effect.
 Result<void> checkTogether(const SimCommand& command) {
     const PlayerOptions& player = command.player;
     const SceneOverrides& scene = player.overrides;
@@ -154,7 +153,7 @@ Result<void> checkTogether(const SimCommand& command) {
     return {};
 }
 
-/// After the work: a run that fails has one line to say.
+/// Call it after the work, so that a failed run prints only its error.
 void showWarnings(const std::vector<std::string>& warnings, bool quiet) {
     for (const std::string& warning : warnings) {
         if (!quiet) {
@@ -163,7 +162,7 @@ void showWarnings(const std::vector<std::string>& warnings, bool quiet) {
     }
 }
 
-/// --check. With --json the object comes in either case.
+/// Runs --check. With --json, prints an object on success and on failure.
 Result<void> checkOnly(const SimCommand& command) {
     const Result<CheckReport> checked = checkScene(command.player);
     if (checked) {
@@ -204,7 +203,7 @@ Result<void> playScene(SimCommand& command) {
         return printOut(jsonTextOf(played));
     }
     if (!command.quiet && (player.dump == "-" || player.events == "-")) {
-        std::fputs(reportText(played).c_str(), stderr);  // they have standard output to themselves
+        std::fputs(reportText(played).c_str(), stderr);  // standard output is used by --dump or --events
         return {};
     }
     return command.quiet ? Result<void>() : printOut(reportText(played));

@@ -13,11 +13,11 @@ class App;
 namespace relief {
 
 struct FrameSize {
-    std::uint32_t width = 0;  ///< pixels, as is the next
-    std::uint32_t height = 0;
+    std::uint32_t width = 0;   ///< pixels
+    std::uint32_t height = 0;  ///< pixels
 };
 
-/// What the options are read into.
+/// The parsed options.
 struct SimCommand {
     PlayerOptions player;
     std::optional<FrameSize> size;
@@ -28,10 +28,10 @@ struct SimCommand {
     bool quiet = false;
 };
 
-/// Gives an app named "relief-sim" its options. `command` must outlive it.
+/// Adds the options of relief-sim to an app. `command` must outlive the app.
 void defineSim(CLI::App& app, SimCommand& command);
 
-/// Parses the command line and does what it says.
+/// Parses the command line and runs it.
 [[nodiscard]] Result<void> runSim(int argc, char** argv);
 
 }  // namespace relief

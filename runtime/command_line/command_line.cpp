@@ -29,8 +29,8 @@ std::string exitCodes() {
 
 constexpr std::size_t kHelpColumns = 120;
 
-/// Breaks longer lines at their spaces. What follows stands below the description of an option.
-/// \param column  where descriptions of options begin.
+/// Wraps long lines at spaces. Continuation lines of an option are aligned with its description.
+/// \param column  column where descriptions of options start.
 std::string folded(const std::string& text, std::size_t column) {
     std::string out;
     for (std::string_view line : split(text, '\n')) {
@@ -38,7 +38,7 @@ std::string folded(const std::string& text, std::size_t column) {
         std::string before;
         while (before.size() + line.size() > kHelpColumns) {
             const std::size_t space = line.rfind(' ', kHelpColumns - before.size());
-            // Not within the indentation or the names, from which nothing would be gained.
+            // Do not break inside the indentation or the names.
             if (space == std::string_view::npos || before.size() + space <= column) {
                 break;
             }
@@ -48,11 +48,11 @@ std::string folded(const std::string& text, std::size_t column) {
         }
         out.append(before).append(line).append("\n");
     }
-    out.pop_back();  // the last line had no end of its own
+    out.pop_back();  // the last line had no newline
     return out;
 }
 
-/// Help that begins with examples: CLI11's footer, moved to the top.
+/// Help that starts with the examples: moves the footer of CLI11 to the top.
 class ExampleFormatter : public CLI::Formatter {
   public:
     std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
@@ -75,7 +75,7 @@ class ExampleFormatter : public CLI::Formatter {
         const std::string text = Formatter::make_option_opts(option);
         return text.substr(0, std::min(text.find(" Needs:"), text.find(" Excludes:")));
     }
-    /// In the list of verbs: the first line of the description.
+    /// Lists verbs with the first line of their descriptions.
     std::string make_subcommand(const CLI::App* sub) const override {
         const std::string description = sub->get_description();
         std::stringstream out;
@@ -85,7 +85,7 @@ class ExampleFormatter : public CLI::Formatter {
     }
 };
 
-/// The verb that is called, or the program.
+/// Returns the verb that was given, or the program.
 const CLI::App& calledOf(const CLI::App& app) {
     const std::vector<CLI::App*> called = app.get_subcommands();
     return called.empty() ? app : *called.front();
@@ -133,13 +133,13 @@ std::string noVerb(const CLI::App& app, const std::vector<std::string>& words, c
            (guess.empty() ? "; use one of " + listed(known) : guess);
 }
 
-/// The message for a command line that CLI11 did not take.
+/// Returns the message for a command line that CLI11 rejected.
 std::string parseErrorMessage(const CLI::App& app, const CLI::ParseError& error) {
     const CLI::App& called = calledOf(app);
     const std::string name = app.get_name() + (&called == &app ? "" : " " + called.get_name());
     const std::string help = "see " + name + " --help";
     if (error.get_name() == "ValidationError") {
-        // CLI11 writes "--option: message". Ours are sentences that begin with the option, and they hold the cure.
+        // CLI11 writes "--option: message"; our messages are sentences that start with the option.
         std::string text = error.what();
         if (const std::size_t colon = text.find(": "); colon != std::string::npos) {
             text.replace(colon, 2, " ");
@@ -161,7 +161,7 @@ std::string parseErrorMessage(const CLI::App& app, const CLI::ParseError& error)
     return cleanUtf8(error.what()) + "; " + help;
 }
 
-/// An empty word is a variable of a script that was not set. Options that may stand without a value see no difference.
+/// Rejects empty values, which usually come from unset variables of scripts, unless the value is optional.
 Result<void> refuseEmptyValues(const CLI::App& app) {
     for (const CLI::Option* option : app.get_options()) {
         const std::vector<std::string>& words = option->results();
@@ -224,7 +224,7 @@ std::vector<GivenOption> givenOptions(const CLI::App& parsed) {
 }
 
 Result<bool> parseCommandLine(CLI::App& app, std::vector<std::string> arguments) {
-    std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
+    std::reverse(arguments.begin(), arguments.end());  // CLI11 expects reverse order
     try {
         app.parse(std::move(arguments));
     } catch (const CLI::CallForHelp&) {
@@ -232,7 +232,7 @@ Result<bool> parseCommandLine(CLI::App& app, std::vector<std::string> arguments)
     } catch (const CLI::CallForVersion& version) {
         return answer(std::string(version.what()) + "\n");
     } catch (const CLI::ParseError& error) {
-        // Help is printed even if other arguments are wrong.
+        // Print help even if other arguments are invalid.
         const CLI::Option* help = calledOf(app).get_help_ptr();
         if (help != nullptr && help->count() > 0) {
             return answer(helpText(app));

@@ -8,7 +8,7 @@
 namespace relief {
 namespace {
 
-/// The words that readWord() takes for a T, as words that CLI11 converts.
+/// Validates a word by readWord() for a T, and converts it to a word that CLI11 parses.
 template <class T>
 WordReader fieldValue(const FieldInfo& info, const std::string& must = {}) {
     return [info, must](std::string& word) {

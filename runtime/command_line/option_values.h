@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The values of options: validators and transformers for CLI11 that stand in front of a typed field. Those of CLI11
-// would take 0x10, -1 for a large number, and nan, and their messages name no cure.
+// Validators and converters of option values, in place of those of CLI11, which accept 0x10, -1 for an unsigned number,
+// and nan, and whose messages name no cure.
 //
-// parseCommandLine() puts the name of the option in front of the messages.
+// parseCommandLine() prefixes messages with the name of the option.
 #pragma once
 
 #include <cstddef>
@@ -26,17 +26,17 @@ class Option;
 
 namespace relief {
 
-/// Turns a word into one that CLI11 converts. \return empty, or what is wrong: "is 'x' but must be …".
+/// Converts a word to one that CLI11 parses. \return empty, or the error: "is 'x' but must be …".
 using WordReader = std::function<std::string(std::string& word)>;
 
-/// An option of a command line, for sources that do without the header of CLI11, which takes seconds to compile.
+/// Wraps an option, so that sources need not include CLI11, which takes seconds to compile.
 class OptionRef {
   public:
     OptionRef(CLI::Option* option) : option_(option) {}  // NOLINT: implicit
     const OptionRef* operator->() const { return this; }
 
-    OptionRef valueText(const std::string& text) const;  ///< stands for the value in --help: "OUT.png"
-    OptionRef typeName(const std::string& name) const;   ///< the same of an argument without a name
+    OptionRef valueText(const std::string& text) const;  ///< name of the value in --help: "OUT.png"
+    OptionRef typeName(const std::string& name) const;   ///< the same for a positional argument
     OptionRef required() const;
     OptionRef needs(OptionRef other) const;
     OptionRef needs(const std::string& name) const;
@@ -50,25 +50,25 @@ class OptionRef {
     CLI::Option* option_;
 };
 
-/// An option that CLI11 converts: a string, a path, a number or an optional of one; option_values.cpp lists the types.
+/// Adds an option that CLI11 converts. T: string, path, number or an optional; option_values.cpp lists the types.
 template <class T>
 OptionRef addOption(CLI::App& app, const std::string& names, T& field, const std::string& help);
 OptionRef addFlag(CLI::App& app, const std::string& names, bool& field, const std::string& help);
 
-/// Decimal digits alone, from `least` to `most`.
+/// Accepts only decimal digits, from `least` to `most`.
 [[nodiscard]] WordReader wholeNumber(std::uint64_t least = 0,
                                      std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
-/// A finite float from `least` to `most`. \param must  "a number of degrees, 0 or more".
+/// Accepts a finite float from `least` to `most`. \param must  "a number of degrees, 0 or more".
 [[nodiscard]] WordReader number(float least, float most, const std::string& must);
-/// "1.5" or "1.5%", 0 or more; for a float field.
+/// Accepts "1.5" or "1.5%", 0 or more; for a float field.
 [[nodiscard]] WordReader percent();
-/// One of some words, as kWords, for a field that holds text.
+/// Accepts one of the words, for a text field.
 [[nodiscard]] WordReader oneOf(std::span<const std::string_view> words);
 
 template <class Enum>
 using WordsFor = std::vector<std::pair<std::string_view, Enum>>;
 
-/// An option that takes one of some words; the help shows them as a|b|c. \param set  gets the index of the word.
+/// Adds an option with a choice of words, shown as a|b|c in --help. \param set  called with the index of the word.
 OptionRef addWordOption(CLI::App& app, const std::string& names, std::vector<std::string_view> words,
                         std::function<void(std::size_t)> set, const std::string& help);
 template <class Field, class Enum>
@@ -85,10 +85,10 @@ OptionRef addWords(CLI::App& app, const std::string& names, Field& field, const 
         [&field, values = std::move(values)](std::size_t i) { field = values[i]; }, help);
 }
 
-/// An option of a form of its own. \param read  whether the word has that form
+/// Adds an option with its own syntax. \param read  parses the word; returns false if it is invalid.
 OptionRef addFormOption(CLI::App& app, const std::string& names, std::function<bool(const std::string&)> read,
                         const std::string& must, const std::string& help);
-/// \param parse  std::string to std::optional<T>; nullopt: not of this form.
+/// \param parse  std::string to std::optional<T>; nullopt if the word is invalid.
 template <class T, class Parse>
 OptionRef addParsed(CLI::App& app, const std::string& names, std::optional<T>& field, const Parse& parse,
                     const std::string& must, const std::string& help) {
@@ -101,17 +101,15 @@ OptionRef addParsed(CLI::App& app, const std::string& names, std::optional<T>& f
         must, help);
 }
 
-/// Bytes that the tools unpack of a file that is smaller than a sixteenth of it: a map of 4096x4096 of eight bytes a
-/// texel, and a little.
+/// Maximum size of the unpacked texels of a file, in bytes, unless 16 times the file size is larger: a map of 4096x4096
+/// texels of eight bytes, with a margin.
 inline constexpr std::uint64_t kToolMemory = 160'000'000;
 
 /// Lowers limits.memory to kToolMemory, and adds --max-memory, which sets it. `limits` must outlive the app.
 OptionRef addMemoryOption(CLI::App& app, ContainerLimits& limits);
 
-// The fields of a struct as options of a command line: "max_error" is --max-error.
-
-/// Adds an option for each field of a struct, or of a group, which must outlive the app. Messages are those of readWord(),
-/// with the name of the option in front (parseCommandLine). \return the options, in that order.
+/// Adds an option for each field of a struct or group, which must outlive the app: "max_error" becomes --max-error.
+/// \return the options, in the order of the fields.
 std::vector<OptionRef> addFields(CLI::App& app, FieldRef target);
 
 }  // namespace relief

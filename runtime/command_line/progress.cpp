@@ -24,7 +24,7 @@ using Clock = std::chrono::steady_clock;
 constexpr int kBarWidth = 30;  // characters
 constexpr auto kFirst = std::chrono::milliseconds(500);
 constexpr auto kInterval = std::chrono::milliseconds(100);
-constexpr double kUnknown = -1.0;  // how much is done
+constexpr double kUnknown = -1.0;  // progress of the stage
 
 std::string secondsText(double seconds) {
     std::array<char, 32> text{};
@@ -46,7 +46,7 @@ struct Progress::Impl {
     std::string stage;
     Clock::time_point stage_start = start;
     std::atomic<double> share{kUnknown};
-    bool shown = false;  ///< there is a line on the terminal
+    bool shown = false;  ///< the line is on the terminal
     bool ends = false;
     std::thread thread;
 
@@ -83,7 +83,7 @@ struct Progress::Impl {
         }
     }
 
-    /// The lock stays held: other threads wait for the end.
+    /// Keeps the lock, so that other threads wait for the exit.
     [[noreturn]] void timeIsUp() {
         wipe();
         TemporaryFile::removeAll();

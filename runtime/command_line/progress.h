@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The state of long work: a line on standard error, for people, only where that is a terminal; and an end to it when its time is
-// up.
+// Progress of long work: a line on standard error if that is a terminal, and an optional time limit.
 #pragma once
 
 #include <functional>
@@ -11,35 +10,35 @@
 namespace relief {
 
 struct ProgressOptions {
-    std::string name;                   ///< of what is baked: its path, as messages quote it
-    bool drawn = true;                  ///< false: no line
-    std::optional<float> seconds = {};  ///< that may pass from here to finish(); none: any
+    std::string name;                   ///< the quoted path of the work
+    bool drawn = true;                  ///< false: never draw the line
+    std::optional<float> seconds = {};  ///< time limit from construction to finish(); nullopt: none
 };
 
-/// The line names the stage, how much of it is done where that is known, and how long it has taken. It is drawn ten times
-/// a second, by a thread of its own, and not in the first half second: short work shows none.
+/// The line shows the stage, its progress if known, and the elapsed time. A thread draws it ten times per second, after
+/// the first half second, so short work shows no line.
 ///
-/// When the time is up, that thread removes the temporary files of outputs, reports an error (kLimit) that names the stage,
-/// and ends the program with its exit code. The import worker ends with the program.
+/// At the time limit, that thread removes temporary output files, reports an error (kLimit) that names the stage, and
+/// exits with its code. The import worker ends with the program.
 ///
-/// All members are for the thread that made it, but set(), which any may call.
+/// Only the creating thread may call the members, except set(), which is thread-safe.
 class Progress {
   public:
-    /// Throws std::system_error where no thread can be had to draw or to watch the time.
+    /// Throws std::system_error if it cannot start a thread.
     explicit Progress(ProgressOptions options);
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
-    /// As finish().
+    /// Calls finish().
     ~Progress();
 
-    /// \param stage  "planning the maps"
+    /// Starts a stage. \param stage  "planning the maps".
     void begin(const std::string& stage);
-    /// \param share  of the stage that is done, in [0, 1].
+    /// \param share  fraction of the stage that is done, in [0, 1].
     void set(double share);
-    /// Prints something else, which the line gives way to.
+    /// Clears the line and calls `print`.
     void print(const std::function<void()>& print);
-    /// Wipes the line; from here on the time is no longer limited. For the moment before the first output is written, so
-    /// that of several outputs all are new or none.
+    /// Clears the line and ends the time limit. Call it before writing the first output, so that either all outputs are
+    /// new or none.
     void finish();
 
   private:

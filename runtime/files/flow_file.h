@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Flow fields from files.
+// Reads flow fields from files.
 #pragma once
 
 #include <array>
@@ -16,12 +16,12 @@
 
 namespace relief {
 
-/// A scene's [flow]: a volume of little-endian 32-bit floats; x fastest, then y, then z.
+/// The [flow] of a scene: a volume of little-endian 32-bit floats, x fastest, then y, then z.
 struct FlowFile {
     std::filesystem::path path;
-    std::string origin;  ///< "scene.toml:3:7: flow.raw: ", put before every message; may be empty
+    std::string origin;                   ///< prefix of messages: "scene.toml:3:7: flow.raw: "; may be empty
     std::array<std::uint32_t, 3> size{};  ///< nodes along x, y, z
-    std::uint32_t components = 3;         ///< floats a node, 3 or 2 (then without any z)
+    std::uint32_t components = 3;         ///< floats per node: 3, or 2 (z is 0)
     glm::vec3 box_min{0.0F};
     glm::vec3 box_max{1.0F};
     FlowOutside outside = FlowOutside::kZero;
@@ -30,12 +30,12 @@ struct FlowFile {
 void fields(FieldVisitor& visit, FlowFile& flow);
 [[nodiscard]] std::optional<FieldFault> check(FlowFile& flow, const GivenFields& given);
 
-/// The largest velocity taken, in either direction: object units a second.
+/// Maximum absolute velocity, object units/s.
 inline constexpr float kFlowSpeedMax = 1e6F;
 
-/// Reads a flow; the files may be hostile.
-/// Errors, with the file's name: kIo, kInvalidInput (a wrong length, a velocity that is not finite or above kFlowSpeedMax), kLimit (see
-/// FlowField).
+/// Reads a flow from an untrusted file.
+/// Errors, with the file name: kIo; kInvalidInput (wrong length; a velocity that is not finite or above kFlowSpeedMax);
+/// kLimit (see FlowField).
 [[nodiscard]] Result<FlowField> loadFlow(const FlowFile& file);
 
 }  // namespace relief

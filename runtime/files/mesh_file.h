@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mesh files for the picture of a collider, OBJ and PLY, for bodies that move and for surfaces that give birth. Positions and faces are read;
-// polygons become fans of triangles. Files are untrusted.
+// Reads OBJ and PLY files for pictures, moving bodies and emitting surfaces: positions, colours and faces. Polygons
+// become triangle fans. Files are untrusted.
 #pragma once
 
 #include <cstddef>
@@ -19,25 +19,26 @@ inline constexpr std::size_t kMeshBytesMax = std::size_t{1} << 30;
 inline constexpr std::size_t kMeshVerticesMax = 20'000'000;
 inline constexpr std::size_t kMeshTrianglesMax = 40'000'000;
 
-/// By the file's extension, in either case: .obj or .ply. The mesh passes checkMesh; it has no normals.
-/// Errors: kUnsupported (another extension), kIo, kInvalidInput with the file and, where there are lines, the
-/// line, kLimit (the numbers above).
+/// Reads a file by its extension, .obj or .ply in either case. The mesh passes checkMesh and has no normals.
+/// Errors: kUnsupported (another extension); kIo; kInvalidInput, with the file and, for text, the line; kLimit (the
+/// maxima above).
 [[nodiscard]] Result<PictureMesh> loadPictureMesh(const std::filesystem::path& path);
 
-/// Triangles in a row of one group and one material.
+/// Consecutive triangles with the same group and material.
 struct PictureMeshPart {
-    std::size_t begin = 0;  ///< its first triangle; it ends where the next part begins
-    std::string group;      ///< by `g`, or `o`, of an .obj; "": none
+    std::size_t begin = 0;  ///< first triangle; the part ends where the next one begins
+    std::string group;      ///< `g` or `o` of an .obj; "": none
     std::string material;
 };
 struct NamedMesh {
     PictureMesh mesh;
-    std::vector<PictureMeshPart> parts;  ///< by their beginnings; triangles before the first have no names
+    std::vector<PictureMeshPart>
+        parts;  ///< in ascending order; triangles before the first part have no names
 };
-/// The same with the names that a file has: an .obj may, a .ply has none.
+/// Like loadPictureMesh(), with groups and materials, which only .obj files can have.
 [[nodiscard]] Result<NamedMesh> loadNamedMesh(const std::filesystem::path& path);
 
-/// \param extension  ".obj" or ".ply". \param name  stands for the file in messages.
+/// \param extension  ".obj" or ".ply". \param name  of the file in messages.
 /// Errors: kInvalidInput, kLimit, as above.
 [[nodiscard]] Result<PictureMesh> parsePictureMesh(std::span<const std::byte> bytes,
                                                    std::string_view extension, const std::string& name);

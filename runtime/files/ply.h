@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Particle states as PLY.
+// Encodes particle states as PLY.
 #pragma once
 
 #include <cstddef>
@@ -10,9 +10,9 @@
 
 namespace relief {
 
-/// Binary little-endian PLY, one vertex a particle in ascending order of id, 40 bytes each: float x y z
-/// (object units), vx vy vz (object units a second), age, lifetime (seconds), uint id (births before its
-/// own), type.
+/// Encodes particles as binary little-endian PLY: one vertex of 40 bytes per particle, in ascending order of id.
+/// Properties: float x y z (object units), vx vy vz (object units/s), age, lifetime (seconds), uint id (number of
+/// earlier births), type.
 [[nodiscard]] std::vector<std::byte> encodePly(std::span<const ParticleState> particles);
 
 }  // namespace relief

@@ -50,7 +50,7 @@ Result<RgbaPicture> decodePng(std::span<const std::byte> bytes, std::string_view
     picture.height = image.height;
     image.format = PNG_FORMAT_RGBA;
     picture.rgba.resize(PNG_IMAGE_SIZE(image));
-    // Frees the image, whether it succeeds or not.
+    // Always frees the image.
     if (png_image_finish_read(&image, nullptr, picture.rgba.data(), 0, nullptr) == 0) {
         return fail(ErrorCode::kInvalidInput, std::string(name) + " cannot be read as PNG: " + image.message);
     }

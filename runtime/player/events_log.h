@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The hits of a run as lines of JSON, which grow while it goes on.
+// Writes the hits of a run as lines of JSON while it is running.
 #pragma once
 
 #include <cstdint>
@@ -19,19 +19,19 @@ namespace relief {
 
 class EventsLog {
   public:
-    /// \param path       "-" for standard output
-    /// \param min_speed  slower hits are left out
+    /// \param path       "-" for standard output.
+    /// \param min_speed  slower hits are left out, world units/s.
     /// Errors: kIo.
     [[nodiscard]] static Result<EventsLog> create(const std::filesystem::path& path, float min_speed);
 
-    /// A line for each hit where the step before touched nothing. The tag is the number of the step.
-    /// \param materials  WorldTextures::materialNames()
+    /// Writes a line for each new contact. The tag of `step` is its number.
+    /// \param materials  WorldTextures::materialNames().
     /// Errors: kIo.
     [[nodiscard]] Result<void> write(const StepEvents& step, std::span<const std::string> materials);
-    /// Errors: kIo.
+    /// Flushes the file. Errors: kIo.
     [[nodiscard]] Result<void> finish();
 
-    /// Hits beyond the capacity of a step's list.
+    /// Number of hits lost because the list of a step was full.
     [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
 
   private:
@@ -46,7 +46,7 @@ class EventsLog {
     std::uint64_t dropped_ = 0;
 };
 
-// --- The lines as fields.
+// --- fields of a line
 
 struct HitLine {
     const ParticleEvent& hit = kNone<ParticleEvent>;

@@ -7,8 +7,8 @@
 namespace relief {
 namespace {
 
-constexpr double kPrintsASecond = 15.0;  // a sole stands for half a second
-constexpr double kMostPrints = 256.0;    // between two pictures
+constexpr double kPrintsASecond = 15.0;  // a foot is on the ground for about half a second
+constexpr double kMostPrints = 256.0;    // maximum between two pictures
 
 }  // namespace
 
@@ -51,7 +51,7 @@ Result<void> MeshPicture::press(double seconds) {
     const Bounds around = shadowBounds(*loaded_);
     const auto steps =
         static_cast<int>(std::clamp(std::ceil((seconds - since) * kPrintsASecond), 1.0, kMostPrints));
-    // The picture before has the prints of its own moment.
+    // The previous picture already added the footprints at its own time.
     for (int i = drawn_before_ ? 1 : 0; i < steps; ++i) {
         const double then = since + (seconds - since) * i / steps;
         RELIEF_TRY(pose(then));

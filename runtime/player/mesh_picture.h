@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The colliders of a scene as pictures show them: by the meshes of render.meshes, along their clips and waves, under the
-// scene's weather, with the prints that figures have left up to then.
+// Draws the colliders of a scene by the meshes of render.meshes, animated and deformed, with the weather of the scene
+// and the footprints that characters have left so far.
 #pragma once
 
 #include <cstdint>
@@ -19,15 +19,15 @@ class MeshPicture {
   public:
     /// Needs a current context, as draw() does.
     /// \param loaded  with render.meshes; must outlive this.
-    /// Fails as loadDrawnMeshes(), MeshRenderer and WobblePass do.
+    /// Errors: those of loadDrawnMeshes(), MeshRenderer and WobblePass.
     [[nodiscard]] static Result<MeshPicture> create(const LoadedScene& loaded);
 
-    /// Fills the target's colour and depth, with the sky where there is no mesh. Prints are of the time from the last call,
-    /// or from the scene's beginning; an earlier one adds none.
-    /// \param seconds  of the scene's time. Fails as MeshRenderer::draw() does.
+    /// Overwrites the target's colour and depth, with the sky as background. Adds the footprints since the previous
+    /// call, or since the beginning of the scene; going back in time adds none.
+    /// \param seconds  time of the scene. Errors: those of MeshRenderer::draw().
     [[nodiscard]] Result<void> draw(const CameraMatrices& camera, double seconds, const RenderTarget& target);
 
-    /// As MeshRenderer::depth().
+    /// MeshRenderer::depth().
     [[nodiscard]] const GlTexture& depth() const { return renderer_.depth(); }
 
   private:
@@ -40,8 +40,8 @@ class MeshPicture {
     const LoadedScene* loaded_;
     DrawnMeshes drawn_;
     MeshRenderer renderer_;
-    std::vector<std::pair<std::uint32_t, WobblePass>> waves_;  // of those that deform
-    double pressed_ = 0.0;                                     // seconds up to which there are prints
+    std::vector<std::pair<std::uint32_t, WobblePass>> waves_;  // of deforming meshes
+    double pressed_ = 0.0;                                     // time up to which footprints exist, seconds
     bool drawn_before_ = false;
 };
 

@@ -43,7 +43,7 @@ Result<void> checkFrames(const PlayerOptions& options, const LoadedScene& loaded
         RELIEF_TRY(guard.reads(file));
     }
     if (!options.frames.empty() && !loaded.scene.render.meshes.empty()) {
-        static_cast<void>(RELIEF_TRY(drawnFiles(loaded)));  // or a missing one is found after the first steps
+        static_cast<void>(RELIEF_TRY(drawnFiles(loaded)));  // detects missing files before the run
     }
     const std::uint32_t count = frameCount(loaded.scene);
     if (!options.frames.empty()) {

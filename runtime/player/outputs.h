@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The outputs of a run in progress: pictures, dumps, hits; each only if requested.
+// Writes the requested outputs of a run: pictures, dumps, hits.
 #pragma once
 
 #include <filesystem>
@@ -14,11 +14,11 @@
 
 namespace relief {
 
-/// Checks that the options' outputs can be written, as far as that shows before the run, and that none is the input or
-/// another output. \param guard  gets to know them.
-/// Fails as FileGuard does, and with kUnsupported (OpenVDB).
+/// Checks that the outputs can be written, as far as this is known before the run, and that none of them is the input
+/// or another output. \param guard  records them.
+/// Errors: those of FileGuard; kUnsupported (no OpenVDB).
 [[nodiscard]] Result<void> checkOutputs(const PlayerOptions& options, FileGuard& guard);
-/// The same with allFilesOf() the scene, and with the numbered files of its frames.
+/// Also checks allFilesOf() the scene, and the numbered files of its frames.
 [[nodiscard]] Result<void> checkFrames(const PlayerOptions& options, const LoadedScene& loaded,
                                        FileGuard& guard);
 
@@ -31,21 +31,21 @@ class Outputs {
     Outputs(const Outputs&) = delete;
     Outputs& operator=(const Outputs&) = delete;
 
-    /// Makes what is wanted, folders by the guard. Fails as ScenePicture and EventsLog do; kIo for folders.
+    /// Creates renderers, files and folders. Errors: those of ScenePicture and EventsLog; kIo for folders.
     [[nodiscard]] Result<void> open(FileGuard& guard);
 
-    /// Pictures or dumps are written between steps.
+    /// Returns whether pictures or dumps are written between steps.
     [[nodiscard]] bool hasFrames() const { return picture_ || !options_.dump_frames.empty(); }
-    /// A frame of every kind that is wanted, all of the same step; counts them in the report.
+    /// Writes the picture and the dump of the current step, as requested, and counts them in the report.
     [[nodiscard]] Result<void> writeFrame(const ParticleSystem& particles, PlayerReport& report);
-    /// The particles at the end: counts their collisions and contacts in the report, and writes the dump.
+    /// Counts collisions and contacts of the final particles in the report, and writes the dump.
     [[nodiscard]] Result<void> writeEnd(const ParticleSystem& particles, PlayerReport& report);
-    /// Null without events.
+    /// Returns null unless events are written.
     [[nodiscard]] EventsLog* events() { return events_ ? &*events_ : nullptr; }
 
   private:
     [[nodiscard]] Result<void> writePicture(const ParticleSystem& particles, PlayerReport& report);
-    /// Fails with kFailure where a particle is lost, and names its type by its place in the scene.
+    /// Errors: kFailure if a particle is lost, with the place of its type in the scene.
     [[nodiscard]] Result<std::vector<ParticleState>> readParticles(const ParticleSystem& particles) const;
     [[nodiscard]] Result<void> writeDump(std::span<const ParticleState> particles,
                                          const std::filesystem::path& path) const;

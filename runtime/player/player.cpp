@@ -17,13 +17,13 @@
 namespace relief {
 namespace {
 
-// Steps between two calls of PlayerOptions::progress, and between two waits for the GPU: without them a
-// driver would be handed a whole run at once.
+// Steps between two calls of PlayerOptions::progress and between two waits for the GPU. Without waits, the driver would
+// queue the whole run.
 constexpr std::uint32_t kStepsAtOnce = 16;
-// A stretch of steps that takes longer is halved: progress moves, and no watchdog takes it for a hang.
+// Longer stretches are halved, so that progress is updated and the watchdog does not expire.
 constexpr double kStretchMsMax = 4000.0;
 
-/// The lower of the two middle ones where their number is even; 0 of none.
+/// Returns the lower median; 0 if there are no values.
 double median(std::vector<double> values) {
     if (values.empty()) {
         return 0.0;
@@ -33,7 +33,7 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
-/// The run itself: stretches of steps and, between them, frames.
+/// Runs stretches of steps, with frames between them.
 class Run {
   public:
     Run(const PlayerOptions& options, Simulation& simulation, Outputs& outputs, PlayerReport& report)
@@ -66,7 +66,7 @@ class Run {
     }
 
   private:
-    /// The step that the next stretch ends with: at a frame, if not before.
+    /// Returns the last step of the next stretch, which does not pass the next frame.
     [[nodiscard]] std::uint32_t stretchEnd() const {
         std::uint32_t end = step_ + 1;
         const std::uint32_t most = std::min(scene_.time.steps, step_ + at_once_);
@@ -76,7 +76,7 @@ class Run {
         return end;
     }
 
-    /// Steps as far as `end`, waits for them, and measures.
+    /// Runs steps up to `end`, waits for the GPU, and measures the time.
     Result<void> playStretch(std::uint32_t end) {
         const std::uint32_t first = step_;
         const std::string steps = "steps " + std::to_string(first + 1) + " to " + std::to_string(end);
@@ -97,11 +97,11 @@ class Run {
             ++step_;
         }
         RELIEF_TRY(waitForGpu(steps));
-        // A step returns no error, so births that found no room would go unnoticed.
+        // A step returns no error if the GPU is out of memory, so check here.
         return checkAllocated(steps, "choose a smaller capacity");
     }
 
-    /// Tells how far the run is, and writes a frame where one is due.
+    /// Reports progress, and writes a frame if one is due.
     Result<void> afterStretch() {
         if (options_.progress) {
             options_.progress(step_, scene_.time.steps);
@@ -119,7 +119,7 @@ class Run {
     std::uint32_t step_ = 0;  // steps taken
     std::uint32_t at_once_ = kStepsAtOnce;
     double spent_ms_ = 0.0;
-    std::vector<double> stretches_;  // ms per step of each
+    std::vector<double> stretches_;  // ms per step
 };
 
 Result<std::unique_ptr<GlContext>> makeContext(const PlayerOptions& options) {
@@ -132,7 +132,7 @@ Result<std::unique_ptr<GlContext>> makeContext(const PlayerOptions& options) {
     return context;
 }
 
-/// A warning about a run in which most births found no free place.
+/// Returns a warning if most births were rejected.
 std::optional<std::string> refusedWarning(const ParticleCounts& counts, std::uint32_t capacity) {
     const std::uint64_t asked = counts.born + counts.refused;
     if (counts.refused <= counts.born) {
@@ -146,7 +146,6 @@ std::optional<std::string> refusedWarning(const ParticleCounts& counts, std::uin
 }  // namespace
 
 Result<PlayerReport> play(const PlayerOptions& options) {
-    // Cheap checks come first.
     FileGuard guard = options.guard;
     RELIEF_TRY(checkOutputs(options, guard));
     auto loaded = RELIEF_TRY(loadAll(options.input, options.overrides));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options of a run of the player, and its report.
+// Options and report of a run.
 #pragma once
 
 #include <chrono>
@@ -22,10 +22,10 @@ namespace relief {
 
 struct GpuOptions {
     GlApi api = GlApi::kGl33Core;
-    std::optional<std::size_t> device;  ///< whether there is such a device shows when a context is made
-    std::optional<double> timeout;      ///< seconds; 0: never
+    std::optional<std::size_t> device;  ///< EGL device index, checked when the context is created
+    std::optional<double> timeout;      ///< seconds; 0: no limit
 
-    /// In whole milliseconds, rounded up, for 0 means never. A software renderer does not hang, it takes its time.
+    /// Returns the limit in milliseconds, rounded up because 0 means none. Software renderers have a longer default.
     [[nodiscard]] std::chrono::milliseconds limit(bool software) const {
         return std::chrono::milliseconds(
             static_cast<std::int64_t>(std::ceil(timeout.value_or(software ? 600.0 : 60.0) * 1000.0)));
@@ -38,44 +38,46 @@ void fields(FieldVisitor& visit, GpuOptions& options);
 enum class DumpFormat : std::uint8_t { kPly, kVdb };
 
 struct PlayerOptions {
-    /// A scene (.toml), or a collider (.relief) or a world (.json), for which the default scene is played.
+    /// A scene (.toml), or a collider (.relief) or world (.json), for which the default scene runs.
     std::filesystem::path input;
     SceneOverrides overrides;
-    /// Knows what else the program reads and writes, a report on standard output for one.
+    /// Tracks all files that the program reads and writes, including standard output.
     FileGuard guard;
-    /// Folder for frame_0000.png and so on, made if missing; empty: no pictures.
+    /// Folder for frame_0000.png and so on, created if missing; empty: no pictures.
     std::filesystem::path frames;
-    std::filesystem::path dump;  ///< the final particles, "-" for standard output; empty: none
-    /// Folder for particles_0000.ply and so on, as often as frames; empty: none.
+    std::filesystem::path dump;  ///< file for the final particles, "-" for standard output; empty: none
+    /// Folder for the particles of each frame, particles_0000.ply and so on; empty: none.
     std::filesystem::path dump_frames;
-    DumpFormat dump_format = DumpFormat::kPly;  ///< of both
-    std::filesystem::path
-        events;  ///< hits as lines of JSON (events_log.h), "-" for standard output; empty: none
-    std::optional<float> events_min_speed;  ///< slower hits are left out; nullopt: none
+    DumpFormat dump_format = DumpFormat::kPly;  ///< of both dumps
+    /// File for hits as lines of JSON (events_log.h), "-" for standard output; empty: none.
+    std::filesystem::path events;
+    std::optional<float> events_min_speed;  ///< world units/s; slower hits are left out; nullopt: 0
     GpuOptions gpu;
     StepPath path = StepPath::kAuto;
-    Watchdog* watchdog = nullptr;  ///< fed while the GPU works; or null
-    std::function<void(std::uint32_t step, std::uint32_t steps)> progress;  ///< now and then; may be empty
+    Watchdog* watchdog = nullptr;  ///< may be null
+    std::function<void(std::uint32_t step, std::uint32_t steps)>
+        progress;  ///< called between steps; may be empty
 };
 
 struct PlayerReport {
-    Scene scene;                          ///< as played: overridden by the options, every default filled in
+    Scene scene;                          ///< with overrides and all defaults
     std::string device;                   ///< GlContext::description()
-    StepPath path = StepPath::kFragment;  ///< that was taken: not kAuto
+    StepPath path = StepPath::kFragment;  ///< the path used, never kAuto
     std::size_t collider_maps = 0;
-    std::size_t collider_bytes = 0;  ///< of textures on the GPU
+    std::size_t collider_bytes = 0;  ///< GPU size of the textures
     ParticleCounts counts;
     /// Steps in contact, summed over the particles alive at the end.
     std::uint64_t collisions = 0;
-    std::uint32_t in_contact = 0;  ///< alive particles that touched something in the last step
-    double ms_per_step = 0.0;      ///< wall clock, births and waiting for the GPU included; 0 without steps
-    /// The same, as the median over stretches of up to 16 steps: without the first, in which a driver still
-    /// compiles, wherever there are three or more. 0 without steps.
+    std::uint32_t in_contact = 0;  ///< live particles in contact in the last step
+    double ms_per_step =
+        0.0;  ///< mean wall-clock time, including births and waiting for the GPU; 0 without steps
+    /// Median over stretches of up to 16 steps, which excludes shader compilation in the first stretch if there are at
+    /// least three. 0 without steps.
     double ms_per_step_median = 0.0;
-    std::uint32_t frames_written = 0;   ///< pictures
-    std::uint32_t dumps_written = 0;    ///< of dump_frames
-    std::vector<std::string> warnings;  ///< what is probably not meant; one line each
-    std::uint64_t events_dropped = 0;   ///< hits that a step's list had no room for
+    std::uint32_t frames_written = 0;   ///< number of pictures
+    std::uint32_t dumps_written = 0;    ///< number of files in dump_frames
+    std::vector<std::string> warnings;  ///< probable mistakes in the scene; one line each
+    std::uint64_t events_dropped = 0;   ///< hits lost because the list of a step was full
 };
 
 }  // namespace relief

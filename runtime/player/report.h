@@ -9,13 +9,13 @@
 
 namespace relief {
 
-/// A few lines for people.
+/// Returns the report as a few lines of text.
 [[nodiscard]] std::string reportText(const PlayerReport& report);
 
-/// The JSON Schemas of all that `relief-sim` prints and logs.
+/// Returns the JSON Schemas of all outputs of `relief-sim`.
 [[nodiscard]] GeneratedTexts playerSchemas();
 
-/// "fragment" or "compute"; not of kAuto
+/// Returns "fragment" or "compute". \param path  not kAuto.
 [[nodiscard]] constexpr std::string_view stepPathName(StepPath path) {
     return path == StepPath::kCompute ? "compute" : "fragment";
 }

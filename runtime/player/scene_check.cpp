@@ -16,11 +16,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// In the line for people; worlds have thousands.
+/// Maximum number of files in checkText(); a world has thousands.
 constexpr std::size_t kFilesShown = 12;
 
 CheckedFile checkedFile(const fs::path& path, const char* kind) {
-    std::error_code error;  // read a moment ago; a pipe has no size
+    std::error_code error;  // the file was read before, but a pipe has no size
     const std::uintmax_t bytes = fs::file_size(path, error);
     return {path, kind, error ? 0 : static_cast<std::uint64_t>(bytes)};
 }
@@ -53,7 +53,7 @@ Result<CheckReport> checkScene(const PlayerOptions& options) {
             report.collider_maps += loaded.colliders[i]->maps.size();
         }
     }
-    // A streamed world was loaded by its coarse containers; a run reads the others later.
+    // Only the coarse containers of a streamed world are loaded; check the others, too.
     for (std::size_t i = 0; loaded.scene.stream && i < loaded.world.colliders.size(); ++i) {
         const std::optional<WorldFile>& coarse = loaded.world.colliders[i].coarse;
         if (coarse) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The check of a scene and of every file that it names, without a GPU.
+// Validates a scene and every file that it names, without a GPU.
 #pragma once
 
 #include <cstdint>
@@ -22,19 +22,19 @@ struct CheckedFile {
 };
 
 struct CheckReport {
-    std::vector<CheckedFile> files;  ///< the input first
+    std::vector<CheckedFile> files;  ///< starts with the input
     std::size_t world_bodies = 0;    ///< of the scene's world
     std::size_t collider_maps = 0;
     std::uint32_t steps = 0;
     std::uint32_t capacity = 0;
-    std::vector<std::string> warnings;  ///< those of loadAll()
+    std::vector<std::string> warnings;  ///< from loadAll()
 };
 
-/// Loads everything and checks what else a run would refuse whatever the GPU.
-/// Fails as loadAll, makeEmitters and checkPictures do, and with kLimit (a picture above Frame::kPixelsMax).
+/// Loads everything, and checks all further conditions of a run that do not depend on the GPU.
+/// Errors: those of loadAll, makeEmitters and checkPictures; kLimit (a picture above Frame::kPixelsMax).
 [[nodiscard]] Result<CheckReport> checkScene(const PlayerOptions& options);
 
-/// "scene.toml is valid: …", one line with a newline.
+/// Returns the line "scene.toml is valid: …", with a newline.
 [[nodiscard]] std::string checkText(const CheckReport& report);
 
 // --- `relief-sim --check --json`. Keys: README.md beside this file, "Checking a scene".
@@ -43,7 +43,7 @@ void fields(FieldVisitor& visit, const CheckedFile& file);
 
 void fields(FieldVisitor& visit, const CheckReport& report);
 
-/// Of a scene that is not valid.
+/// Output for an invalid scene.
 struct CheckFailure {
     Error error;
 };

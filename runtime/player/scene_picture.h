@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pictures of a run: everything that draws a scene, made only where frames are wanted.
+// Draws the pictures of a run.
 #pragma once
 
 #include <cstdint>
@@ -23,20 +23,21 @@ class ScenePicture {
   public:
     /// Needs a current context, as draw() does.
     /// \param loaded, textures  must outlive this. \param path  of the depth sort.
-    /// Fails as loadAtlas, loadColliderMesh and the renderers do.
+    /// Errors: those of loadAtlas, loadColliderMesh and the renderers.
     [[nodiscard]] static Result<ScenePicture> create(const LoadedScene& loaded, const WorldTextures& textures,
                                                      StepPath path);
 
-    /// The particles as they are now: 3 · width · height bytes sRGB, the top row first. Waits for the GPU.
+    /// Draws the scene with the current particles. Waits for the GPU. \return 3 · width · height bytes, sRGB, top row
+    /// first.
     [[nodiscard]] Result<std::vector<std::uint8_t>> draw(const ParticleSystem& particles);
 
   private:
     ScenePicture(const LoadedScene& loaded, Frame frame, ParticleRenderer particles)
         : loaded_(&loaded), frame_(std::move(frame)), particles_(std::move(particles)) {}
 
-    /// By maps, or by the mesh of a single collider.
+    /// Creates the renderer of maps, or of the mesh of a single collider.
     [[nodiscard]] Result<void> makeCollider(const ColliderView& view);
-    /// All behind the particles. \return its depth.
+    /// Draws everything except particles. \return the depth.
     [[nodiscard]] Result<const GlTexture*> drawColliders(const Camera& camera, double seconds);
 
     const LoadedScene* loaded_;
@@ -44,7 +45,7 @@ class ScenePicture {
     std::unique_ptr<ColliderMesh> mesh_;
     std::optional<WobblePass> wobble_;  // of mesh_
     Frame frame_;
-    std::optional<ColliderRenderer> collider_;  // or:
+    std::optional<ColliderRenderer> collider_;  // null if meshes_ is used
     std::optional<MeshPicture> meshes_;
     ParticleRenderer particles_;
     ColliderStyle collider_style_;

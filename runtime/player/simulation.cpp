@@ -20,11 +20,11 @@
 namespace relief {
 namespace {
 
-// When a step begins, the events of the one before may still be in flight, and no others. Always: the births that they
-// cause must not depend on a clock.
+// At the beginning of a step, only events of the previous step may be in flight. This is a fixed number, so that the
+// births that events cause do not depend on timing.
 constexpr int kStepsUnderWay = 1;
 
-/// \param poses  one a collider.
+/// \param poses  one per collider.
 std::vector<ColliderBody> bodiesOf(const LoadedScene& loaded, std::span<const Pose> poses) {
     std::vector<ColliderBody> bodies;
     for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
@@ -70,7 +70,7 @@ std::vector<Pose> posesAt(const Scene& scene, double time) {
 
 }  // namespace
 
-/// The colliders on the GPU: a single one without a pose in its own space, others in the world.
+/// Uploads the colliders: a single one without a pose in its object space, others in world space.
 Result<void> Simulation::makeTextures(const LoadedScene& loaded, std::unique_ptr<ColliderSource> source) {
     const SceneCollider& first = loaded.scene.colliders.front();
     const std::vector<ColliderBody> bodies = bodiesOf(loaded, posesNow(0.0));
@@ -130,7 +130,7 @@ Result<Simulation> Simulation::create(const LoadedScene& loaded, SimulationOptio
 }
 
 Result<void> Simulation::prewarm(Watchdog* watchdog, const std::function<void()>& checkpoint) {
-    // So few at once, and waited for, that no watchdog takes them for a hang.
+    // Few steps per wait, so that the watchdog does not expire.
     constexpr std::uint32_t kAtOnce = 4;
     static constexpr const char* kWhat = "warming up";
     const std::uint32_t steps = prewarmSteps(*scene_);
@@ -240,7 +240,7 @@ Result<void> Simulation::takeEvents(int in_flight) {
 }
 
 void Simulation::spawnFrom(const StepEvents& step) {
-    // Several lists are one for each spawner, also where others have replaced them since.
+    // Several lists always mean one per spawner, even if the lists were replaced since.
     const bool several = step.lists.size() > 1;
     const bool each = several || list_each_;
     refused_ += each || spawners_.empty() ? 0 : step.dropped;
@@ -277,7 +277,7 @@ void Simulation::bendSurfaces(double dt) {
         }
         MeshTrail* const trail = trailOf(*from.attach);
         if (trail == nullptr) {
-            continue;  // at rest in its collider's space
+            continue;  // rigid in its collider's space
         }
         trail->bend(emitters_[i]);
         if (stream_) {
@@ -374,7 +374,7 @@ Result<void> Simulation::playClips(double time) {
         };
         const double before = time - static_cast<double>(scene_->time.dt);
         if (!body.source && !own && (played.cyclic || played.run(before) == played.run(time))) {
-            show(before, played.poseAt(before), true);  // it has moved already when the scene begins
+            show(before, played.poseAt(before), true);  // the clip was already moving before the first step
             show(time, std::move(poses[i]), false);
         } else {
             show(time, std::move(poses[i]), body.jumps);
@@ -399,7 +399,7 @@ void Simulation::setPoses(double time) {
     const bool jumps =
         std::any_of(played_.begin(), played_.end(), [](const PlayedBody& body) { return body.jumps; });
     if (jumps && !shown_.empty()) {
-        // Those that jump begin the step where they end it.
+        // Jumping bodies start the step at its final pose.
         for (const PlayedBody& body : played_) {
             shown_[body.index] = body.jumps ? poses[body.index] : shown_[body.index];
         }

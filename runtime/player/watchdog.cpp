@@ -13,12 +13,12 @@ namespace relief {
 namespace {
 
 std::mutex mutex;
-std::string last_line;  // of the process, if the timer runs out; empty at rest
+std::string last_line;  // message if the timer expires; empty at rest
 
-/// On a thread of the timer's own.
+/// Runs on a thread of the timer.
 void starved(sigval /*value*/) {
     const std::lock_guard lock(mutex);
-    // Past the streams, whose locks the stuck thread may hold.
+    // Do not use streams: the stuck thread may hold their locks.
     if (!last_line.empty() && ::write(STDERR_FILENO, last_line.data(), last_line.size()) != 0) {
         ::_exit(static_cast<int>(ErrorCode::kFailure));
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Notices that the GPU no longer answers. For programs: the library waits without end.
+// Ends a program if the GPU stops responding. The library itself waits without a limit.
 #pragma once
 
 #include <time.h>
@@ -9,22 +9,24 @@
 
 namespace relief {
 
-/// A timer that must be fed while the GPU works. Where it runs out, it prints one line, "PROGRAM: error: the GPU …", and
-/// ends the process with exit code 4, at once: a driver that hangs would hang in every destructor too. One at a time.
+/// A timer that must be fed while the GPU works. When it expires, it prints "PROGRAM: error: the GPU …" and ends the
+/// process with exit code 4 without running destructors, which could hang in the driver, too. Only one may exist at a
+/// time.
 class Watchdog {
   public:
-    /// \param limit  longest time between feed and the next feed or rest; 0: none. Where the system has no timer left, a warning on
-    ///               standard error, and no limit.
+    /// \param limit  maximum time between feed() and the next feed() or rest(); 0: no limit. If the system has no timer
+    /// left,
+    ///               prints a warning to standard error and sets no limit.
     Watchdog(const std::string& program, std::chrono::milliseconds limit);
     ~Watchdog();
     Watchdog(const Watchdog&) = delete;
     Watchdog& operator=(const Watchdog&) = delete;
 
-    /// The GPU is about to do, or goes on with, "steps 1 to 16".
+    /// Restarts the timer. \param what  current GPU work: "steps 1 to 16".
     void feed(const std::string& what);
-    /// The next work is not for the GPU.
+    /// Stops the timer until the next feed().
     void rest();
-    /// From the next feed on.
+    /// Sets the limit from the next feed() on.
     void setLimit(std::chrono::milliseconds limit) { limit_ = limit; }
 
   private:
@@ -38,7 +40,7 @@ class Watchdog {
 
 /// Calls `work` and returns its result. The watchdog is fed before it and rests after it.
 /// \param watchdog  may be null.
-/// \param what      what the GPU does meanwhile, for the watchdog's message: "steps 1 to 16".
+/// \param what      GPU work, for the message: "steps 1 to 16".
 template <class Work>
 auto watched(Watchdog* watchdog, const std::string& what, const Work& work) {
     if (watchdog == nullptr) {

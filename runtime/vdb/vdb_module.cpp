@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief-vdb.so: VdbWriter by OpenVDB.
+// The module relief-vdb.so: implements VdbWriter with OpenVDB.
 #include <openvdb/io/Archive.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/points/PointConversion.h>
@@ -25,9 +25,9 @@ using openvdb::tools::PointIndexGrid;
 
 constexpr double kPointsAVoxel = 8.0;
 constexpr double kVoxelsMax = 4096.0;  // along the longest side
-constexpr double kIndexMax = 0x1p24;   // of a voxel, from the origin
+constexpr double kIndexMax = 0x1p24;   // maximum voxel index
 
-/// Of a voxel that holds some eight points, if they fill their box evenly.
+/// Returns a voxel size for about eight points per voxel, if they fill their box evenly.
 double voxelSize(const std::vector<openvdb::Vec3f>& positions) {
     openvdb::BBoxd box;
     for (const openvdb::Vec3f& p : positions) {
@@ -43,7 +43,7 @@ double voxelSize(const std::vector<openvdb::Vec3f>& positions) {
     return std::max(size, farthest / kIndexMax);
 }
 
-/// One attribute of all points.
+/// Adds an attribute to all points.
 template <class Value, class Of>
 void add(PointDataTree& tree, const PointIndexGrid& index, std::span<const VdbPoint> particles,
          const std::string& name, Of of) {
@@ -95,23 +95,23 @@ openvdb::FloatGrid::Ptr makeGrid(const NarrowBand& band) {
     return grid;
 }
 
-/// In memory, with the grids' offsets, as in a file that other programs read part by part.
+/// Writes an archive to memory with grid offsets, so that programs can read it in parts.
 class MemoryArchive : public openvdb::io::Archive {
   public:
     [[nodiscard]] Ptr copy() const override { return Ptr(new MemoryArchive(*this)); }
     void writeTo(std::ostream& out, const openvdb::GridCPtrVec& grids) {
-        // Zip and Blosc do not belong to every build of OpenVDB; without either any of them reads the file.
+        // Not every build of OpenVDB has Zip and Blosc; every build reads files without them.
         setCompression(openvdb::io::COMPRESS_ACTIVE_MASK);
         setGridStatsMetadataEnabled(false);
         Archive::write(out, grids, true);
     }
 };
 
-// A header is the magic number, three versions and a flag; then 36 letters that identify the file, drawn at random.
+// The header has a magic number, three versions and a flag, then 36 random characters that identify the file.
 constexpr std::size_t kTagAt = 8 + 3 * 4 + 1;
 constexpr std::size_t kTagSize = 36;
 
-/// The letters come from the bytes instead, so that equal content is an equal file.
+/// Replaces the random characters by a hash of the bytes, so that equal content gives equal files.
 void nameByContent(std::string& bytes) {
     const auto tag = bytes.begin() + static_cast<std::ptrdiff_t>(kTagAt);
     std::fill_n(tag, kTagSize, '0');
@@ -123,8 +123,8 @@ void nameByContent(std::string& bytes) {
     }
 }
 
-/// Bytes that are the same in every run. What `make` throws becomes an error. Registers OpenVDB's types first.
-/// Errors: kFailure (OpenVDB's exceptions, memory).
+/// Returns reproducible bytes of the grids that `make` returns. Registers the types of OpenVDB first.
+/// Errors: kFailure (exceptions of OpenVDB or of `make`; out of memory).
 Result<std::vector<std::byte>> vdbBytes(const std::function<openvdb::GridPtrVec()>& make) {
     try {
         openvdb::initialize();
@@ -163,7 +163,7 @@ class Writer : public VdbWriter {
         for (const openvdb::Vec3s& p : points) {
             out.points.emplace_back(p.x(), p.y(), p.z());
         }
-        // OpenVDB's faces run clockwise seen from outside.
+        // Faces of OpenVDB are clockwise, seen from outside.
         for (const openvdb::Vec3I& t : triangles) {
             out.triangles.push_back({t[2], t[1], t[0]});
         }

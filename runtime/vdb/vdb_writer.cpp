@@ -23,7 +23,7 @@ Result<VdbWriter*> load() {
         if (!fs::is_regular_file(module, error)) {
             continue;
         }
-        // Never unloaded: OpenVDB keeps threads and registries.
+        // Never unload it: OpenVDB keeps threads and registries.
         void* const handle = ::dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
         void* const make = handle != nullptr ? ::dlsym(handle, "reliefVdbWriter") : nullptr;
         if (make != nullptr) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The writer of OpenVDB files. It lies in a module of its own, relief-vdb.so, which is loaded when it is needed: the library
-// brings others along that start threads in whatever program loads them.
+// Writes OpenVDB files. OpenVDB is in a separate module, relief-vdb.so, which is loaded on demand, because its
+// dependencies start threads in any program that loads them.
 #pragma once
 
 #include <array>
@@ -14,25 +14,24 @@
 
 namespace relief {
 
-/// A particle.
 struct VdbPoint {
-    std::uint32_t id = 0;  ///< births before its own
+    std::uint32_t id = 0;  ///< number of earlier births
     glm::vec3 position{0.0F};
-    glm::vec3 velocity{0.0F};  ///< units a second
+    glm::vec3 velocity{0.0F};  ///< units/s
     float age = 0.0F;          ///< seconds
     float lifetime = 0.0F;     ///< seconds
     std::uint32_t type = 0;
 };
 
-/// Signed distances near a surface, on a grid whose voxel (i, j, k) has its centre at voxel × (i, j, k).
+/// Signed distances near a surface, on a grid. The centre of voxel (i, j, k) is at voxel × (i, j, k).
 struct NarrowBand {
-    double voxel = 1.0;       ///< object units
-    float background = 0.0F;  ///< half of the band's width; distances are less
-    std::vector<glm::ivec3> at;
-    std::vector<float> distance;  ///< as many; negative inside
+    double voxel = 1.0;           ///< object units
+    float background = 0.0F;      ///< half of the band's width; absolute distances are smaller
+    std::vector<glm::ivec3> at;   ///< voxels
+    std::vector<float> distance;  ///< one per voxel; negative inside
 };
 
-/// Faces anticlockwise seen from outside.
+/// A mesh with anticlockwise faces, seen from outside.
 struct GridSurface {
     std::vector<glm::vec3> points;
     std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -42,25 +41,26 @@ struct GridSurface {
 class VdbWriter {
   public:
     virtual ~VdbWriter() = default;
-    // Equal arguments give equal bytes. Errors: kFailure (OpenVDB's, memory).
-    /// \param particles  ordered by id, at finite positions.
+    // Equal arguments give equal bytes. Errors: kFailure (of OpenVDB; out of memory).
+    /// \param particles  ordered by id, with finite positions.
     [[nodiscard]] virtual Result<std::vector<std::byte>> points(std::span<const VdbPoint> particles) = 0;
     [[nodiscard]] virtual Result<std::vector<std::byte>> levelSet(const NarrowBand& band) = 0;
     [[nodiscard]] virtual Result<GridSurface> surface(const NarrowBand& band) = 0;
 };
 
-/// An OpenVDB file with one grid of points, "particles", in object units. Its attributes have the names of Houdini: P, v
-/// (units a second), age and life (seconds) as floats, id (births before its own) and type as 32-bit integers. Positions
-/// keep single precision of their place in a voxel; some eight points share one. The grid's metadata "points" counts
-/// them. The same for any order of `particles` and any number of threads.
+/// Encodes particles as an OpenVDB file with one point grid, "particles", in object units. The attributes are named as
+/// in Houdini: P, v (units/s), age and life (seconds) as floats, id (number of earlier births) and type as 32-bit
+/// integers. Positions are stored in single precision relative to their voxel, which holds about eight points. The grid
+/// metadata "points" is the number of points. The result does not depend on the order of `particles` or the number of
+/// threads.
 /// Errors: kUnsupported (a build without OpenVDB), kFailure.
 [[nodiscard]] Result<std::vector<std::byte>> encodeVdbPoints(std::span<const VdbPoint> particles);
 
-/// Fails with kUnsupported where this build has no OpenVDB, with the cure.
+/// Fails with kUnsupported if this build has no OpenVDB.
 [[nodiscard]] Result<void> checkVdb();
 
-/// Loads the module, once. It lies beside the program, or in ../lib/relief.
-/// Errors: kUnsupported: there is none, or what it needs is missing.
+/// Loads the module once, from the folder of the program or from ../lib/relief.
+/// Errors: kUnsupported (the module or one of its dependencies is missing).
 [[nodiscard]] Result<VdbWriter*> vdbWriter();
 
 }  // namespace relief

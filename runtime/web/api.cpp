@@ -1,6 +1,7 @@
-// SPDX-License-Identifier: Apache-2.0 Functions for relief.js in addition to those of runtime/c_api: scenes, and facts
-// about a collider. Objects of this file are plain pointers. Functions return null or a negative number on failure;
-// relief_error() has the reason. Functions that use GL need a current context and restore its state.
+// SPDX-License-Identifier: Apache-2.0
+// Functions for relief.js in addition to those of runtime/c_api: scenes, and facts about a collider. Objects of this
+// file are plain pointers. Functions return null or a negative number on failure; relief_error() has the reason.
+// Functions that use GL need a current context and restore its state.
 #include <emscripten.h>
 
 #include <cstdint>
@@ -356,8 +357,8 @@ EMSCRIPTEN_KEEPALIVE const char* relief_collider_info(const relief_collider* col
     });
 }
 
-/// Writes the decoded texels of a map, 8 floats each: depth and normal of the front surface, then of the back surface. The
-/// depth is NaN if there is no surface. Row y = 0 comes first; the faces of a cube follow each other.
+/// Writes the decoded texels of a map, 8 floats each: depth and normal of the front surface, then of the back surface.
+/// The depth is NaN if there is no surface. Row y = 0 comes first; the faces of a cube follow each other.
 EMSCRIPTEN_KEEPALIVE int relief_collider_texels(const relief_collider* collider, int map, float* out) {
     return answer(__func__, -1, [&](const Call& call) -> Result<int> {
         const Collider& of = *RELIEF_TRY(call.object(collider, "collider"));

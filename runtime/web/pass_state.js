@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: Apache-2.0 PassState for browsers: wraps the WebGL2 context for the WebAssembly and restores
-// the state of the page after each pass.
+// SPDX-License-Identifier: Apache-2.0
+// PassState for browsers: wraps the WebGL2 context for the WebAssembly and restores the state of the page after each
+// pass.
 //
 // Some state (bindings, switches) can be queried at once. Other state needs a round trip to the GPU process of the
 // browser, which takes as long as a whole step. kPieces lists the slow state: it is queried only when a pass first sets

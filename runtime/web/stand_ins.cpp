@@ -1,7 +1,7 @@
-// SPDX-License-Identifier: Apache-2.0 Browser implementations of functions that other files define on desktops:
-// capabilities of a WebGL2 context, state around a pass, read-back, zstd by the decoder of the page, and loading files
-// of a world without a thread. The functions of OpenGL ES 3.1 are stubs that are never called, because hasCompute()
-// returns false.
+// SPDX-License-Identifier: Apache-2.0
+// Browser implementations of functions that other files define on desktops: capabilities of a WebGL2 context, state
+// around a pass, read-back, zstd by the decoder of the page, and loading files of a world without a thread. The
+// functions of OpenGL ES 3.1 are stubs that are never called, because hasCompute() returns false.
 #include <cstdlib>
 #include <deque>
 #include <optional>

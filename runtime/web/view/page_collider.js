@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: Apache-2.0 The collider of a page without a scene: the output of `relief export --gpu`
-// (runtime/layout/LAYOUT.md), and facts. Has the members of Collider and GpuCollider of relief-particles that the page
-// uses.
+// SPDX-License-Identifier: Apache-2.0
+// The collider of a page without a scene: the output of `relief export --gpu` (runtime/layout/LAYOUT.md), and facts.
+// Has the members of Collider and GpuCollider of relief-particles that the page uses.
 import { damaged, fromBase64 } from "./page_data.js";
 
 const kMapBytes = 144; // per map in the uniform block, after a header of 16 bytes

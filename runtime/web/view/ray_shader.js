@@ -1,7 +1,8 @@
-// SPDX-License-Identifier: Apache-2.0 Casts a ray through a collider without fixed steps, which could miss a thin
-// sheet. Within a texel, the side that a map sees changes only where the ray meets the texel's planes or its border.
-// These intersections are computed in closed form, as are those with the bilinear surface of a patch. While any map
-// sees outside, the ray is outside, so it advances to the end of that map's stretch and evaluates the maps again.
+// SPDX-License-Identifier: Apache-2.0
+// Casts a ray through a collider without fixed steps, which could miss a thin sheet. Within a texel, the side that a
+// map sees changes only where the ray meets the texel's planes or its border. These intersections are computed in
+// closed form, as are those with the bilinear surface of a patch. While any map sees outside, the ray is outside, so it
+// advances to the end of that map's stretch and evaluates the maps again.
 //
 //     map 0   ····o───────────────┐                 o: evaluation; each stretch that a map sees outside is one step
 //     map 1                       o─────┐

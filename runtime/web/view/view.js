@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: Apache-2.0 Draws the page. Bodies are redrawn only when they change; otherwise their picture
-// is kept, and particles are drawn over it with its depth buffer.
+// SPDX-License-Identifier: Apache-2.0
+// Draws the page. Bodies are redrawn only when they change; otherwise their picture is kept, and particles are drawn
+// over it with its depth buffer.
 import { Geometry, Target, bindTexture, drawScreen, drawnBySoftware, kScreenVertex, program } from "./gl.js";
 import { kBodyVertex, kCopyFragment, kFloorFragment, kLiveVertex, kMeshFragment, kSkyFragment } from "./body_shaders.js";
 import { add, identity, normalize, scale } from "./math.js";
