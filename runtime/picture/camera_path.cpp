@@ -10,10 +10,10 @@ namespace {
 
 constexpr float kFovMin = 1.0F;
 constexpr float kFovMax = 170.0F;
-// Of the distance to the target: the least way aside for a camera that looks down.
+// Minimum horizontal offset of a camera that looks down, relative to its distance from the target.
 constexpr float kAsideMin = 1e-3F;
 
-/// Slope of a value at key i, by the straight line between its neighbours.
+/// Returns the slope of a value at key i: that of the line between its neighbours.
 template <class T, class Get>
 T slopeAt(std::span<const CameraKey> keys, std::size_t i, Get get) {
     const CameraKey& before = keys[i == 0 ? 0 : i - 1];
@@ -21,7 +21,7 @@ T slopeAt(std::span<const CameraKey> keys, std::size_t i, Get get) {
     return (get(after) - get(before)) / static_cast<float>(after.time - before.time);
 }
 
-/// The value between keys i and i + 1, at `share` of the time between them.
+/// Interpolates between keys i and i + 1. \param share  fraction of the time between them.
 template <class T, class Get>
 T between(std::span<const CameraKey> keys, std::size_t i, float share, Get get) {
     const T from = get(keys[i]);
@@ -31,7 +31,7 @@ T between(std::span<const CameraKey> keys, std::size_t i, float share, Get get) 
     const T arriving = seconds * slopeAt<T>(keys, i + 1, get);
     const float s = share;
     const float rest = 1.0F - s;
-    // Hermite's cubic, with the ends exact.
+    // Cubic Hermite polynomial, exact at the ends.
     return (1.0F + 2.0F * s) * rest * rest * from + s * s * (3.0F - 2.0F * s) * to +
            s * rest * rest * leaving - s * s * rest * arriving;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A camera that moves: where it is at a time, from keys.
+// Camera animation by keys.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -10,18 +10,18 @@
 namespace relief {
 
 struct CameraKey {
-    double time = 0.0;  ///< seconds since the beginning
+    double time = 0.0;  ///< seconds from the beginning
     glm::vec3 eye{0.0F};
     glm::vec3 target{0.0F};
     float fov = 30.0F;  ///< degrees
     friend bool operator==(const CameraKey&, const CameraKey&) = default;
 };
 
-/// Eye, target and fov at a time, by Catmull-Rom: cubic, the speed at a key that of the straight line between the keys
-/// around it (at the ends, between the last two), so that uneven times are no jolts. Before the first key and after the
-/// last the camera stands still. fov is kept within 1…170; an eye that comes to lie straight above or below its target, or
-/// in it, is moved a little towards +z, where the picture still has an upper side. Clip planes are left at their defaults.
-/// \param keys  one at least, their times rising.
+/// Interpolates eye, target and fov by a cubic Catmull-Rom spline with non-uniform times: the slope at a key is that of
+/// the line between its neighbours (at the ends, between the last two keys). The camera rests before the first key and
+/// after the last one. fov is clamped to 1…170. An eye at its target, or directly above or below it, is moved slightly
+/// towards +z, so that the up direction is defined. Clip planes keep their defaults.
+/// \param keys  at least one, with ascending times.
 [[nodiscard]] Camera cameraAt(std::span<const CameraKey> keys, double time);
 
 }  // namespace relief

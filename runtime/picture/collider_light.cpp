@@ -14,15 +14,15 @@ namespace relief {
 namespace {
 
 constexpr ShaderCollider::Binding kColliderBinding{0, 0};
-constexpr int kInputUnit = 3;  // after the collider's three
+constexpr int kInputUnit = 3;  // after the three units of the collider
 
-constexpr int kVoxelsOfSide = 40;  // the collider's longest
+constexpr int kVoxelsOfSide = 40;  // along the longest side of the collider
 constexpr int kSkyRays = 16;
 constexpr float kSunBiasTexels = 1.5F;
 
 constexpr const char* kLess = "close what else is on the GPU";
 
-/// Object space to 0…1 of a volume's texture: scale · (p - shift).
+/// Sets the transform from object space to texture coordinates of a volume: scale · (p - shift).
 void setVolumeFrame(const GlProgram& program, const char* shift, const char* scale, const glm::vec3& first,
                     const glm::ivec3& size, float voxel) {
     program.set(shift, first - glm::vec3(0.5F * voxel));
@@ -55,7 +55,7 @@ Result<ColliderLight> ColliderLight::create(const ColliderView& collider) {
     return light;
 }
 
-// The map's plane lies beyond the collider, and its square holds all of it from there.
+// Places the plane of the map beyond the collider, with a square that covers all of it.
 void ColliderLight::frameSun() {
     const glm::vec3 sun = sunDirection();
     sun_across_ = glm::normalize(glm::cross(glm::vec3(0.0F, 1.0F, 0.0F), sun));
@@ -67,7 +67,7 @@ void ColliderLight::frameSun() {
     sun_corner_ = collider_.bounds.center() + reach(sun) * sun - 0.5F * side * (sun_across_ + sun_along_);
 }
 
-// The sky is hidden as far from the collider as shade reaches, to all sides and below; above, by nothing.
+// The collider shades the sky sideways and below, up to the reach of the shade, but not above.
 void ColliderLight::frameVolumes() {
     const float side = collider_.bounds.longestSide();
     voxel_ = side / static_cast<float>(kVoxelsOfSide);
@@ -77,7 +77,7 @@ void ColliderLight::frameVolumes() {
     };
     const glm::vec3 margin(voxel_);
     frame(occupied_, collider_.bounds.min - margin, collider_.bounds.max + margin);
-    const glm::vec3 shade(kSkyReach * side + 2.0F * voxel_);  // beyond it the outermost voxels count
+    const glm::vec3 shade(kSkyReach * side + 2.0F * voxel_);  // beyond it, the outermost voxels apply
     frame(sky_, collider_.bounds.min - shade,
           collider_.bounds.max + glm::vec3(shade.x, 2.0F * voxel_, shade.z));
 }
@@ -124,7 +124,7 @@ Result<void> ColliderLight::createTextures() {
     coarse_target_ = RELIEF_TRY(makeFramebuffer({coarse_.name()}));
     RELIEF_TRY(occupied_.allocate());
     RELIEF_TRY(sky_.allocate());
-    // Last: its existence stands for that of all.
+    // Created last, because its existence implies all others.
     sun_target_ = RELIEF_TRY(makeFramebuffer({sun_map_.name()}));
     return {};
 }

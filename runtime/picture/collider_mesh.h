@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The mesh that a collider was baked from, on the GPU, for the collider's picture: it has the detail that depth maps
-// leave out.
+// The source mesh of a collider on the GPU, for pictures with more detail than depth maps have.
 #pragma once
 
 #include "formats/base/result.h"
@@ -13,20 +12,20 @@ namespace relief {
 
 class ColliderMesh {
   public:
-    /// Needs a current context; restores what it touches.
-    /// \param mesh  in the collider's object space; without normals they are made, see withNormals.
-    /// Errors: kInvalidInput (checkMesh), kFailure (the driver's compiler).
+    /// Needs a current context; restores the GL state.
+    /// \param mesh  in the collider's object space; missing normals are computed (withNormals()).
+    /// Errors: kInvalidInput (checkMesh), kFailure (shader compiler).
     [[nodiscard]] static Result<ColliderMesh> create(const PictureMesh& mesh);
 
-    /// As MeshBuffers::setVertices().
+    /// Calls MeshBuffers::setVertices().
     void setVertices(const GlBuffer& buffer);
 
-    /// A camera's view of it, pixel by pixel.
+    /// Normals and depths per pixel.
     struct View {
         GlTexture normal;  ///< RGBA16F, object space, towards the viewer
-        GlTexture depth;   ///< 32-bit window depth; 1 where there is nothing
+        GlTexture depth;   ///< 32-bit window depth; 1 for the background
     };
-    /// Restores the GL state.
+    /// Draws the mesh. Restores the GL state.
     /// Errors: kUnsupported.
     [[nodiscard]] Result<View> view(const Camera& camera, GLsizei width, GLsizei height) const;
 

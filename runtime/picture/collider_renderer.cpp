@@ -14,13 +14,13 @@ namespace {
 constexpr ShaderCollider::Binding kColliderBinding{0, 0};
 constexpr int kColorUnit = 0;
 constexpr int kDepthUnit = 1;
-constexpr int kCoarseUnit = 3;  // after the collider's three; with a mesh:
+constexpr int kCoarseUnit = 3;  // after the three units of the collider
 constexpr int kMeshNormalUnit = 3;
 constexpr int kMeshDepthUnit = 4;
 
 constexpr int kNormals = 13;
 
-// For one of the four samples of a pixel.
+// Per sample; a pixel has four.
 constexpr LightRays kLightRays{.sun = 2, .sky = 6, .sun_steps = 32, .sky_steps = 5};
 
 constexpr const char* kSmallerPicture = "choose a smaller size";
@@ -97,7 +97,7 @@ Result<void> ColliderRenderer::trace(const Camera& camera, const ColliderStyle& 
     setViewUniforms(trace_program_, camera, style, width, height);
     view_.textures->bind(kColliderBinding);
 
-    // The second pass samples the mesh's picture, or the coarse pass.
+    // The second pass samples the picture of the mesh, or the coarse pass.
     ColliderMesh::View of_mesh;
     GlTexture coarse;
     if (mesh_ != nullptr) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws a collider on a floor before a background: from its mesh, or from its own depth maps if there is
-// none. Rays through the combined field cost much and collider and camera mostly stand still, so the picture
-// is kept and drawn again from a texture until camera, size or style change.
+// Draws a collider on a floor in front of a background: from its mesh, or from its depth maps without one. Tracing the
+// field is expensive, so the picture is cached in a texture until the collider, camera, size or style changes.
 //
 //     bytes on the GPU = 12 · width · height   (RGBA16F and 32-bit depth)
 #pragma once
@@ -27,23 +26,23 @@ struct ColliderStyle {
 class ColliderRenderer {
   public:
     /// Needs a current context, as draw() does.
-    /// \param mesh  what the collider was baked from; it must outlive this. Null: the depth maps are drawn.
-    /// Errors: kFailure (the driver's compiler).
+    /// \param mesh  the source mesh of the collider; must outlive this. Null: draw the depth maps.
+    /// Errors: kFailure (shader compiler).
     [[nodiscard]] static Result<ColliderRenderer> create(const ColliderView& view,
                                                          const ColliderMesh* mesh = nullptr);
 
-    /// Fills the target's colour, in linear light or sRGB as the target has it, and its depth.
-    /// Errors: kUnsupported, kLimit (the target's size, no room), kFailure.
+    /// Overwrites the colour (linear or sRGB, as the target requires) and the depth of the target.
+    /// Errors: kUnsupported, kLimit (target size, out of memory), kFailure.
     [[nodiscard]] Result<void> draw(const Camera& camera, const ColliderStyle& style,
                                     const RenderTarget& target);
 
-    /// The window depth of what draw() drew last, of that target's size and not attached to it; empty before.
+    /// Returns the window depths of the last draw(), in the size of its target but not attached to it; empty before.
     [[nodiscard]] const GlTexture& depth() const { return depth_; }
 
   private:
     [[nodiscard]] Result<void> trace(const Camera& camera, const ColliderStyle& style, GLsizei width,
                                      GLsizei height);
-    /// Follows every fourth ray of every fourth row into `coarse`, which it makes.
+    /// Creates `coarse` and traces every fourth ray of every fourth row.
     [[nodiscard]] Result<void> traceCoarse(GLsizei width, GLsizei height, GlTexture& coarse);
 
     struct Drawn {
@@ -60,7 +59,7 @@ class ColliderRenderer {
     GlProgram coarse_program_;
     GlProgram trace_program_;
     GlProgram copy_program_;
-    std::optional<Drawn> drawn_;  // what the textures below show
+    std::optional<Drawn> drawn_;  // contents of the textures below
     GlTexture color_;
     GlTexture depth_;
 };

@@ -11,11 +11,11 @@
 namespace relief {
 namespace {
 
-// A ray's step in texels: it hits whatever is two texels thick.
+// Step of a ray in texels; features at least two texels thick are hit.
 constexpr float kStepTexels = 1.5F;
 
-// Across the diagonal of a box whose finest texel is 1/2048 of its longest side, with room for the
-// bisections. In a larger box steps are longer.
+// Enough for the diagonal of a box whose finest texel is 1/2048 of its longest side, plus bisections. Larger boxes use
+// longer steps.
 constexpr int kRayStepsMax = 2560;
 constexpr int kBisections = 10;
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A collider as renderers see it, and the passes that follow rays through its field (shaders/picture/light.glsl,
-// trace.glsl).
+// Collider data for renderers, and helpers of passes that trace its field (shaders/picture/light.glsl, trace.glsl).
 #pragma once
 
 #include <glm/glm.hpp>
@@ -12,27 +11,27 @@
 
 namespace relief {
 
-/// A collider as the renderers see it. The textures must outlive the renderers.
+/// A collider for renderers. The textures must outlive them.
 struct ColliderView {
     const ShaderCollider* textures = nullptr;
-    Bounds bounds;       ///< object space; nothing of the collider lies outside
-    float texel = 0.0F;  ///< object units across the finest texel of the maps, > 0
+    Bounds bounds;       ///< object space; contains the whole collider
+    float texel = 0.0F;  ///< side of the finest texel, object units, > 0
 };
 
-/// A world as the renderers see it while its bodies are in the box of where they stand at the beginning; those that move out of
-/// it need larger bounds. \param textures  of worldBodies(world); must outlive the renderers.
+/// Returns the view of a world with the initial bounds of its bodies; enlarge the bounds if bodies leave them.
+/// \param textures  of worldBodies(world); must outlive the renderers.
 [[nodiscard]] ColliderView worldView(const LoadedWorld& world, const ShaderCollider& textures);
 
-/// Unit vector towards the sun of all pictures: from the upper left, in front.
+/// Returns the unit vector towards the sun in all pictures: upper left, in front.
 [[nodiscard]] glm::vec3 sunDirection();
 
-/// sRGB in [0, 1] to the linear colours that shaders take.
+/// Converts sRGB in [0, 1] to linear light.
 [[nodiscard]] glm::vec3 linearColor(const glm::vec3& srgb);
 
-/// Sets u_eye, u_depth, and what makes the ray of each pixel: u_forward, u_right and u_up. Leaves the program current.
+/// Sets u_eye, u_depth, u_forward, u_right and u_up, which define the ray of each pixel. Leaves the program current.
 void setCameraUniforms(const GlProgram& program, const CameraMatrices& camera);
 
-/// The sampling of a point's light: rays, and samples of the field on each.
+/// Number of rays per lit point, and of field samples per ray.
 struct LightRays {
     int sun = 1;
     int sky = 1;
@@ -40,16 +39,16 @@ struct LightRays {
     int sky_steps = 1;
 };
 
-/// Sets light.glsl's uniforms; leaves the program current.
+/// Sets the uniforms of light.glsl; leaves the program current.
 void setLightUniforms(const GlProgram& program, const ColliderView& view, const LightRays& rays);
 
-/// Of the first pass every kCoarseStride-th ray of a row or column is followed.
+/// The first pass traces every kCoarseStride-th ray of a row or column.
 inline constexpr GLsizei kCoarseStride = 4;
 
-/// Sets trace.glsl's uniforms; leaves the program current.
+/// Sets the uniforms of trace.glsl; leaves the program current.
 void setRayUniforms(const GlProgram& program, const ColliderView& view);
 
-/// GlProgram::drawScreen() band by band: a driver may take a draw of several seconds for a hang.
+/// Calls GlProgram::drawScreen() in bands, because a driver may treat a draw of several seconds as a hang.
 void drawInBands(const GlProgram& program, GLuint framebuffer, GLsizei width, GLsizei height);
 
 }  // namespace relief

@@ -18,7 +18,7 @@ namespace {
 constexpr int kOrderUnit = 0;
 constexpr int kPositionUnit = 1;
 
-// Storage units, as the shaders have them.
+// Storage units, as in the shaders.
 constexpr GLuint kFromUnit = 0;
 constexpr GLuint kToUnit = 1;
 constexpr GLuint kCountsUnit = 2;
@@ -28,7 +28,7 @@ constexpr std::uint32_t kDigits = kRadixDigits;
 constexpr std::uint32_t kDigitBits = 8;
 constexpr std::uint32_t kKeyDigits = 32 / kDigitBits;
 static_assert(kDigits == 1U << kDigitBits && kKeyDigits % 2 == 0);
-// More rows make blocks more numerous, then longer, then more numerous again: an H100's best for 2^16 to 2^24 particles.
+// More rows first give more blocks, then longer ones, then more again. Best on an H100 for 2^16 to 2^24 particles.
 constexpr std::uint32_t kBlocksFew = 512;
 constexpr std::uint32_t kTurns = 8;
 constexpr std::uint32_t kBlocksMax = 2048;
@@ -64,28 +64,28 @@ std::uint32_t regionFor(std::uint32_t extent) {
 
 }  // namespace
 
-/// The exact drawing order by compute shaders: a radix sort, whole in each call (shaders/picture/radix.glsl).
+/// Exact drawing order by a radix sort in compute shaders, complete in each call (shaders/picture/radix.glsl).
 ///
 ///     bytes on the GPU = 24 · capacity and up to 2 MB:
 ///         elements  2 × 8 bytes (double-buffered)      index of a particle, key
 ///         counts    of 256 digits in up to 2048 blocks
-///         order     RG32UI (on OpenGL ES, whose shaders cannot store into that, RGBA32UI of 16 bytes)
+///         order     RG32UI (RGBA32UI of 16 bytes on OpenGL ES, whose shaders cannot write RG32UI)
 class RadixSort {
   public:
     /// Needs hasCompute(), and the state of a pass (PassState).
     /// \param capacity  1…2^24. \param width  texels in a row of order().
-    /// Errors: kLimit (above what this GL takes), kFailure.
+    /// Errors: kLimit (GL limits), kFailure.
     [[nodiscard]] static Result<RadixSort> create(std::uint32_t capacity, std::uint32_t width);
 
-    /// Sorts the particles of the indices below `extent`, 1…capacity; the rest as DepthSorter::update(). Leaves program and
-    /// textures changed; restores image and storage units.
+    /// Sorts particles with indices below `extent`, 1…capacity; otherwise like DepthSorter::update(). Changes the
+    /// program and textures; restores image and storage units.
     void sort(const GlTexture& positions, std::uint32_t width, std::uint32_t extent, const glm::vec3& eye);
 
-    /// x: index, y: key of the rank; `extent` of the last sort() ranks.
+    /// x: index, y: key, per rank; as many ranks as the `extent` of the last sort().
     [[nodiscard]] const GlTexture& order() const { return order_; }
 
   private:
-    /// The division of the elements into blocks.
+    /// Division of the elements into blocks.
     struct Cut {
         std::uint32_t count, turns, blocks;
     };
@@ -99,7 +99,7 @@ class RadixSort {
     GlBuffer totals_;
     GlTexture order_;
     GlProgram keys_;   // counts the first digit
-    GlProgram count_;  // and the others
+    GlProgram count_;  // counts the other digits
     GlProgram scan_;
     GlProgram move_;
     GlProgram place_;  // moves the last digit
@@ -163,7 +163,7 @@ void RadixSort::sort(const GlTexture& positions, std::uint32_t width, std::uint3
 
     const StorageUnits storage;
     const ImageUnits images;
-    StorageUnits::order();  // the last order may still be read
+    StorageUnits::order();  // the previous order may still be in use
     StorageUnits::bind(kCountsUnit, counts_);
     StorageUnits::bind(kTotalsUnit, totals_);
     ImageUnits::write(0, order_, orderFormat());
@@ -212,7 +212,8 @@ Result<DepthSorter> DepthSorter::create(std::uint32_t capacity, StepPath path) {
         if (path != StepPath::kAuto || radix.error().code != ErrorCode::kLimit) {
             return forward(radix);
         }
-        // OpenGL ES 3.1 promises work groups of half the size that the radix sort takes, and storage blocks of 128 MiB.
+        // OpenGL ES 3.1 guarantees only half the work group size that the radix sort needs, and storage blocks of 128
+        // MiB.
     }
     RELIEF_TRY(sorter.createTextures());
     RELIEF_TRY(sorter.createPrograms());
@@ -302,7 +303,7 @@ void DepthSorter::drawPass() {
     }
 }
 
-/// Draws the sorted region of the other buffer from this one.
+/// Draws the sorted region of the other buffer from the current one.
 void DepthSorter::drawNext(const GlProgram& program) {
     const int next = 1 - current_;
     useTexture(kOrderUnit, order_[current_]);
@@ -313,7 +314,7 @@ void DepthSorter::drawNext(const GlProgram& program) {
 }
 
 void DepthSorter::endSequence(std::uint32_t extent) {
-    // Valid only at the end of a whole sequence: see the header.
+    // Valid only at the end of a complete sequence; see the header.
     count_ = regionFor(peak_);
     restart();
     peak_ = extent;

@@ -63,7 +63,7 @@ std::vector<std::uint8_t> Frame::read() const {
     useTexture(0, color_);
     program_.drawScreen(small_.name(), width, height);
 
-    // Every GL ES reads RGBA; its rows start at the bottom.
+    // Every OpenGL ES can read RGBA. Rows start at the bottom.
     std::vector<std::uint8_t> rgba(std::size_t{4} * width_ * height_);
     glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
     std::vector<std::uint8_t> rgb(std::size_t{3} * width_ * height_);

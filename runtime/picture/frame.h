@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture off screen: linear colour and depth, drawn larger than it is shown and averaged down.
+// An off-screen picture with linear colour and depth, supersampled and averaged.
 #pragma once
 
 #include <cstdint>
@@ -14,16 +14,17 @@ namespace relief {
 class Frame {
   public:
     static constexpr std::uint64_t kPixelsMax = std::uint64_t{1} << 26;
-    /// Up to this size each pixel is the mean of 2 × 2.
+    /// Up to this size, each pixel is the mean of 2 × 2 samples.
     static constexpr std::uint64_t kSmoothPixelsMax = 9'000'000;
 
+    /// Needs a current context.
     /// \param width, height  pixels of the finished picture, ≥ 1.
-    /// Errors: kUsage (0), kLimit (above kPixelsMax, or above what this GL takes), kUnsupported, kFailure.
+    /// Errors: kUsage (0), kLimit (above kPixelsMax, or GL limits), kUnsupported, kFailure.
     [[nodiscard]] static Result<Frame> create(std::uint32_t width, std::uint32_t height);
 
-    /// The target to draw to.
+    /// Returns the target to draw to.
     [[nodiscard]] RenderTarget target() const;
-    /// The finished picture: 3 · width · height bytes sRGB, the top row first. Waits for the GPU.
+    /// Returns the finished picture: 3 · width · height bytes, sRGB, top row first. Waits for the GPU.
     [[nodiscard]] std::vector<std::uint8_t> read() const;
 
     [[nodiscard]] std::uint32_t width() const { return width_; }

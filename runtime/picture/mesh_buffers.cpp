@@ -72,7 +72,7 @@ void MeshBuffers::setVertices(const GlBuffer& buffer) const {
 void MeshBuffers::setVertices(const PictureMesh& mesh) const {
     const std::vector<Vertex> vertices = verticesOf(mesh);
     glBindBuffer(GL_ARRAY_BUFFER, vertices_.name());
-    // Anew: what a draw before still reads is not waited for.
+    // Reallocate, so that this does not wait for previous draws.
     glBufferData(GL_ARRAY_BUFFER, vertex_bytes_, vertices.data(), GL_STREAM_DRAW);
 }
 

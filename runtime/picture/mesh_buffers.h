@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh of a picture in buffers of the GPU.
+// GPU buffers of a PictureMesh.
 //
-//     bytes on the GPU = 24 · vertices + 4 · corners, and 4 · vertices with colours
+//     bytes on the GPU = 24 · vertices + 4 · corners, plus 4 · vertices with colours
 #pragma once
 
 #include "formats/base/result.h"
@@ -12,19 +12,19 @@ namespace relief {
 
 class MeshBuffers {
   public:
-    /// Needs a current context, and the state of a pass (PassState).
-    /// \param mesh  without normals they are made, see withNormals.
-    /// Errors: kInvalidInput (checkMesh, more triangles than one draw takes).
+    /// Needs a current context and the state of a pass (PassState).
+    /// \param mesh  missing normals are computed (withNormals()).
+    /// Errors: kInvalidInput (checkMesh, too many triangles for one draw).
     [[nodiscard]] static Result<MeshBuffers> create(const PictureMesh& mesh);
 
-    /// Moves the vertices: copies 24 bytes a vertex, position and normal as floats, from the beginning of a
-    /// buffer of the GPU (wobble_pass.h). As many as the mesh was created with, which then has normals.
+    /// Replaces all vertices by those in a GPU buffer (wobble_pass.h): 24 bytes each, position and normal as floats.
+    /// The mesh must have been created with normals.
     void setVertices(const GlBuffer& buffer) const;
 
-    /// The same from memory. \param mesh  with normals, of as many vertices.
+    /// Replaces all vertices. \param mesh  with normals and the same number of vertices.
     void setVertices(const PictureMesh& mesh) const;
 
-    /// All triangles: attribute 0 is the position, 1 the normal, and 2 the colour of a mesh that has some.
+    /// Draws all triangles. Attributes: 0 position, 1 normal, 2 colour (if the mesh has colours).
     void draw() const;
 
   private:

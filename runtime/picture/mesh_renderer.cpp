@@ -17,9 +17,9 @@
 namespace relief {
 namespace {
 
-constexpr GLsizei kMapSide = 4096;     // texels of the maps towards sun and zenith
-constexpr GLsizei kPrintSide = 4096;   // and of the prints, seen from below
-constexpr float kSoleHeight = 0.035F;  // of what presses the snow, metres above the ground
+constexpr GLsizei kMapSide = 4096;     // texels of the maps towards the sun and the zenith
+constexpr GLsizei kPrintSide = 4096;   // texels of the footprints, seen from below
+constexpr float kSoleHeight = 0.035F;  // height up to which geometry leaves footprints, metres
 constexpr std::array<GLfloat, 4> kNothing{};
 
 constexpr const char* kSmallerPicture = "choose a smaller size";
@@ -35,7 +35,7 @@ void keepNearest() {
     glDepthMask(GL_TRUE);
 }
 
-/// Triangles face by their own order in a pass, whatever a program has set.
+/// Sets the default front face for a pass.
 class Facing {
   public:
     Facing() {
@@ -50,7 +50,7 @@ class Facing {
     GLint before_ = GL_CCW;
 };
 
-/// Parallel rays against `towards` that see all of a box.
+/// Returns an orthographic clip matrix that covers a box, looking against `towards`.
 glm::mat4 parallelClip(const Bounds& box, const glm::vec3& towards) {
     const glm::vec3 aside =
         std::abs(towards.y) > 0.9F ? glm::vec3(0.0F, 0.0F, -1.0F) : glm::vec3(0.0F, 1.0F, 0.0F);
@@ -63,7 +63,7 @@ glm::mat4 parallelClip(const Bounds& box, const glm::vec3& towards) {
         seen.add(glm::vec3(view * glm::vec4(at, 1.0F)));
     }
     const float margin = 0.01F * seen.longestSide();
-    // Whatever is higher shades, too.
+    // Include higher geometry, which casts shadows, too.
     const float above = 2.0F * seen.longestSide();
     return glm::ortho(seen.min.x - margin, seen.max.x + margin, seen.min.y - margin, seen.max.y + margin,
                       -seen.max.z - above, -seen.min.z + margin) *
@@ -175,7 +175,7 @@ void MeshRenderer::drawPrints(std::span<const MeshPlace> places, float metre) {
     print_program_.use();
     print_program_.set("u_clip", zenith_.clip);
     print_program_.set("u_zenith", 0);
-    // From clip space, whose depth is twice that of the window.
+    // In clip space, whose depth range is twice that of window depth.
     print_program_.set("u_sole",
                        0.5F * kSoleHeight * metre * glm::length(glm::vec3(glm::transpose(zenith_.clip)[2])));
     useTexture(0, zenith_.depth);

@@ -9,7 +9,7 @@
 namespace relief {
 namespace {
 
-// Counted in floats on the GPU: far above what any atlas holds.
+// Cell numbers are floats on the GPU; this is far above any atlas.
 constexpr std::uint32_t kCellMax = 1U << 20;
 
 bool within(float value, float low, float high) {
@@ -63,7 +63,7 @@ std::string lookProblem(const ParticleLook& look) {
     return {};
 }
 
-/// The ages that any track has a key at, rising; at least one.
+/// Returns the ages of all keys of all tracks in ascending order; at least one.
 std::vector<float> agesOf(const ParticleLook& look) {
     std::vector<float> ages;
     const auto add = [&](const auto& track) {

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The look of particles of a type over their age: key-frames, and the texture that shaders/picture/look.glsl reads
-// them from.
+// The appearance of particles over their age: key frames, and the texture that shaders/picture/look.glsl reads.
 //
-//     row = type     texel 0            turn, spin, first cell (-1: a round dot), number of cells
+//     row = type     texel 0            turn, spin, first cell (-1: round dot), number of cells
 //                    texel 1            lit, fade in, fade out, number of keys
 //                    texel 2            stretch
 //                    texels 3 + 2k      age, size, opacity, rotation of key k
 //                    texels 4 + 2k      linear colour of key k
 //
-// Rows are as long as the longest needs.
+// All rows have the length of the longest one.
 //
-// The tracks of a look may have keys at different ages: a row has a key wherever a track has one, with the
-// other tracks' values there, which changes nothing of straight lines.
+// The tracks of a look may have keys at different ages. A row has a key at each age of any track, with interpolated
+// values of the other tracks.
 #pragma once
 
 #include <cstdint>
@@ -34,8 +33,8 @@ struct AgeKey {
     friend bool operator==(const AgeKey&, const AgeKey&) = default;
 };
 
-/// Up to kLookKeysMax keys, their ages rising. Straight lines between keys, the nearest key's value before
-/// the first and after the last.
+/// Up to kLookKeysMax keys with ascending ages, interpolated linearly; constant before the first and after the last
+/// key.
 template <class T>
 using AgeTrack = std::vector<AgeKey<T>>;
 
@@ -43,24 +42,23 @@ struct ParticleLook {
     AgeTrack<float> size;       ///< diameter in object units, ≥ 0; empty: the style's
     AgeTrack<glm::vec3> color;  ///< sRGB; interpolated in linear light; empty: the style's
     AgeTrack<float> opacity;    ///< 0…1; empty: the style's
-    AgeTrack<float> rotation;   ///< radians, anticlockwise on the picture; empty: 0
-    float turn = 0.0F;  ///< radians, ≥ 0: each particle starts turned by its own angle within ± turn
-    float spin = 0.0F;  ///< radians a second, ≥ 0: each turns at its own speed within ± spin
-    /// Seconds, ≥ 0. Above 0 a sprite reaches along its path from where it is back to where it was so long ago at its present
-    /// velocity, as in a picture exposed so long; rotation, turn and spin then do nothing. For quads alone.
+    AgeTrack<float> rotation;   ///< radians, anticlockwise in the picture; empty: 0
+    float turn = 0.0F;          ///< radians, ≥ 0: random initial rotation within ± turn
+    float spin = 0.0F;          ///< radians/s, ≥ 0: random angular speed within ± spin
+    /// Exposure time in seconds, ≥ 0. Above 0, a sprite is stretched back along its velocity by the distance of that
+    /// time; rotation, turn and spin then have no effect. Only for quads.
     float stretch = 0.0F;
-    /// The cells of the atlas played from birth to death, counted row by row from the top left; nullopt: a
-    /// round dot.
+    /// Atlas cells shown from birth to death, counted row by row from the top left; nullopt: a round dot.
     std::optional<std::uint32_t> cell_first;
     std::uint32_t cell_last = 0;  ///< ≥ cell_first
-    bool lit = true;              ///< false: it shines in its colour whatever light falls on it
-    /// Seconds after birth, and before death, over which opacity rises and falls; empty: the style's.
+    bool lit = true;              ///< false: its colour does not depend on light
+    /// Fade times after birth and before death, seconds; empty: the style's.
     std::optional<float> fade_in;
     std::optional<float> fade_out;
     friend bool operator==(const ParticleLook&, const ParticleLook&) = default;
 };
 
-/// Values of the fields that a look leaves open.
+/// Values of fields that a look leaves empty.
 struct LookDefaults {
     float size = 0.01F;
     glm::vec3 color{1.0F};  ///< sRGB
@@ -71,10 +69,11 @@ struct LookDefaults {
 };
 
 inline constexpr std::size_t kLooksMax = 16;
-/// Of one track. Texels of a row with all four tracks full are no more than OpenGL ES 3.0 gives a texture: 2048.
+/// Maximum keys of a track. With four full tracks, a row has at most 2048 texels, the minimum that OpenGL ES 3.0
+/// guarantees.
 inline constexpr std::size_t kLookKeysMax = 255;
 
-/// A track at an age; `otherwise` where it is empty.
+/// Evaluates a track at an age; returns `otherwise` if it is empty.
 template <class T>
 [[nodiscard]] T valueAt(const AgeTrack<T>& track, float age, const T& otherwise) {
     if (track.empty()) {
@@ -93,13 +92,13 @@ template <class T>
     return (1.0F - share) * low.value + share * high.value;
 }
 
-/// The rows above; one row of the defaults if there are no looks.
+/// The texture above; one row with the defaults if there are no looks.
 struct PackedLooks {
-    std::size_t width = 0;  ///< texels of a row
+    std::size_t width = 0;  ///< texels per row
     std::vector<glm::vec4> texels;
     friend bool operator==(const PackedLooks&, const PackedLooks&) = default;
 };
-/// Errors: kUsage (too many looks or keys, ages that do not rise or leave 0…1, values out of range).
+/// Errors: kUsage (too many looks or keys; ages not ascending or outside 0…1; values out of range).
 [[nodiscard]] Result<PackedLooks> packLooks(std::span<const ParticleLook> looks,
                                             const LookDefaults& defaults);
 

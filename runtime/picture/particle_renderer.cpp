@@ -13,15 +13,15 @@
 namespace relief {
 namespace {
 
-// Sampler k of the program is unit k.
+// Sampler k uses unit k.
 constexpr std::array<const char*, 6> kSamplers{"u_position", "u_birth", "u_looks",
                                                "u_order",    "u_atlas", "u_behind"};
-// The atlas is behind a program of cells alone, and velocities are of stretched ones alone.
-constexpr int kLightUnit = kSamplers.size();  // of two
+// Only programs with cells use the atlas, and only stretched ones velocities.
+constexpr int kLightUnit = kSamplers.size();  // two units
 constexpr int kVelocityUnit = kLightUnit + 2;
 static_assert(kVelocityUnit + 1 <= PassState::kUnits);
 
-// A smaller sprite would miss the centres of most pixels.
+// Smaller sprites would miss most pixel centres.
 constexpr float kPixelsMin = 1.5F;
 
 bool isFinite(const glm::mat4& matrix) {

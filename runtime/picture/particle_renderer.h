@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws the particles of a ParticleSystem as sprites that face the viewer, straight from its state textures.
+// Draws the particles of a ParticleSystem as camera-facing sprites, directly from its state textures.
 #pragma once
 
 #include <array>
@@ -23,16 +23,16 @@
 namespace relief {
 
 enum class Sprite : std::uint8_t {
-    kPoint,  ///< one vertex, but no larger than the GL's points; on the fragment path some drivers drop it where its
+    kPoint,  ///< one vertex, limited to the point size of the GL; on the fragment path, some drivers drop it when its
              ///< centre leaves the picture
-    kQuad,  ///< six vertices, of any size, and stretched by looks
+    kQuad,  ///< six vertices, of any size; looks can stretch it
 };
 template <>
 inline constexpr std::array<std::string_view, 2> kWordsOf<Sprite>{"point", "quad"};
 
 enum class Blend : std::uint8_t {
-    kAlpha,     ///< over what is there: right where the farther is drawn first
-    kAdditive,  ///< added to what is there, in whatever order
+    kAlpha,     ///< alpha blending; needs back-to-front order
+    kAdditive,  ///< additive blending, in any order
 };
 template <>
 inline constexpr std::array<std::string_view, 2> kWordsOf<Blend>{"alpha", "additive"};
@@ -41,53 +41,53 @@ struct ParticleStyle {
     float diameter = 0.01F;               ///< object units
     glm::vec3 color{0.97F, 0.98F, 1.0F};  ///< sRGB
     float opacity = 0.95F;                ///< 0…1
-    float fade_in = 0.2F;  ///< seconds after birth, and before death, over which opacity rises and falls
+    float fade_in = 0.2F;                 ///< fade times after birth and before death, seconds
     float fade_out = 0.5F;
-    std::vector<ParticleLook> looks{};  ///< of type 0, 1, …, kLooksMax at most; what they leave open is
-                                        ///< above. A type beyond the last has the last one's
+    std::vector<ParticleLook> looks{};  ///< of type 0, 1, …, at most kLooksMax; empty fields use the
+                                        ///< values above. Further types use the last look
     Sprite sprite = Sprite::kPoint;
     Blend blend = Blend::kAlpha;
-    float soft = 0.0F;  ///< object units, ≥ 0: a sprite fades out so far before what lies behind it
-    const SpriteAtlas* atlas = nullptr;  ///< for the cells of looks; null: every particle is a round grain
+    float soft = 0.0F;  ///< object units, ≥ 0: distance over which a sprite fades in front of surfaces
+    const SpriteAtlas* atlas = nullptr;  ///< for the cells of looks; null: all particles are round dots
 };
 
-/// Ranks, as DepthSorter has them: RG32UI, texel (i mod width, i / width), width being the texture's, holds
-/// the index of the i-th particle to draw in x, and 0 in y where there is none. Indices beyond extent() are
-/// left out.
+/// Drawing order as from DepthSorter: RG32UI; texel (i mod width, i / width) of the texture holds the index of the i-th
+/// particle in x, and 0 in y for none. Indices beyond extent() are skipped.
 struct ParticleOrder {
     const GlTexture* texture = nullptr;
     std::uint32_t count = 0;  ///< ranks
 };
 
-/// The path of ParticleRenderer beside steps of a path: kCompute on a GPU alone. A software renderer paints tiles ten times
-/// as slowly as it draws points, but takes steps by either path in the same time.
+/// Returns the path of ParticleRenderer for a path of steps: kFragment, or kAuto otherwise, because software renderers
+/// paint tiles ten times slower than they draw points.
 [[nodiscard]] inline StepPath picturePath(StepPath steps) {
     return steps == StepPath::kFragment ? steps : StepPath::kAuto;
 }
 
 class ParticleRenderer {
   public:
-    /// \param collider  shades the particles; nullopt: they lie in the open.
-    /// \param path      kCompute: particles are painted by compute shaders (tile_painter.h) where the target's depth is a
-    ///                  plain texture, which stays as it is; the same picture but for rounding (tile_painter.h). kAuto where
-    ///                  a GPU draws whose driver compiles that. picturePath() of the system's,
-    ///                  as a rule.
-    /// Errors: kUnsupported (kCompute without compute shaders), kFailure (the driver's compiler).
+    /// Needs a current context, as draw() does.
+    /// \param collider  shades the particles; nullopt: no shading.
+    /// \param path      kCompute: paint by compute shaders (tile_painter.h) if the depth of the target is a plain
+    /// texture,
+    ///                  with equal results except for rounding. kAuto: kCompute on GPUs whose drivers compile it.
+    ///                  Normally picturePath() of the path of the particle system.
+    /// Errors: kUnsupported (kCompute without compute shaders), kFailure (shader compiler).
     [[nodiscard]] static Result<ParticleRenderer> create(const std::optional<ColliderView>& collider,
                                                          StepPath path = StepPath::kAuto);
 
-    /// Draws over what the target shows, in linear light or sRGB as the target has it, hidden where its depth is nearer; depth stays as it
-    /// is. Nothing is read back, nothing waits for the GPU.
-    /// \param order   in which they are drawn; without a texture that of their texels.
-    /// \param behind  what style.soft compares with: window depths of a picture by the same camera and of the
-    ///                target's size, not attached to the target, such as ColliderRenderer::depth(). Null:
-    ///                style.soft has no effect.
-    /// Errors: kUsage (looks, see packLooks; a stretched look of points; soft; a camera that is not finite), kUnsupported, kFailure (the driver's compiler), kLimit (no room for
-    /// the light among the collider).
+    /// Draws over the target's contents (linear or sRGB, as the target requires) with its depth test; writes no depth.
+    /// Does not read back or wait for the GPU.
+    /// \param order   drawing order; without a texture, that of the particle indices.
+    /// \param behind  depths for style.soft: window depths of a picture with the same camera and size, not attached to
+    /// the
+    ///                target, such as ColliderRenderer::depth(). Null: style.soft has no effect.
+    /// Errors: kUsage (looks, see packLooks(); a stretched look of points; soft; a camera that is not finite),
+    /// kUnsupported, kFailure (shader compiler), kLimit (out of memory for the light around the collider).
     Result<void> draw(const ParticleSystem& particles, const CameraMatrices& camera,
                       const ParticleStyle& style, const RenderTarget& target, const ParticleOrder& order = {},
                       const GlTexture* behind = nullptr);
-    /// By a camera whose picture has the target's shape.
+    /// Draws with a Camera and the aspect ratio of the target.
     Result<void> draw(const ParticleSystem& particles, const Camera& camera, const ParticleStyle& style,
                       const RenderTarget& target, const ParticleOrder& order = {},
                       const GlTexture* behind = nullptr) {
@@ -99,9 +99,9 @@ class ParticleRenderer {
     /// Leaves the program in use.
     void setSamplers(const GlProgram& program) const;
     [[nodiscard]] Result<void> uploadLooks(const ParticleStyle& style);
-    /// The program of the style, compiled when it is first wanted.
+    /// Returns the program of the style, compiled on first use.
     [[nodiscard]] Result<const GlProgram*> programFor(const ParticleStyle& style);
-    /// By tiles. \return false if these are to be drawn otherwise.
+    /// Paints by tiles. \return false if the particles must be drawn as points or quads.
     [[nodiscard]] Result<bool> paintTiles(const ParticleSystem& particles, const CameraMatrices& camera,
                                           const ParticleStyle& style, const RenderTarget& target,
                                           const ParticleOrder& order, const GlTexture* behind);
@@ -110,13 +110,13 @@ class ParticleRenderer {
 
     std::optional<ColliderLight> light_;
     std::optional<TilePainter> tiles_;
-    bool needs_tiles_ = false;           // a driver that cannot compile them is an error
-    std::array<GlProgram, 8> programs_;  // points or quads, of an atlas, stretched
+    bool needs_tiles_ = false;           // failure to compile them is an error
+    std::array<GlProgram, 8> programs_;  // index bits: quads, atlas, stretched
     GlVertexArray no_attributes_;
     GlTexture no_order_;
-    GlTexture nothing_;  // stands for a texture that a draw does without
+    GlTexture nothing_;  // placeholder for unused textures
     GlTexture looks_;
-    PackedLooks packed_;  // what looks_ holds
+    PackedLooks packed_;  // contents of looks_
 };
 
 }  // namespace relief

@@ -12,18 +12,17 @@
 namespace relief {
 namespace {
 
-// Around a vertex with more corners than this they are not compared one by one: the time would grow with
-// their square.
+// Corners around a vertex are not compared pairwise if there are more than this, which would take quadratic time.
 constexpr std::size_t kFanMax = 64;
 
 glm::vec3 unitOrZero(const glm::vec3& v) {
-    // Scaled first: squares of small numbers vanish.
+    // Scale first, because squares of small numbers underflow.
     const float largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
     return largest > 0.0F && std::isfinite(largest) ? glm::normalize(v / largest) : glm::vec3(0.0F);
 }
 
 struct Corner {
-    glm::vec3 face;  // its triangle's normal
+    glm::vec3 face;  // normal of its triangle
     float angle;
 };
 
@@ -44,7 +43,7 @@ std::vector<Corner> cornersOf(const PictureMesh& mesh) {
     return corners;
 }
 
-/// Corners by their vertex: those of v are list[begin[v]] … list[begin[v + 1] - 1], in ascending order.
+/// Corners by vertex: those of v are list[begin[v]] … list[begin[v + 1] - 1], in ascending order.
 struct Fans {
     std::vector<std::size_t> begin;
     std::vector<std::uint32_t> list;
@@ -67,7 +66,7 @@ Fans fansOf(const PictureMesh& mesh) {
     return fans;
 }
 
-/// Of each vertex of a mesh with creases: the corners whose triangles its normal is the mean of.
+/// Per vertex of a mesh with creases: the corners whose triangles contribute to its normal.
 struct Sums {
     std::vector<std::uint32_t> begin{0};
     std::vector<std::uint32_t> corners;
@@ -83,7 +82,7 @@ PictureMesh creased(const PictureMesh& mesh, float crease, Sums* sums) {
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
         const std::span<const std::uint32_t> fan(&fans.list[0] + fans.begin[v],
                                                  fans.begin[v + 1] - fans.begin[v]);
-        const std::size_t first = out.positions.size();  // of this vertex's doubles
+        const std::size_t first = out.positions.size();  // first duplicate of this vertex
         for (const std::uint32_t c : fan) {
             glm::vec3 sum(0.0F);
             together.clear();

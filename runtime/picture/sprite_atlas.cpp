@@ -29,7 +29,7 @@ std::vector<glm::vec4> premultiplied(std::span<const std::uint8_t> rgba) {
     return texels;
 }
 
-/// The mean of 2 × 2; width and height are even.
+/// Averages 2 × 2 texels; width and height are even.
 std::vector<glm::vec4> halved(const std::vector<glm::vec4>& texels, std::size_t width, std::size_t height) {
     std::vector<glm::vec4> half(texels.size() / 4);
     for (std::size_t y = 0; y < height / 2; ++y) {

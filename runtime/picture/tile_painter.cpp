@@ -16,8 +16,8 @@
 namespace relief {
 namespace {
 
-// Storage units, as the shaders have them.
-constexpr GLuint kSprites = 0, kEntries = 1, kCounts = 2, kWork = 3;  // tile_*.comp, but for
+// Storage units, as in the shaders.
+constexpr GLuint kSprites = 0, kEntries = 1, kCounts = 2, kWork = 3;  // tile_*.comp, except
 constexpr GLuint kPaintEntries = 0, kPaintSprites = 1;                // tile_paint.comp, and
 constexpr GLuint kFrom = 0, kTo = 1, kTotals = 3;                     // radix_*.comp
 
@@ -39,9 +39,9 @@ std::uint32_t dividedUp(std::uint32_t a, std::uint32_t b) {
 std::uint32_t entriesFor(std::uint32_t sprites) {
     return std::max(kEntriesASprite * sprites, kEntriesMin);
 }
-static_assert(kEntriesASprite * TilePainter::kSpritesMax < 0xffffff);  // tile_scan.comp counts no further
+static_assert(kEntriesASprite * TilePainter::kSpritesMax < 0xffffff);  // limit of tile_scan.comp
 
-/// Window depth is 0…1 from the near to the far plane, and nothing beyond is drawn.
+/// Returns whether the depth range is the default 0…1, with clipping at the near and far planes.
 bool depthIsUsual() {
     std::array<GLfloat, 2> range{0.0F, 1.0F};
     glGetFloatv(GL_DEPTH_RANGE, range.data());
@@ -61,7 +61,7 @@ bool depthIsUsual() {
     return usual;
 }
 
-/// The texture that a framebuffer, which it leaves bound, has its depth in; 0: it has none; nullopt: something that is no
+/// Returns the depth texture of a framebuffer, which stays bound; 0 if it has no depth; nullopt if the depth is not a
 /// plain texture.
 std::optional<GLuint> depthAttachmentOf(GLuint framebuffer) {
     if (framebuffer == 0) {
@@ -87,7 +87,7 @@ std::optional<GLuint> depthAttachmentOf(GLuint framebuffer) {
     return static_cast<GLuint>(of(GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME));
 }
 
-/// A texture of the caller's is one that can be read as depth, not a layer of an array, say, or one whose name is gone.
+/// Returns whether a texture of the caller can be read as depth: not deleted, and not a layer of an array, for example.
 bool isReadable(GLuint texture) {
     if (glIsTexture(texture) == GL_FALSE) {
         return false;
@@ -145,7 +145,7 @@ bool TilePainter::prepare(std::uint32_t sprites, const RenderTarget& target) {
         return false;
     }
     const std::optional<GLuint> depth = depthAttachmentOf(target.framebuffer);
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);  // what is drawn to is not read
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);  // do not read a bound attachment
     if (!depth || (*depth != 0 && *depth != depth_ && !isReadable(*depth)) || !makeRoom(sprites) ||
         !makeLayer(target)) {
         return false;
@@ -161,7 +161,7 @@ bool TilePainter::makeRoom(std::uint32_t sprites) {
     }
     GLint64 most = 0;
     glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
-    // Little by little, as a scene's extent grows.
+    // Grow gradually with the extent of the scene.
     const auto room = static_cast<std::uint32_t>(
         std::clamp<std::int64_t>(most / static_cast<std::int64_t>(kSpriteBytes), 0,
                                  std::min(std::max(sprites + sprites / 2, 1U << 16), kSpritesMax)));
@@ -228,7 +228,7 @@ void TilePainter::paint(const Programs& programs, const Vertices& vertices, bool
         glDispatchCompute(x, y, 1);
         StorageUnits::order();
     };
-    StorageUnits::order();  // the last picture's may still be read
+    StorageUnits::order();  // buffers of the previous picture may still be in use
     StorageUnits::bind(kSprites, sprite_buffer_);
     StorageUnits::bind(kEntries, entry_buffers_[0]);
     StorageUnits::bind(kCounts, counts_);
@@ -259,12 +259,12 @@ void TilePainter::paint(const Programs& programs, const Vertices& vertices, bool
     ImageUnits::finish();
     if (depth_ != 0) {
         glBindSampler(kHidesUnit, 0);
-        useTexture(kHidesUnit, 0);  // it is drawn to again
+        useTexture(kHidesUnit, 0);  // it becomes a render target again
     }
 }
 
 void TilePainter::sortEntries() const {
-    // Only the GPU knows their number: blocks for all that there is room for, of which some stay empty.
+    // Only the GPU knows the number of entries, so dispatch blocks for the full capacity; some stay empty.
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     constexpr auto kWord = static_cast<GLsizeiptr>(kWordBytes);
     copyBuffer(work_, totals_, kRadixDigits * kWord, kWord);
