@@ -54,14 +54,14 @@ Result<Collider> openCollider(const SceneCollider& from, const ContainerLimits& 
 }
 
 using Colliders = std::map<fs::path, std::shared_ptr<const Collider>>;
-/// The animated mesh of a container, and the space that it takes up.
+/// The animated mesh of a container, and its extent.
 struct AnimatedFile {
     std::shared_ptr<const AnimatedMesh> mesh;
     PoseExtent extent;
 };
 using AnimatedFiles = std::map<fs::path, AnimatedFile>;
 
-/// The clip that a collider plays. \param known  meshes that other colliders have read.
+/// Loads the clip that a collider plays. \param known  meshes read by other colliders.
 Result<PlayedMesh> openPlayed(const SceneCollider& from, const ContainerLimits& limits,
                               AnimatedFiles& known) {
     AnimatedFile& file = known[from.path];
@@ -82,7 +82,7 @@ Result<PlayedMesh> openPlayed(const SceneCollider& from, const ContainerLimits& 
     return loadPlayedMesh(from, file.mesh, file.extent);
 }
 
-/// Reads the scene's world, if it has one, and places its bodies.
+/// Reads the world of the scene, if any, and places its bodies.
 Result<void> openWorld(Scene& scene, LoadedScene& to, const ContainerLimits& limits,
                        MaterialResponses& responses) {
     if (scene.world.empty()) {
@@ -176,7 +176,7 @@ Result<void> checkOverlap(const LoadedScene& loaded) {
     };
     constexpr std::size_t kTried = 64;
     for (std::size_t i = 0; i < kTried; ++i) {
-        const std::size_t tried = (i * count / kTried + i) % count;  // odd and even ones
+        const std::size_t tried = (i * count / kTried + i) % count;  // odd and even indices
         const glm::vec3 center =
             toWorld(loaded.scene.colliders[tried].pose, loaded.colliders[tried]->bounds.center());
         std::size_t around = 0;
@@ -224,7 +224,7 @@ Result<LoadedScene> loadAll(Scene scene, const fs::path& input, const SceneOverr
     for (std::size_t i = 0; i < loaded.world_colliders.size(); ++i) {
         of_world[containerOf(scene, loaded.world.colliders[i])] = loaded.world_colliders[i];
     }
-    // A table that names a file means that file, also where the world has a coarse one in its place.
+    // A table that names a file gets that file, even if the world has a coarse one for it.
     AnimatedFiles meshes;
     Colliders of_tables = scene.stream ? Colliders() : of_world;
     for (const SceneCollider& from : scene.colliders) {

@@ -11,7 +11,7 @@
 namespace relief {
 namespace {
 
-/// The fault of a camera at `eye`; nullptr: none.
+/// Returns the fault of a camera at `eye`, or nullptr.
 const char* cameraProblem(const glm::vec3& eye, const glm::vec3& target) {
     const glm::vec3 d = eye - target;
     if (!(glm::length(d) > 0.0F)) {
@@ -42,7 +42,7 @@ std::optional<FieldFault> checkAirOf(Scene& scene, const GivenFields& given) {
     return std::nullopt;
 }
 
-/// The frames, which lie within the steps.
+/// Checks that the frames are within the steps.
 std::optional<FieldFault> checkFrames(const Scene& scene) {
     const SceneRender& render = scene.render;
     for (const auto& [path, step] : {std::pair("render.first", render.first), {"render.last", render.last}}) {
@@ -57,7 +57,7 @@ std::optional<FieldFault> checkFrames(const Scene& scene) {
     return std::nullopt;
 }
 
-/// render.mesh is drawn in its own space, and only once.
+/// Checks render.mesh, which is drawn once, in its own space.
 std::optional<FieldFault> checkMesh(const Scene& scene) {
     if (scene.render.mesh.empty()) {
         return std::nullopt;
@@ -101,19 +101,19 @@ std::optional<FieldFault> checkCells(const Scene& scene) {
     return std::nullopt;
 }
 
-/// The colliders that have a number of their own.
+/// Returns the number of colliders with a number of their own, excluding further tiles.
 std::size_t numbered(const Scene& scene) {
     return static_cast<std::size_t>(std::count_if(scene.colliders.begin(), scene.colliders.end(),
                                                   [](const SceneCollider& c) { return !c.tile_of; }));
 }
 
-/// As ParticleType::collides.
+/// Returns all bodies as bits of ParticleType::collides.
 std::uint32_t bodiesOf(const Scene& scene) {
     const auto groups = std::min<std::size_t>(numbered(scene), WorldTextures::kGroups);
     return (1U << groups) - 1U + (scene.ground.enabled ? kCollidesWithGround : 0U);
 }
 
-/// The types among the scene's other tables: what they leave open is [collision]'s.
+/// Fills missing values of the types from [collision], and checks them against the other tables.
 std::optional<FieldFault> completeTypes(Scene& scene, const GivenFields& given) {
     for (std::size_t i = 0; i < scene.types.size(); ++i) {
         SceneType& type = scene.types[i];
@@ -188,7 +188,7 @@ std::optional<FieldFault> check(SceneRender& render, const GivenFields& /*given*
         before = render.weather[i].time;
     }
     if (render.sort_frames == 1) {
-        // It would be a whole sort each frame, which spreading over frames is there to avoid.
+        // 1 would be a complete sort per frame, which spreading is meant to avoid.
         return FieldFault{"sort_frames", "= 1 is out of range; choose 0, for no sort, or 2 to 200"};
     }
     return std::nullopt;
@@ -199,7 +199,7 @@ std::optional<FieldFault> check(SceneType& type, const GivenFields& given) {
     if (given("name") && type.name.empty()) {
         return FieldFault{"name", "is empty; give a name, or remove it"};
     }
-    if (look.opacity.size() > 1 && !given("fade")) {  // it is the particle's beginning and end
+    if (look.opacity.size() > 1 && !given("fade")) {  // the track defines the beginning and the end
         look.fade_in = 0.0F;
         look.fade_out = 0.0F;
     }
@@ -252,7 +252,7 @@ std::vector<ParticleType> particleTypes(const Scene& scene) {
     }
     std::vector<ParticleType> types(scene.types.begin(), scene.types.end());
     for (ParticleType& type : types) {
-        // Bits of absent bodies do not matter: leaving nothing out is worth a faster step.
+        // Ignore bits of absent bodies: a type that collides with everything has a faster step.
         type.collides = type.collides == bodiesOf(scene) ? kCollidesWithAll : type.collides;
     }
     return types;
@@ -267,7 +267,7 @@ std::vector<ParticleLook> particleLooks(const Scene& scene) {
 }
 
 std::uint32_t prewarmSteps(const Scene& scene) {
-    // Rounding must not add a step to a whole number of them.
+    // Rounding must not add a step to a whole number of steps.
     return static_cast<std::uint32_t>(
         std::ceil(scene.time.prewarm / static_cast<double>(scene.time.dt) - 1e-6));
 }
@@ -301,7 +301,7 @@ Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
                                                       "; bake the mesh again, scaled");
         }
     }
-    // A collider without extent still gets a scene of some size, one that floats can resolve where it lies.
+    // A collider without extent still gets a scene with a size that floats can resolve at its position.
     const glm::vec3 center = bounds.center();
     const float away = std::max({std::abs(center.x), std::abs(center.y), std::abs(center.z)});
     const float scale = std::max({bounds.longestSide(), 1e-3F * away, 1e-6F});
@@ -309,7 +309,7 @@ Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
                        (static_cast<double>(scene.time.steps) + static_cast<double>(prewarmSteps(scene)));
     for (std::size_t i = 0; i < scene.types.size(); ++i) {
         SceneType& type = scene.types[i];
-        // A scene without a world counts its colliders as it is read.
+        // A scene without a world already checked this when it was read.
         const std::uint32_t absent = type.collides & ~(bodiesOf(scene) | kCollidesWithGround);
         if (!scene.world.empty() && type.collides != kCollidesWithAll && absent != 0) {
             return fail(ErrorCode::kInvalidInput,

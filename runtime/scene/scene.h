@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene file as plain structs. Every key is declared once, in fields() beside its struct; README.md beside this file lists
+// A scene file as plain structs. Every key is declared once, in fields() of its struct; README.md in this folder lists
 // them.
 #pragma once
 
@@ -26,7 +26,7 @@ namespace relief {
 struct SceneTime {
     float dt = 1.0F / 60.0F;  ///< seconds
     std::uint32_t steps = 300;
-    double prewarm = 0.0;  ///< seconds, in whole steps, that are played before time 0
+    double prewarm = 0.0;  ///< seconds simulated before time 0, in whole steps
     Integrator integrator = Integrator::kEuler;
 };
 
@@ -43,7 +43,7 @@ struct SceneForces {
     std::optional<glm::vec3> gravity;
     glm::vec3 wind{0.0F};
     float drag = 2.5F;
-    bool has_drag = true;  ///< else viscosity
+    bool has_drag = true;  ///< false: viscosity is used
     std::optional<float> viscosity;
 };
 
@@ -51,15 +51,15 @@ void fields(FieldVisitor& visit, SceneForces& forces);
 [[nodiscard]] std::optional<FieldFault> check(SceneForces& forces, const GivenFields& given);
 
 struct SceneCollision {
-    float restitution = 0.0F;  ///< these three as in ParticleType
+    float restitution = 0.0F;  ///< as in ParticleType, like the next two
     float friction = 1.0F;
     float friction_threshold = 0.0F;
-    std::optional<float> sweep;  ///< as ParticleSystem::setSweep; nullopt: that of SceneSweep
+    std::optional<float> sweep;  ///< as ParticleSystem::setSweep(); nullopt: computed by SceneSweep
 };
 
 void fields(FieldVisitor& visit, SceneCollision& c);
 
-/// A world of which only a part is in full detail.
+/// [stream]: a world with full detail only near points of interest.
 struct SceneStream {
     float radius = 0.0F;
     float memory = 256.0F;
@@ -75,7 +75,7 @@ struct SceneGround {
 
 void fields(FieldVisitor& visit, SceneGround& ground);
 
-/// A [[camera.key]]; what it leaves open is [camera]'s.
+/// A [[camera.key]]; missing values are those of [camera].
 struct SceneCameraKey {
     double time = 0.0;  ///< seconds
     glm::vec3 eye{0.0F};
@@ -89,7 +89,7 @@ struct SceneCamera {
     std::optional<glm::vec3> eye;
     std::optional<glm::vec3> target;
     float fov = 30.0F;                 ///< degrees
-    std::vector<SceneCameraKey> keys;  ///< times rising; empty: the camera stands still
+    std::vector<SceneCameraKey> keys;  ///< ascending times; empty: the camera is fixed
 };
 
 void fields(FieldVisitor& visit, SceneCamera& camera);
@@ -112,31 +112,31 @@ struct SceneRender {
     glm::vec3 color{0.97F, 0.98F, 1.0F};  ///< sRGB
     float opacity = 0.95F;
     glm::vec3 background{0.62F, 0.69F, 0.76F};  ///< sRGB
-    std::uint32_t every = 10;                   ///< steps from frame to frame
+    std::uint32_t every = 10;                   ///< steps per frame
     std::optional<std::uint32_t> first;         ///< step of the first frame; nullopt: `every`
-    std::optional<std::uint32_t> last;          ///< of the last; nullopt: the end of the run
-    std::uint32_t sort_frames = 0;              ///< that a depth sort is spread over, 2…200; 0: unsorted
+    std::optional<std::uint32_t> last;          ///< step of the last frame; nullopt: the end of the run
+    std::uint32_t sort_frames = 0;              ///< frames per depth sort, 2…200; 0: unsorted
     Sprite sprite = Sprite::kPoint;
     Blend blend = Blend::kAlpha;
     float soft = 0.0F;            ///< object units
     std::filesystem::path atlas;  ///< resolved; empty: none
-    std::string atlas_origin;     ///< "scene.toml:3:8" of the key, for messages
+    std::string atlas_origin;     ///< position of the key, "scene.toml:3:8", for messages
     std::uint32_t atlas_columns = 1;
     std::uint32_t atlas_rows = 1;
-    std::filesystem::path mesh;  ///< resolved; empty: the collider is drawn from its maps
+    std::filesystem::path mesh;  ///< resolved; empty: draw the collider from its maps
     std::string mesh_origin;
     std::filesystem::path meshes;  ///< resolved; empty: none
     std::string meshes_origin;
     float fog = 0.0F;                   ///< world units; 0: none
     float metre = 1.0F;                 ///< world units
-    std::optional<float> shadows;       ///< world units about camera.target
-    std::vector<SceneWeather> weather;  ///< times rising
+    std::optional<float> shadows;       ///< distance from camera.target, world units
+    std::vector<SceneWeather> weather;  ///< ascending times
 };
 
 void fields(FieldVisitor& visit, SceneRender& r);
 [[nodiscard]] std::optional<FieldFault> check(SceneRender& render, const GivenFields& given);
 
-/// ParticleType::collides as a list of bodies.
+/// Reads and writes ParticleType::collides as a list of bodies.
 struct CollidesList {
     std::uint32_t& bits;
 };
@@ -144,7 +144,7 @@ extern const FieldCustom kCollidesListField;
 template <>
 inline constexpr const FieldCustom* kFieldCustom<CollidesList> = &kCollidesListField;
 
-// The tracks of a look: one value, or keys [age, value…].
+// Tracks of a look: a single value, or keys [age, value…].
 extern const FieldCustom kNumberTrackField;
 extern const FieldCustom kColorTrackField;
 extern const FieldCustom kNumberKeyField;
@@ -159,7 +159,7 @@ template <>
 inline constexpr const FieldCustom* kFieldCustom<AgeKey<glm::vec3>> = &kColorKeyField;
 void fields(FieldVisitor& visit, ParticleLook& look);
 
-/// A [[type]]: how its particles move, collide and look.
+/// A [[type]]: motion, collision and appearance of its particles.
 struct SceneType : ParticleType {
     std::string name;  ///< "": none
     ParticleLook look;
@@ -171,13 +171,13 @@ void fields(FieldVisitor& visit, SceneType& type);
 
 inline constexpr std::size_t kSceneMaterialsMax = 4096;
 
-/// A value whose default depends on the collider's size is optional; withDefaults() fills it.
+/// Values with a default that depends on the collider's size are optional; withDefaults() fills them.
 struct Scene {
     std::filesystem::path world;  ///< resolved; empty: none
-    std::string world_origin;     ///< "scene.toml:3:8" of the key, for messages; empty without a scene file
-    std::optional<SceneStream> stream;  ///< none: all of the world is there in full detail
-    /// Those of the file's tables and, once loaded, behind them the bodies of the world that no table names; then at least
-    /// one.
+    std::string
+        world_origin;  ///< position of the key, "scene.toml:3:8", for messages; empty without a scene file
+    std::optional<SceneStream> stream;  ///< nullopt: the whole world has full detail
+    /// Colliders of the file. Loading appends the bodies of the world that no table names; then there is at least one.
     std::vector<SceneCollider> colliders;
     std::vector<MaterialResponse> materials;  ///< of all colliders, by name
     SceneTime time;
@@ -185,11 +185,11 @@ struct Scene {
     std::vector<SceneEmitter> emitters{SceneEmitter{}};  ///< at least one
     std::vector<SceneSpawn> spawns;
     SceneForces forces;
-    AirSettings
-        air;  ///< wind and viscosity are those of `forces`; its flow is null: loadFlow() reads it from `flow`
+    /// Wind and viscosity are copied from `forces`; loadFlow() reads the flow from `flow`.
+    AirSettings air;
     std::optional<FlowFile> flow;  ///< box in object units
     SceneCollision collision;
-    std::vector<SceneType> types;  ///< empty: one that [collision] describes
+    std::vector<SceneType> types;  ///< empty: a single type, from [collision]
     SceneGround ground;
     SceneCamera camera;
     SceneRender render;
@@ -198,22 +198,23 @@ struct Scene {
 void fields(FieldVisitor& visit, Scene& scene);
 [[nodiscard]] std::optional<FieldFault> check(Scene& scene, const GivenFields& given);
 
-/// The types as a particle system, without any the one that [collision] describes, and their looks as a renderer takes them.
+/// Returns the particle types of a scene; without [[type]], the single type of [collision].
 [[nodiscard]] std::vector<ParticleType> particleTypes(const Scene& scene);
+/// Returns the looks of the types.
 [[nodiscard]] std::vector<ParticleLook> particleLooks(const Scene& scene);
 
-/// Steps that are played before time 0.
+/// Returns the number of steps before time 0.
 [[nodiscard]] std::uint32_t prewarmSteps(const Scene& scene);
-/// The steps after which the first frame and the last are due; 0 is before the first step.
+/// Return the steps after which the first and the last frame are due; 0 is before the first step.
 [[nodiscard]] std::uint32_t firstFrame(const Scene& scene);
 [[nodiscard]] std::uint32_t lastFrame(const Scene& scene);
-/// A frame is due every `render.every` steps from the first on, and at the last.
+/// Returns whether a frame is due after a step: every `render.every` steps from the first frame on, and at the last.
 [[nodiscard]] bool frameDue(const Scene& scene, std::uint32_t step);
-/// Frames of the whole run.
+/// Returns the number of frames of the run.
 [[nodiscard]] std::uint32_t frameCount(const Scene& scene);
 
-/// Every optional filled from the collider's bounds: snow that falls on it from above, seen from the front.
-/// Errors: kInvalidInput (the eye straight above the target once defaults are in).
+/// Fills all optional values from the bounds of the collider: snow that falls on it, seen from the front.
+/// Errors: kInvalidInput (with defaults, the camera is directly above or below its target).
 [[nodiscard]] Result<Scene> withDefaults(Scene scene, const Bounds& bounds);
 
 }  // namespace relief

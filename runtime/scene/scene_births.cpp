@@ -29,7 +29,7 @@ Result<EmitterSurface> surfaceOf(const AnimatedMesh& mesh, const MeshPose& pose,
     return EmitterSurface::create(triangles, std::move(weights), posed(mesh, pose));
 }
 
-/// The triangles of a group and of a material, of what a file names.
+/// Returns the triangles of a group and a material of a file.
 Result<std::vector<glm::uvec3>> partOf(const NamedMesh& named, const SceneEmitter& emitter) {
     const std::vector<glm::uvec3> all = trianglesOf(named.mesh);
     std::vector<glm::uvec3> kept;
@@ -38,7 +38,7 @@ Result<std::vector<glm::uvec3>> partOf(const NamedMesh& named, const SceneEmitte
     bool has_group = emitter.group.empty();
     bool has_material = emitter.material.empty();
     for (std::size_t part = 0; part <= named.parts.size(); ++part) {
-        // In front of the first part lie those without names.
+        // Triangles before the first part have no names.
         const PictureMeshPart own = part > 0 ? named.parts[part - 1] : PictureMeshPart{};
         const std::size_t end = part < named.parts.size() ? named.parts[part].begin : all.size();
         groups.push_back(own.group);
@@ -66,7 +66,7 @@ Result<EmitterSurface> surfaceOf(NamedMesh named, const SceneEmitter& emitter) {
     return EmitterSurface::create(triangles, {}, std::move(named.mesh.positions));
 }
 
-/// Surfaces of containers, each found once.
+/// Cache of the surfaces of containers.
 using Surfaces = std::map<const Collider*, ColliderSurface>;
 
 Result<EmitterSurface> surfaceOf(const Collider& container, const SceneEmitter& emitter, Surfaces& known) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The emitters of a scene, with the points and surfaces that they name, ready to give birth.
+// Creates the emitters of a scene, with the points and surfaces that they name.
 #pragma once
 
 #include <memory>
@@ -18,7 +18,7 @@
 
 namespace relief {
 
-/// The colliders of a scene, one entry each: those of a LoadedScene. Borrowed.
+/// The colliders of a LoadedScene, one entry each in every span. Borrowed.
 struct SceneMeshes {
     std::span<const SceneCollider> colliders;
     std::span<const std::shared_ptr<const Collider>> containers;
@@ -26,12 +26,13 @@ struct SceneMeshes {
     std::span<const std::optional<PlayedMesh>> played;
 };
 
-/// Reads the files of points and of surfaces. Emitter i draws from stream i. A surface that followsShape() has the vertices of the collider's
-/// mesh, in their order, as they are at time 0; that of a container without a mesh is found by colliderSurface().
-/// \param emitters  complete. \param meshes  of the colliders that `attach` counts.
-/// Fails as loadPointList, loadNamedMesh and EmitterSurface::create do, and with kInvalidInput (points without normals and without a
-/// direction; a group or material of a collider without a mesh, or none such: the message lists those there are). Messages begin with
-/// the place in the scene.
+/// Creates emitters, and reads their files of points and surfaces. Emitter i uses random stream i. A surface that
+/// followsShape() has the vertices of the collider's mesh at time 0, in their order; colliderSurface() finds the
+/// surface of a container without a mesh.
+/// \param emitters  complete. \param meshes  of the colliders that `attach` refers to.
+/// Errors: those of loadPointList, loadNamedMesh and EmitterSurface::create; kInvalidInput (points with neither normals
+/// nor a direction; a group or material of a collider without a mesh; an unknown group or material, with a list of the
+/// known ones). Messages start with the place in the scene.
 [[nodiscard]] Result<std::vector<Emitter>> makeEmitters(std::span<const SceneEmitter> emitters,
                                                         const SceneMeshes& meshes);
 

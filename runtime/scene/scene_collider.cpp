@@ -11,7 +11,7 @@ Pose completePose(ScenePose& pose, const Pose& rest) {
     Pose result = rest;
     result.position = pose.position.value_or(rest.position);
     if (pose.angle) {
-        // After two turns the quaternion is the same; a small angle is exact to more digits.
+        // Quaternions repeat after two turns; smaller angles are more precise.
         result.rotation = glm::normalize(glm::angleAxis(glm::radians(std::fmod(*pose.angle, 720.0F)),
                                                         pose.axis.value_or(glm::vec3(0.0F, 1.0F, 0.0F))));
     }
@@ -78,7 +78,7 @@ Pose poseAt(const SceneCollider& collider, double time) {
 }
 
 Bounds worldBounds(const SceneCollider& collider, const Bounds& object) {
-    // A turn between two keys is cut finely enough to be off by no more than a thousandth of its radius.
+    // With this subdivision, the error of a turn between two keys is at most 1/1000 of its radius.
     constexpr int kCuts = 64;
     Bounds world;
     const auto add = [&](const Pose& pose) {

@@ -17,7 +17,7 @@
 
 namespace relief {
 
-/// A pose as a table gives it.
+/// A pose as in a table.
 struct ScenePose {
     std::optional<glm::vec3> position;
     std::optional<glm::vec3> axis;
@@ -37,12 +37,12 @@ inline constexpr std::size_t kPoseKeysMax = 1024;
 inline constexpr double kClipStartMax = 86'400.0;
 inline constexpr double kClipSpeedMax = 1000.0;
 
-/// Completes what the table leaves open from `rest`. \return it as a pose.
+/// Fills missing values from `rest`. \return the complete pose.
 [[nodiscard]] Pose completePose(ScenePose& pose, const Pose& rest);
-/// The same of each key.
+/// Completes each key.
 [[nodiscard]] std::vector<PoseKey> completeKeys(std::vector<SceneKey>& keys, const Pose& rest);
-/// One key alone moves nothing, and times rise.
-/// \param instead  of a single key, in words.
+/// Checks that there are no keys or at least two, with ascending times.
+/// \param instead  what to use instead of a single key, for the message.
 [[nodiscard]] std::optional<FieldFault> checkKeys(const std::vector<SceneKey>& keys, const char* instead);
 
 /// collider.deform.
@@ -68,7 +68,7 @@ struct ScenePlay {
 
 void fields(FieldVisitor& visit, ScenePlay& play);
 
-/// [[collider.material]]: of an animated mesh.
+/// [[collider.material]] of an animated mesh.
 struct SceneMaterialColor {
     std::string name;
     glm::vec3 color{0.0F};  ///< sRGB
@@ -78,40 +78,41 @@ void fields(FieldVisitor& visit, SceneMaterialColor& material);
 
 struct SceneCollider {
     std::filesystem::path path;  ///< resolved against the scene's folder
-    std::string origin;          ///< "scene.toml:3:8" of that key, for messages; empty without a scene file
-    std::string node;            ///< of a body of the scene's world, which completes the rest; empty: none
-    /// The number of the collider that named its node, of whose mesh it is another tile: it moves and is met as that one.
+    std::string origin;  ///< position of that key, "scene.toml:3:8", for messages; empty without a scene file
+    std::string node;    ///< node of a body of the world, which provides missing values; empty: none
+    /// For a further tile of a mesh: the number of the collider that names the node. It moves and collides like that
+    /// one.
     std::optional<std::size_t> tile_of{};
     ScenePose given_pose;
     float scale = 1.0F;
-    float restitution = 1.0F;                   ///< factor of the particles' own
-    float friction = 0.0F;                      ///< on top of the particles' own
-    std::optional<SceneLive> live;              ///< wobbles: `path` is a mesh, not a container
-    std::optional<ScenePlay> play;              ///< an animated mesh of the container moves
-    std::uint32_t resolution = 256;             ///< of its maps
-    std::optional<glm::vec3> color;             ///< of its picture, sRGB
-    std::vector<SceneMaterialColor> materials;  ///< that have colours of their own
+    float restitution = 1.0F;                   ///< multiplied with that of particles
+    float friction = 0.0F;                      ///< added to that of particles
+    std::optional<SceneLive> live;              ///< deforms in waves: `path` is a mesh, not a container
+    std::optional<ScenePlay> play;              ///< plays the animated mesh of the container
+    std::uint32_t resolution = 256;             ///< texels along the longest side of its maps
+    std::optional<glm::vec3> color;             ///< in pictures, sRGB
+    std::vector<SceneMaterialColor> materials;  ///< materials with their own colours
     std::vector<SceneKey> given_keys;
-    // Filled by check() (of a body by placeBodies()), which also completes the pose and the keys above:
-    /// Any key of the table but its file is given: else the particles live in the collider's own object space.
+    // Filled by check(), or by placeBodies() for bodies of a world, which also complete the pose and keys above:
+    /// Whether the table has any key besides its file. If not, particles live in the collider's object space.
     bool posed = false;
     Pose pose;
-    std::vector<PoseKey> keys;  ///< by rising time; empty: at rest at `pose`
+    std::vector<PoseKey> keys;  ///< ascending times; empty: fixed at `pose`
 
-    /// Its maps are drawn before each step.
+    /// Whether its maps are redrawn before each step.
     [[nodiscard]] bool deforms() const { return live || play; }
 };
 
 void fields(FieldVisitor& visit, SceneCollider& c);
 [[nodiscard]] std::optional<FieldFault> check(SceneCollider& collider, const GivenFields& given);
 
-/// Completes the pose and the keys. \param rest  where it is without a pose of its own.
+/// Completes the pose and the keys. \param rest  the pose for missing values.
 void completePoses(SceneCollider& collider, const Pose& rest);
 
-/// The pose of a collider; before the first key and after the last it rests.
+/// Returns the pose of a collider; constant before the first and after the last key.
 [[nodiscard]] Pose poseAt(const SceneCollider& collider, double time);
 
-/// The box, along the world's axes, of all places that it passes through.
+/// Returns the world-space bounds of a collider over all its keys.
 [[nodiscard]] Bounds worldBounds(const SceneCollider& collider, const Bounds& object);
 
 }  // namespace relief

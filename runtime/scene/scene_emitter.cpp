@@ -11,7 +11,7 @@
 namespace relief {
 namespace {
 
-/// Seconds in which an emitter gives birth.
+/// Returns the seconds during which an emitter is active.
 double activeSeconds(const SceneEmitter& emitter, double run) {
     return std::min(std::max(run - emitter.start, 0.0), emitter.duration);
 }
@@ -21,7 +21,7 @@ double burstBirths(const SceneEmitter& emitter, double seconds) {
     return static_cast<double>(emitter.burst) * (1.0 + again);
 }
 
-/// Emitters without a rate share the rest of the capacity: it is used up at the end of the run, never before.
+/// Distributes the remaining capacity over emitters without a rate, so that it is used up at the end of the run.
 Result<void> shareRates(std::span<SceneEmitter> emitters, double run, std::uint32_t capacity) {
     double room = capacity;
     double sharing = 0.0;
@@ -47,7 +47,7 @@ Result<void> shareRates(std::span<SceneEmitter> emitters, double run, std::uint3
     return {};
 }
 
-/// Of the place.
+/// Checks the place of births.
 std::optional<FieldFault> checkPlace(SceneEmitter& emitter, const GivenFields& given) {
     if (emitter.shape == EmitterShape::kPoint) {
         emitter.shape = EmitterShape::kBox;

@@ -23,9 +23,9 @@ namespace relief {
 
 /// emitter.touching.
 struct SceneTouching {
-    std::vector<std::string> materials;  ///< by name; empty: any, and what has none
-    float within = 0.0F;                 ///< world units, as is the next
-    float min_speed = 0.0F;
+    std::vector<std::string> materials;  ///< by name; empty: any surface, even without a material
+    float within = 0.0F;                 ///< world units
+    float min_speed = 0.0F;              ///< world units/s
 };
 
 /// A name, or several.
@@ -38,33 +38,33 @@ inline constexpr const FieldCustom* kFieldCustom<NameList> = &kNameListField;
 
 void fields(FieldVisitor& visit, SceneTouching& touching);
 
-/// An emitter as its table gives it. completeEmitters() fills what depends on the collider and on the run.
+/// An emitter as in its table. completeEmitters() fills values that depend on the collider and on the run.
 struct SceneEmitter : EmitterSettings {
     SceneEmitter();
 
-    bool has_box = false;  ///< box_min and box_max are set, as are the next with their flags
+    bool has_box = false;  ///< whether box_min and box_max are set; likewise the flags below
     bool has_rate = false;
     bool has_velocity = false;
     bool has_velocity_spread = false;
     bool has_aim = false;
-    bool has_speed = false;             ///< of aim
-    std::filesystem::path points_file;  ///< resolved against the scene's folder; for kPoints alone
-    std::string points_origin;          ///< "scene.toml:3:8" of that key, for messages
-    std::filesystem::path
-        mesh_file;  ///< resolved as well; for kSurface alone; empty: of the collider it is attached to
+    bool has_speed = false;             ///< speeds of `aim`
+    std::filesystem::path points_file;  ///< resolved against the scene's folder; only for kPoints
+    std::string points_origin;          ///< position of that key, "scene.toml:3:8", for messages
+    /// Resolved; only for kSurface; empty: the surface of the collider that `attach` names.
+    std::filesystem::path mesh_file;
     std::string mesh_origin;
-    std::string group;     ///< of that mesh; empty: all of it
-    std::string material;  ///< likewise
+    std::string group;     ///< group of that mesh; empty: all of it
+    std::string material;  ///< material of that mesh; empty: all of it
     std::optional<SceneTouching> touching;
     std::uint64_t seed = 1;
     std::string place;  ///< "file:line:column" of the table
 
-    std::optional<std::uint32_t> attach;  ///< the number of the collider in whose space it is, from 0
+    std::optional<std::uint32_t> attach;  ///< number of the collider in whose space it is, from 0
     std::vector<SceneKey> given_keys;
-    std::vector<PoseKey> keys;  ///< of those; by rising time; empty: it rests there
-    float inherit = 0.0F;       ///< share of its own velocity that births take on
+    std::vector<PoseKey> keys;  ///< complete, ascending times; empty: it does not move
+    float inherit = 0.0F;       ///< fraction of its own velocity that births inherit
     [[nodiscard]] bool moves() const { return attach.has_value() || !keys.empty(); }
-    /// Its surface is that of the collider that it is attached to, and bends with it.
+    /// Whether it emits from the surface of its collider, and deforms with it.
     [[nodiscard]] bool followsShape() const { return shape == EmitterShape::kSurface && mesh_file.empty(); }
 };
 
@@ -81,7 +81,7 @@ struct NormalSpeed {
 };
 void fields(FieldVisitor& visit, NormalSpeed& speed);
 
-/// Makes an aim if there is none and the visitor fills it; check() removes one that no key has set.
+/// Creates `aim` if the visitor fills fields; check() removes it if no key was set.
 void fields(FieldVisitor& visit, SceneEmitter& e);
 [[nodiscard]] std::optional<FieldFault> check(SceneEmitter& emitter, const GivenFields& given);
 
@@ -90,7 +90,7 @@ inline constexpr std::size_t kSpawnsMax = 16;
 
 struct SceneSpawn : SpawnSettings {
     std::uint64_t seed = 1;
-    std::string on_material;  ///< SpawnSettings::material by its name; empty: any
+    std::string on_material;  ///< name of SpawnSettings::material; empty: any
     SourcePlace place;        ///< of the table
     friend bool operator==(const SceneSpawn&, const SceneSpawn&) = default;
 };
@@ -98,20 +98,20 @@ struct SceneSpawn : SpawnSettings {
 void fields(FieldVisitor& visit, SceneSpawn& spawn);
 [[nodiscard]] std::optional<FieldFault> check(SceneSpawn& spawn, const GivenFields& given);
 
-/// Sets what no key has set: boxes above the collider, from which snow falls.
-/// \param bounds, scale  of the collider; scale > 0, its size.
-/// \param seconds, capacity  of the run: emitters without a rate share evenly what the others leave of it.
-/// Errors: kInvalidInput if they leave nothing.
+/// Fills missing values: boxes above the collider, from which snow falls.
+/// \param bounds, scale  of the collider; scale is its size, > 0.
+/// \param seconds, capacity  of the run. Emitters without a rate share the capacity that the others leave.
+/// Errors: kInvalidInput if no capacity is left.
 [[nodiscard]] Result<void> completeEmitters(std::span<SceneEmitter> emitters, const Bounds& bounds,
                                             float scale, double seconds, std::uint32_t capacity);
 
-/// Spawner i draws from stream i of its seed, behind those of the emitters.
-/// \param materials  WorldTextures::materialNames(); a name that is not among them is never hit.
+/// Creates the spawners. Spawner i uses random stream i of its seed, after those of the emitters.
+/// \param materials  WorldTextures::materialNames(); other names never match.
 [[nodiscard]] std::vector<Spawner> makeSpawners(std::span<const SceneSpawn> spawns,
                                                 std::span<const std::string> materials);
 
-/// Trajectories that carry the births of each emitter along.
-/// \param colliders  that `attach` counts; those that deform are followed by their pose alone.
+/// Returns the motion of each emitter.
+/// \param colliders  that `attach` refers to; only the pose of deforming ones is used.
 [[nodiscard]] std::vector<EmitterMotion> emitterMotions(std::span<const SceneEmitter> emitters,
                                                         std::span<const SceneCollider> colliders);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene's collider that wobbles: a mesh instead of a container, how it moves, and what its maps are.
+// Colliders of a scene that deform in waves (collider.deform): a mesh instead of a container.
 #pragma once
 
 #include "formats/base/result.h"
@@ -10,16 +10,17 @@
 
 namespace relief {
 
-/// The mesh of a live collider, ready to wobble.
+/// The mesh of a live collider and its waves.
 struct LiveMesh {
-    PictureMesh mesh;  ///< with one normal a vertex, so that waves tear nothing
+    PictureMesh mesh;  ///< with one normal per vertex, so that waves do not tear it
     Wobble wobble;
     Collider frames;  ///< bounds of the whole motion, and three maps without texels
 };
 
-/// Reads the mesh, completes its wobble, and chooses maps that hold its whole motion.
+/// Reads the mesh, completes its waves, and chooses maps that cover its whole motion.
 /// \param from  with `live`.
-/// Fails as loadPictureMesh does, and with kInvalidInput (a mesh without extent); messages begin with the place in the scene.
+/// Errors: those of loadPictureMesh(); kInvalidInput (a mesh without extent). Messages start with the place in the
+/// scene.
 [[nodiscard]] Result<LiveMesh> loadLiveMesh(const SceneCollider& from);
 
 }  // namespace relief

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr std::array<std::uint8_t, 4> kFloorColor{148, 150, 146, 255};  // sRGB
 
-/// Of containers of the world: the name of the mesh that they are of.
+/// Returns the mesh name of each container of the world.
 std::map<fs::path, std::string> namesOfWorld(const LoadedScene& loaded) {
     std::map<fs::path, std::string> names;
     for (const WorldCollider& collider : loaded.world.colliders) {
@@ -50,12 +50,12 @@ Result<fs::path> fileOf(const fs::path& folder, const std::string& mesh) {
     return invalidInput(quotedPath(folder) + " has no '" + name + ".ply' or .obj for a collider; add it");
 }
 
-/// The place of render.meshes, for messages.
+/// Returns the place of render.meshes, for messages.
 std::string originOf(const Scene& scene) {
     return scene.render.meshes_origin + ": render.meshes";
 }
 
-/// Of each collider the file that is drawn for it; an empty path: none is.
+/// Returns the drawn file of each collider; empty if there is none.
 std::vector<Result<fs::path>> findFiles(const LoadedScene& loaded) {
     const Scene& scene = loaded.scene;
     const std::map<fs::path, std::string> of_world = namesOfWorld(loaded);
@@ -80,7 +80,7 @@ Result<std::vector<fs::path>> fileOfEach(const LoadedScene& loaded) {
     return files;
 }
 
-/// Each once, without empty paths.
+/// Returns the files sorted, without duplicates and empty paths.
 std::vector<fs::path> sorted(std::vector<fs::path> files) {
     std::sort(files.begin(), files.end());
     files.erase(std::unique(files.begin(), files.end()), files.end());
@@ -94,7 +94,7 @@ std::array<std::uint8_t, 4> vertexColor(const glm::vec3& color) {
             static_cast<std::uint8_t>(bytes.b), 255};
 }
 
-/// A mesh without colours takes on that of its collider, if it has one.
+/// Gives a mesh without colours the colour of its collider, if any.
 PictureMesh colored(PictureMesh mesh, const SceneCollider& collider) {
     if (mesh.colors.empty() && collider.color) {
         mesh.colors.assign(mesh.positions.size(), vertexColor(*collider.color));
@@ -102,7 +102,7 @@ PictureMesh colored(PictureMesh mesh, const SceneCollider& collider) {
     return mesh;
 }
 
-/// A square round the scene, 100 times as large as that.
+/// Returns a square around the scene, 100 times its size.
 PictureMesh floorMesh(const LoadedScene& loaded) {
     const glm::vec3 center = loaded.bounds.center();
     const float half = 50.0F * std::max(loaded.bounds.longestSide(), 1e-3F);
@@ -117,7 +117,7 @@ PictureMesh floorMesh(const LoadedScene& loaded) {
     return mesh;
 }
 
-/// Its materials' colours; the rest has that of its collider.
+/// Returns the mesh with the colours of its materials; the rest has the colour of its collider.
 Result<PictureMesh> animatedMesh(const PlayedMesh& played, const SceneCollider& collider) {
     PictureMesh mesh;
     mesh.positions = posed(*played.mesh, played.poseAt(0.0));
@@ -164,8 +164,8 @@ Result<DrawnMeshes> loadDrawnMeshes(const LoadedScene& loaded) {
     const Scene& scene = loaded.scene;
     const std::vector<fs::path> files = RELIEF_TRY(fileOfEach(loaded));
     DrawnMeshes out;
-    std::map<std::pair<fs::path, std::vector<float>>, std::uint32_t> known;  // by colour, too
-    // A world's mesh that was cut into tiles is several colliders in one place.
+    std::map<std::pair<fs::path, std::vector<float>>, std::uint32_t> known;  // by file and colour
+    // A mesh of a world that was cut into tiles is several colliders with the same pose.
     std::map<std::tuple<std::string, std::uint32_t>, std::vector<Pose>> drawn;
     for (std::size_t i = 0; i < scene.colliders.size(); ++i) {
         const SceneCollider& collider = scene.colliders[i];
@@ -245,7 +245,7 @@ Bounds shadowBounds(const LoadedScene& loaded) {
     Bounds around = loaded.bounds;
     if (loaded.scene.ground.enabled) {
         around.min.y = std::min(around.min.y, *loaded.scene.ground.height);
-        // Shadows fall on the floor beside the colliders.
+        // Include shadows on the floor beside the colliders.
         const float height = around.max.y - around.min.y;
         around.min -= glm::vec3(height, 0.0F, height);
         around.max += glm::vec3(height, 0.0F, height);

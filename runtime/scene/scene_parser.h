@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene file: TOML to the structs of scene.h.
+// Parses scene files: TOML to the structs of scene.h.
 #pragma once
 
 #include <filesystem>
@@ -12,18 +12,19 @@ namespace relief {
 
 class TomlValue;  // formats/config/toml_reader.h
 
-/// \param text    the file's contents; may be hostile.
-/// \param path    names it in messages and resolves the paths in it, which may not leave its folder
+/// Parses a scene.
+/// \param text    contents of the file; untrusted.
+/// \param path    name of the file in messages. Paths in the scene are relative to its folder and may not leave it
 ///                (confined_path.h).
-/// \param root    another folder that they may lead to; empty: none.
-/// Errors: kInvalidInput, one line "file:line:column: what is wrong; the cure".
+/// \param root    another folder that they may refer to; empty: none.
+/// Errors: kInvalidInput, one line "file:line:column: what is wrong; what to do".
 [[nodiscard]] Result<Scene> parseScene(std::string_view text, const std::filesystem::path& path,
                                        const std::filesystem::path& root = {});
 
 /// Reads the top level of a scene. Throws TomlError.
 void readScene(const TomlValue& top, Scene& scene);
 
-/// Reads a file and parses it. Fails as readFile and parseScene do, and with kLimit above 1 MiB.
+/// Reads and parses a file. Errors: those of readFile() and parseScene(); kLimit above 1 MiB.
 [[nodiscard]] Result<Scene> loadScene(const std::filesystem::path& path,
                                       const std::filesystem::path& root = {});
 

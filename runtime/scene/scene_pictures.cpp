@@ -69,7 +69,7 @@ Result<std::unique_ptr<SpriteAtlas>> loadAtlas(const Scene& scene) {
     auto atlas = SpriteAtlas::create(picture.rgba, picture.width, picture.height, render.atlas_columns,
                                      render.atlas_rows);
     if (!atlas) {
-        // The picture does not suit the scene: not the caller's error but the file's.
+        // The picture does not match the scene: an error of the file, not of the caller.
         const ErrorCode code =
             atlas.error().code == ErrorCode::kUsage ? ErrorCode::kInvalidInput : atlas.error().code;
         return failAt(render.atlas_origin, "render.atlas", {code, atlas.error().message});
@@ -92,7 +92,7 @@ ColliderView colliderView(const LoadedScene& loaded, const WorldTextures& textur
     for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
         texel = std::min(texel, loaded.scene.colliders[i].pose.scale * finestTexel(*loaded.colliders[i]));
     }
-    // The coarse ones have a sixteenth of the bytes.
+    // Coarse colliders have 1/16 of the bytes, so full ones have about 1/4 of the texel size.
     return {&textures, loaded.bounds, loaded.scene.stream ? 0.25F * texel : texel};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of a scene: the files that they need, the style of its particles, and its camera.
+// Pictures of a scene: their files, the style of particles, and the camera.
 #pragma once
 
 #include <memory>
@@ -14,33 +14,35 @@
 
 namespace relief {
 
-/// Reads the files that pictures of a complete scene need; without a GPU.
-/// Fails as loadAtlas and loadColliderMesh do, but for a GPU's limits.
+/// Validates the files that pictures of a complete scene need, without a GPU.
+/// Errors: those of loadAtlas() and loadColliderMesh(), except GPU limits.
 [[nodiscard]] Result<void> checkPictures(const Scene& scene, const Bounds& bounds);
 
-/// render.atlas on the GPU; null if the scene has none.
-/// Fails as readFile, decodePng and SpriteAtlas do; messages begin with the place in the scene.
+/// Uploads render.atlas; returns null if the scene has none. Needs a current context.
+/// Errors: those of readFile(), decodePng() and SpriteAtlas. Messages start with the place in the scene.
 [[nodiscard]] Result<std::unique_ptr<SpriteAtlas>> loadAtlas(const Scene& scene);
 
-/// render.mesh on the GPU; null if the scene has none.
-/// \param bounds  of the collider, which the mesh must meet.
-/// Fails as loadPictureMesh and ColliderMesh do, and with kInvalidInput (it lies elsewhere); messages begin with the place
-/// in the scene.
+/// Uploads render.mesh; returns null if the scene has none. Needs a current context.
+/// \param bounds  of the collider, which the mesh must overlap.
+/// Errors: those of loadPictureMesh() and ColliderMesh; kInvalidInput (no overlap). Messages start with the place in
+/// the scene.
 [[nodiscard]] Result<std::unique_ptr<ColliderMesh>> loadColliderMesh(const Scene& scene,
                                                                      const Bounds& bounds);
 
-/// The colliders as renderers see them.
+/// Returns the view of the colliders for renderers.
 [[nodiscard]] ColliderView colliderView(const LoadedScene& loaded, const WorldTextures& textures);
 
-/// \param scene  complete (withDefaults).
+/// Returns the style of the particles.
+/// \param scene  complete (withDefaults()).
 /// \param atlas  may be null; must outlive the style.
 [[nodiscard]] ParticleStyle particleStyle(const Scene& scene, const SpriteAtlas* atlas);
 
-/// Goes on with the sort that render.sort_frames spreads over frames, above 0. \return the order, until the next call.
+/// Continues the sort, which is spread over render.sort_frames > 0 frames. \return the order, valid until the next
+/// call.
 [[nodiscard]] ParticleOrder sortedFor(const Scene& scene, const ParticleSystem& particles,
                                       const glm::vec3& eye, DepthSorter& sorter);
 
-/// The camera of a complete scene after so many seconds.
+/// Returns the camera of a complete scene at a time in seconds.
 [[nodiscard]] Camera sceneCamera(const Scene& scene, const Bounds& bounds, double seconds);
 
 }  // namespace relief

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything that is derived from the fields of a scene and checked in; scripts/generate.sh writes it.
+// Checked-in texts derived from the fields of a scene; scripts/generate.sh writes them.
 #pragma once
 
 #include "formats/fields/generated.h"
 
 namespace relief {
 
-/// The tables of README.md beside this file, the schema for editors, and the dictionary of the fuzzer.
+/// Returns the tables of README.md in this folder, the schema for editors, and the dictionary of the fuzzer.
 [[nodiscard]] GeneratedTexts sceneReference();
 
 }  // namespace relief

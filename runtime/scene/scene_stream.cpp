@@ -11,10 +11,10 @@ namespace relief {
 namespace {
 
 constexpr double kMegabyte = 1e6;
-/// Colliders under way where their way is long: as many as a browser has connections to a server.
+/// Maximum number of remote requests in flight: the connections per server of a browser.
 constexpr std::size_t kFromAfar = 6;
 
-/// A ball that holds all places of birth, in the emitter's space.
+/// Returns a ball around all birth positions, in the space of the emitter.
 PointOfInterest ballOf(const EmitterSettings& emitter) {
     Bounds box;
     switch (emitter.shape) {

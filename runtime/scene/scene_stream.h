@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The world of a scene that has only what is needed of it on the GPU.
+// Streamed worlds of scenes.
 #pragma once
 
 #include <memory>
@@ -13,24 +13,25 @@
 
 namespace relief {
 
+/// Creates the stream of a world.
 /// \param loaded  with a [stream].
-/// \param bodies  the scene's colliders.
-/// \param source  of the world's; null: makeFileSource().
-/// Errors: those of WorldStream::create and makeFileSource.
+/// \param bodies  the colliders of the scene.
+/// \param source  loads colliders; null: makeFileSource().
+/// Errors: those of WorldStream::create() and makeFileSource().
 [[nodiscard]] Result<std::unique_ptr<WorldStream>> makeStream(const LoadedScene& loaded,
                                                               std::span<const ColliderBody> bodies,
                                                               std::unique_ptr<ColliderSource> source);
 
-/// A ball that holds all birthplaces of each emitter, in its own space.
+/// Returns a ball around all birth positions of each emitter, in its own space.
 [[nodiscard]] std::vector<PointOfInterest> emitterBalls(std::span<const Emitter> emitters);
-/// The same in the world, wider by a radius.
+/// Returns the balls in world space, enlarged by a radius.
 /// \param motions  of the emitters.
 /// \param radius   of the [stream].
-/// \param seconds  since the beginning; emitters that move are where they are then.
+/// \param seconds  time of the poses of moving emitters.
 [[nodiscard]] std::vector<PointOfInterest> emitterPoints(std::span<const PointOfInterest> balls,
                                                          std::span<const EmitterMotion> motions, float radius,
                                                          double seconds);
-/// A ball of the radius of the [stream] about the scene's camera.
+/// Returns a ball around the camera, with the radius of the [stream].
 [[nodiscard]] PointOfInterest cameraPoint(const LoadedScene& loaded, double seconds);
 
 }  // namespace relief

@@ -21,13 +21,13 @@
 namespace relief {
 namespace {
 
-constexpr int kGrid = 8;  // points along each side of the box, from which surfaces are looked for
-constexpr std::size_t kPlacesMin = 16;  // fewer places are no sample of a body
-constexpr float kThinnest = 0x1p-14F;   // of the longest side, as are the next
+constexpr int kGrid = 8;                // sample points along each side of the box
+constexpr std::size_t kPlacesMin = 16;  // minimum number of samples for an estimate
+constexpr float kThinnest = 0x1p-14F;   // thicknesses tested, in longest sides
 constexpr float kThickest = 2.0F;
-constexpr float kWider = 1.2F;           // from one depth that is tried to the next
-constexpr int kHalvings = 5;             // of the last such interval
-constexpr std::uint64_t kBirths = 1000;  // of each emitter
+constexpr float kWider = 1.2F;           // factor between tested depths
+constexpr int kHalvings = 5;             // bisections of the last interval
+constexpr std::uint64_t kBirths = 1000;  // sampled births per emitter
 
 std::string number(double value) {
     char text[32];
@@ -35,7 +35,7 @@ std::string number(double value) {
     return text;
 }
 
-/// How far it is inwards from a place of the surface to the other side, at most 1/160 too short; nullopt beside an edge.
+/// Returns the thickness inwards from a point of the surface, at most 1/160 too small; nullopt next to an edge.
 std::optional<float> thicknessAt(const Collider& collider, const SurfaceSample& place, float longest) {
     const auto inside = [&](float depth) {
         return evaluate(collider, place.point - depth * place.normal).inside();
@@ -55,7 +55,7 @@ std::optional<float> thicknessAt(const Collider& collider, const SurfaceSample& 
     return depth;
 }
 
-/// The first births of an emitter, in the world.
+/// Returns the first births of an emitter, in world space.
 std::vector<Birth> birthsOf(Emitter emitter, const EmitterMotion& motion, const Scene& scene) {
     const double dt{scene.time.dt};
     const double begin = -dt * prewarmSteps(scene);
@@ -63,7 +63,7 @@ std::vector<Birth> birthsOf(Emitter emitter, const EmitterMotion& motion, const 
     std::vector<Birth> births;
     emitter.emit(end - begin, kBirths, births);
     for (Birth& birth : births) {
-        // Births without an age are those of a burst, the first of which comes at the start.
+        // Births without an age belong to a burst; the first burst is at the start.
         const double moment = birth.age > 0.0F ? end - double{birth.age} : begin + emitter.settings().start;
         birth.age = 0.0F;
         carry(motion, moment, std::span(&birth, 1));
@@ -71,7 +71,7 @@ std::vector<Birth> birthsOf(Emitter emitter, const EmitterMotion& motion, const 
     return births;
 }
 
-/// The speed that a birth has fallen to by the middle of all bodies, if nothing but gravity and drag acts on it.
+/// Estimates the speed of a birth at the centre of all bodies, with only gravity and drag.
 float speedAtBodies(const Birth& birth, const ParticleType& type, const Scene& scene, const Bounds& bounds) {
     const glm::vec3 gravity = type.gravity * *scene.forces.gravity;
     const float pull = glm::length(gravity);
@@ -85,7 +85,7 @@ float speedAtBodies(const Birth& birth, const ParticleType& type, const Scene& s
     return drag > 0.0F ? std::min(free, std::max(start, pull / drag)) : free;
 }
 
-/// Mostly from one side of a body to the other, in units of its object space; nullopt: too little of it is seen.
+/// Returns the typical thickness of a collider, object units; nullopt if there are too few samples.
 std::optional<float> typicalThickness(const Collider& collider) {
     const float longest = collider.bounds.longestSide();
     if (!(longest > 0.0F)) {
@@ -116,12 +116,12 @@ std::optional<float> typicalThickness(const Collider& collider) {
 
 struct SceneSweep::Thin {
     std::string file;
-    float thick = 0.0F;  // world units, as are the next
+    float thick = 0.0F;  // world units
     float speed = 0.0F;
     float step = 0.0F;
 };
 
-/// The thinnest of several decides the cure. \param sweeps  collision.sweep can be one.
+/// Returns the warning; the thinnest collider determines the cure. \param sweeps  whether collision.sweep is a cure.
 std::string SceneSweep::thinWarning(std::span<const Thin> all, bool sweeps) {
     const Thin& worst = *std::min_element(all.begin(), all.end(),
                                           [](const Thin& a, const Thin& b) { return a.thick < b.thick; });
@@ -138,7 +138,7 @@ SceneSweep::SceneSweep(const Scene& scene, std::span<const std::shared_ptr<const
                        std::span<const Emitter> emitters, const Bounds& bounds)
     : bounds_(bounds), groups_(std::min<std::size_t>(colliders.size(), WorldTextures::kGroups)) {
     std::map<const Collider*, std::optional<float>> thicknesses;
-    std::set<std::tuple<std::string, float, std::size_t>> known;  // a world has a file many times
+    std::set<std::tuple<std::string, float, std::size_t>> known;  // a world may use a file many times
     for (std::size_t i = 0; i < colliders.size(); ++i) {
         const SceneCollider& body = scene.colliders[i];
         const auto [at, added] = thicknesses.try_emplace(colliders[i].get());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sweep of a scene that does not state it.
+// The default sweep length of a scene.
 #pragma once
 
 #include <filesystem>
@@ -15,33 +15,34 @@
 
 namespace relief {
 
-/// By the longest step and the fastest birth so far: half of the thinnest collider that such a step is longer than, or what the
-/// pieces of a sweep reach; 0 if there is none. Colliders that deform are left out.
+/// Computes the sweep from the longest step and the fastest birth so far: half the thickness of the thinnest collider
+/// that such a step could pass through, or the distance that the pieces of a sweep require, if larger; 0 if there is no
+/// such collider. Ignores deforming colliders.
 class SceneSweep {
   public:
     SceneSweep() = default;
-    /// \param scene     complete, with every default.
-    /// \param colliders as many as the scene has.
-    /// \param emitters  as many as the scene has, before their first birth.
-    /// \param bounds    of all colliders, in the particles' space.
+    /// \param scene     complete, with all defaults.
+    /// \param colliders of the scene.
+    /// \param emitters  of the scene, before their first birth.
+    /// \param bounds    of all colliders, in the space of the particles.
     SceneSweep(const Scene& scene, std::span<const std::shared_ptr<const Collider>> colliders,
                std::span<const Emitter> emitters, const Bounds& bounds);
 
-    /// Emitters in place of those of before.
+    /// Accounts for new emitters.
     void add(const Scene& scene, std::span<const Emitter> emitters);
-    /// Births besides the emitters'.
+    /// Accounts for births that do not come from emitters.
     void add(const Scene& scene, std::span<const Birth> births);
 
-    /// The sweep of a step: collision.sweep if the scene states it.
-    /// \param warnings  gets one line, once, if colliders are still thinner than a step or than the sweep, so that particles pass
-    ///                  through them: how many there are, the thinnest, and the cure for all.
+    /// Returns the sweep of a step: collision.sweep if the scene has it.
+    /// \param warnings  receives one line, once, if particles can still pass through thin colliders: their number, the
+    ///                  thinnest, and the cure.
     [[nodiscard]] float lengthFor(float dt, const Scene& scene, std::vector<std::string>& warnings);
 
   private:
     struct Body {
         std::filesystem::path path;
-        float thick = 0.0F;     // mostly, world units
-        std::size_t group = 0;  // a bit of ParticleType::collides
+        float thick = 0.0F;     // typical thickness, world units
+        std::size_t group = 0;  // bit of ParticleType::collides
     };
     struct Thin;
     [[nodiscard]] std::vector<Thin> thinColliders() const;
@@ -49,11 +50,11 @@ class SceneSweep {
 
     Bounds bounds_;
     std::vector<Body> bodies_;
-    std::vector<std::map<float, float>> groups_;  // the fastest that meets the bodies of each, by its radius
-    float longest_ = 0.0F;                        // step, seconds
-    float half_ = 0.0F;    // of the thinnest; 0: no step is longer than a collider is thick
-    float speed_ = 0.0F;   // of the fastest that meets a collider as thin
-    bool fitted_ = false;  // these two, to the births so far
+    std::vector<std::map<float, float>> groups_;  // per group: particle radius to the highest speed
+    float longest_ = 0.0F;                        // longest step, seconds
+    float half_ = 0.0F;    // half of the thinnest collider; 0: all are thicker than a step
+    float speed_ = 0.0F;   // highest speed at that collider
+    bool fitted_ = false;  // half_ and speed_ are up to date
     bool warned_ = false;
 };
 

@@ -11,14 +11,14 @@
 namespace relief {
 namespace {
 
-/// Of a trajectory, whose box worldBounds() knows to a thousandth of the body's radius, and of roundings.
+/// Margin for the error of worldBounds(), 1/1000 of the body's radius, and for rounding.
 constexpr float kRoom = 0.002F;
 
 Bounds grown(const Bounds& box, float room) {
     return {box.min - room, box.max + room};
 }
 
-/// The body that named a node of several tiles; else itself.
+/// Returns the collider that names the node of a tile; otherwise the collider itself.
 std::size_t wholeOf(const Scene& scene, std::size_t collider) {
     return scene.colliders[collider].tile_of.value_or(collider);
 }

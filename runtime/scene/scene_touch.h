@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Births of a surface where it touches another: emitter.touching of a scene.
+// Limits births to places where a surface touches another one: emitter.touching.
 #pragma once
 
 #include <cstddef>
@@ -16,13 +16,13 @@
 
 namespace relief {
 
-/// A BirthFilter. The nearest surface of all colliders, or the ground if that is nearer, is what a place touches; of colliders
-/// that are equally near the first. The emitter's own collider does not count, nor do those that deform. On the CPU, from the
-/// same containers on every machine; of a world that is streamed, the coarse ones.
+/// A BirthFilter. A place touches the nearest surface of all colliders, or the ground if that is nearer; the first of
+/// equally near ones. The emitter's own collider and deforming colliders are ignored. Runs on the CPU with the same
+/// containers on every machine; a streamed world uses its coarse ones.
 class TouchFilter {
   public:
-    /// \param loaded   whose poses are those at each birth's moment. It must outlive this, and its colliders' poses must not
-    ///                 change but by their keys.
+    /// \param loaded   provides the poses at the time of each birth. It must outlive this; poses may only change by
+    /// keys.
     /// \param emitter  of that scene, with `touching`.
     TouchFilter(const LoadedScene& loaded, const SceneEmitter& emitter);
 
@@ -32,14 +32,14 @@ class TouchFilter {
   private:
     struct Body {
         std::size_t index = 0;  // in the scene
-        Bounds box;             // of all its places in the world, with room for `within`
+        Bounds box;             // world bounds over all times, enlarged by `within`
     };
     struct Touched {
         float distance = 0.0F;  // world units
-        std::string material;   // empty: it has none
+        std::string material;   // empty: none
         glm::vec3 velocity{0.0F};
     };
-    /// The surface of a body at a place, if it is nearer than `within`.
+    /// Returns the surface of a body at a place, if it is nearer than `within`.
     [[nodiscard]] std::optional<Touched> touchedOf(const Body& body, const glm::vec3& p, double moment,
                                                    float within) const;
     [[nodiscard]] bool touches(const glm::vec3& p, const glm::vec3& velocity, double moment,
@@ -50,7 +50,7 @@ class TouchFilter {
     std::vector<Body> bodies_;
 };
 
-/// emitterMotions() of all its emitters, with the filters of those that must touch something. \param loaded  must outlive them.
+/// Returns emitterMotions() of all emitters, with filters for those with `touching`. \param loaded  must outlive them.
 [[nodiscard]] std::vector<EmitterMotion> emitterMotions(const LoadedScene& loaded);
 
 }  // namespace relief

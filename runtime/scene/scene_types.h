@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The keys of a scene's types of particles and of its births by events.
+// Keys of particle types and of births by events.
 #pragma once
 
 #include "formats/base/field.h"
@@ -9,7 +9,7 @@
 
 namespace relief {
 
-/// All but `collides`, which names bodies.
+/// All fields except `collides`, which names bodies.
 void fields(FieldVisitor& visit, ParticleType& type);
 
 void fields(FieldVisitor& visit, SpawnSettings& s);

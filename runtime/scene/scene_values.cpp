@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values of a scene that have formats of their own.
+// Values of a scene with their own formats.
 #include <algorithm>
 #include <array>
 #include <string>
@@ -13,7 +13,7 @@
 namespace relief {
 namespace {
 
-/// One value, or keys [age, value…].
+/// Reads a single value, or keys [age, value…].
 template <class T>
 void readTrack(const TomlValue& from, void* into, const FieldInfo& info) {
     auto& track = *static_cast<AgeTrack<T>*>(into);
@@ -109,7 +109,7 @@ void readCollides(const TomlValue& from, void* value, const FieldInfo& /*info*/)
         ++colliders;
     }
     if (top.find("world")) {
-        colliders = WorldTextures::kBodiesMax;  // its bodies are counted when it is read
+        colliders = WorldTextures::kBodiesMax;  // the number of its bodies is not known yet
     }
     bits = 0;
     for (std::size_t i = 0; i < from.array()->size(); ++i) {
@@ -130,7 +130,7 @@ void readCollides(const TomlValue& from, void* value, const FieldInfo& /*info*/)
     }
 }
 
-/// A key of a track: [age, value].
+/// Returns the numbers of a key: [age, value].
 std::array<float, 2> partsOf(const AgeKey<float>& key) {
     return {key.age, key.value};
 }

@@ -14,7 +14,7 @@
 namespace relief {
 namespace {
 
-/// The bodies of each node, in the world's order.
+/// Bodies of each node, in the order of the world.
 using BodiesOfNodes = std::map<std::string_view, std::vector<std::size_t>>;
 
 BodiesOfNodes bodiesOfNodes(const World& world) {
@@ -25,7 +25,7 @@ BodiesOfNodes bodiesOfNodes(const World& world) {
     return nodes;
 }
 
-/// \return their numbers in the world, one at least; all are in one place.
+/// \return the numbers of the bodies, at least one, all with the same pose.
 Result<std::vector<std::size_t>> bodiesNamed(const Scene& scene, const World& world,
                                              const BodiesOfNodes& nodes, std::size_t collider) {
     const std::string& node = scene.colliders[collider].node;
@@ -48,7 +48,7 @@ Result<std::vector<std::size_t>> bodiesNamed(const Scene& scene, const World& wo
     return bodies;
 }
 
-/// \param to  its keys are kept, and as much of its pose as it has.
+/// Places a collider at a body. \param to  keeps its keys, and the parts of its pose that are set.
 void place(SceneCollider& to, const WorldBody& body, const Scene& scene, const World& world) {
     to.path = containerOf(scene, world.colliders[body.collider]);
     to.origin = scene.world_origin;
@@ -69,7 +69,7 @@ std::filesystem::path containerOf(const Scene& scene, const WorldFile& file) {
 Result<void> placeBodies(Scene& scene, const World& world) {
     const BodiesOfNodes nodes = bodiesOfNodes(world);
     std::vector<bool> placed(world.bodies.size());
-    std::vector<std::pair<std::size_t, std::size_t>> tiles;  // the collider that named them, and their body
+    std::vector<std::pair<std::size_t, std::size_t>> tiles;  // collider that names the node, and body
     for (std::size_t i = 0; i < scene.colliders.size(); ++i) {
         SceneCollider& collider = scene.colliders[i];
         if (collider.node.empty()) {
@@ -93,9 +93,9 @@ Result<void> placeBodies(Scene& scene, const World& world) {
             place(scene.colliders.emplace_back(), world.bodies[i], scene, world);
         }
     }
-    // Last, so that the numbers of all others are those of a mesh that is whole.
+    // Appended last, so that other bodies have the same numbers as with an undivided mesh.
     for (const auto& [collider, body] : tiles) {
-        SceneCollider tile = scene.colliders[collider];  // with its poses, to the bit
+        SceneCollider tile = scene.colliders[collider];  // copies the poses exactly
         tile.tile_of = collider;
         tile.path = containerOf(scene, world.colliders[world.bodies[body].collider]);
         tile.restitution = world.bodies[body].restitution;

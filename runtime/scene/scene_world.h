@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bodies of a scene's world as colliders of the scene.
+// Adds the bodies of a world to the colliders of a scene.
 #pragma once
 
 #include <filesystem>
@@ -10,16 +10,13 @@
 
 namespace relief {
 
-/// The path of a container of the scene's world.
+/// Returns the path of a container of the world.
 [[nodiscard]] std::filesystem::path containerOf(const Scene& scene, const WorldFile& file);
 
-/// Gives the colliders that name a node the body that it places, where they leave its pose open; the other bodies of the
-/// world follow behind all colliders, in the world's order, and last the other bodies of those nodes, in the same place: the
-/// tiles of a large mesh.
-/// \param world  of scene.world.
-/// Errors, with the place in the scene: kInvalidInput (a node without a body, with several in different places, or that two
-/// colliders name);
-/// kLimit (more bodies than WorldTextures takes).
+/// Fills missing values of colliders that name a node from its body. Appends the other bodies of the world, in its
+/// order, and then the further bodies of those nodes, which have the same pose: the tiles of a large mesh.
+/// \param world  of scene.world. Errors, with the place in the scene: kInvalidInput (a node without a body, with
+/// several bodies in different places, or named by two colliders); kLimit (more bodies than WorldTextures supports).
 [[nodiscard]] Result<void> placeBodies(Scene& scene, const World& world);
 
 }  // namespace relief
