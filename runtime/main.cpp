@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `relief-sim`: plays scenes; exit codes are those of formats/base/result.h.
+// `relief-sim`: simulates scenes. Exit codes: formats/base/result.h.
 #include "runtime/cli/sim.h"
 #include "runtime/command_line/command_line.h"
 

@@ -14,14 +14,14 @@ namespace {
 
 constexpr double kBlockMs = 10.0;
 
-/// Milliseconds that all threads have computed.
+/// Returns the CPU time of all threads in milliseconds.
 double cpuMs() {
     timespec t{};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
     return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
 }
 
-/// Milliseconds of a call, a value a block.
+/// Milliseconds per call; one value per block.
 struct Times {
     std::vector<double> wall;
     std::vector<double> cpu;

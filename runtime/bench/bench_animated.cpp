@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A collider that plays its first clip.
+// Benchmark: a collider that plays its first clip.
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -10,7 +10,7 @@
 
 namespace relief {
 
-/// The mesh is posed, and its three front-back maps are drawn, before each step.
+/// Poses the mesh and draws its three front-back maps before each step.
 Result<Json> benchAnimated(const Bench& bench) {
     const Collider container = RELIEF_TRY(loadCollider(bench.file));
     const auto mesh = std::make_shared<const AnimatedMesh>(RELIEF_TRY(readAnimatedMesh(container.animation)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A collider that wobbles.
+// Benchmark: a collider that deforms in waves.
 #include "runtime/bench/bench.h"
 
 #include <nlohmann/json.hpp>
@@ -11,7 +11,7 @@
 
 namespace relief {
 
-/// A wobble moves the mesh; its three front-back maps of 256² are rendered before each step.
+/// Deforms the mesh and draws its three front-back maps of 256² before each step.
 Result<Json> benchMesh(const Bench& bench) {
     const PictureMesh mesh = withNormals(RELIEF_TRY(loadPictureMesh(bench.file)), 4.0F);
     Bounds box;

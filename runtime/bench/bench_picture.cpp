@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture of particles, born all through the collider's box. `bare` draws the same points, as large and opaque as they
-// are, in one colour; then the parts of a picture one by one, and
-// all of them. A software renderer draws points on either path.
+// Benchmark: a picture of particles in the whole box of the collider. `bare` draws points of the same size and opacity
+// in one colour; the other variants add the parts of a picture one by one, then all together. A software renderer draws
+// points on either path.
 #include <array>
 #include <glm/gtc/type_ptr.hpp>
 #include <nlohmann/json.hpp>
@@ -21,11 +21,11 @@ namespace relief {
 namespace {
 
 constexpr std::uint32_t kSortFrames = 30;
-constexpr float kDt = 1e-5F;  // of a step: thousands of them leave the particles where they are
+constexpr float kDt = 1e-5F;  // so short that particles hardly move in thousands of steps
 constexpr double kWarmUpMs = 20.0;
-constexpr float kLeastPixels = 1.5F;  // ParticleRenderer draws none smaller
+constexpr float kLeastPixels = 1.5F;  // minimum of ParticleRenderer
 
-/// The bare draw.
+/// Draws bare points.
 class BarePoints {
   public:
     static Result<BarePoints> create(std::string_view defines) {
@@ -60,7 +60,7 @@ class BarePoints {
     GlVertexArray array_;
 };
 
-/// \param point_pixels  diameter of the points; 0: as relief-sim draws them by default
+/// \param point_pixels  diameter of the points; 0: the default of relief-sim.
 Result<Json> benchSize(const Bench& bench, const BenchScene& scene, BenchSystem& system, GLsizei width,
                        GLsizei height, float point_pixels) {
     const ParticleSystem& particles = *system.particles;
@@ -83,7 +83,7 @@ Result<Json> benchSize(const Bench& bench, const BenchScene& scene, BenchSystem&
                        (camera.tanHalfFov() * glm::length(camera.eye - camera.target));  // pixels
     const float diameter = point_pixels > 0.0F ? point_pixels / unit : 0.0065F * scene.side;
 
-    const auto bare = RELIEF_TRY(BarePoints::create("#define RELIEF_ALPHA 0.95\n"));  // as the style's
+    const auto bare = RELIEF_TRY(BarePoints::create("#define RELIEF_ALPHA 0.95\n"));  // as in the style
     const StepPath path = picturePath(bench.path);
     auto open = RELIEF_TRY(ParticleRenderer::create(std::nullopt, path));
     auto lit = RELIEF_TRY(ParticleRenderer::create(view, path));

@@ -17,7 +17,7 @@ namespace {
 
 constexpr ParticleType kSnow{.restitution = 0.0F, .friction = 1.0F};
 
-/// Half as large, in every other corner of the box.
+/// Returns four poses of half size in alternate corners of the box.
 std::vector<Pose> fourPoses(const BenchScene& scene) {
     std::vector<Pose> poses;
     const glm::vec3 center = scene.collider.bounds.center();
@@ -80,7 +80,7 @@ Result<void> setRadius(ParticleSystem& particles, const BenchScene& scene) {
     return particles.setType(type);
 }
 
-/// A swirl on 32³ nodes.
+/// Adds a vortex flow on 32³ nodes.
 void addFlow(AirSettings& air, const BenchScene& scene) {
     constexpr std::uint32_t kNodes = 32;
     FlowField flow;
@@ -123,7 +123,7 @@ Result<void> recordEvents(ParticleSystem& particles, const BenchScene& /*scene*/
     return setEvents(particles, EventOptions{.lasting = true, .deaths = true});
 }
 
-/// A tenth of a degree further each step, to and fro, so that every block sees the same poses, all but a degree.
+/// Turns bodies by 0.1° per step, back and forth, so that poses of all blocks are equal within about a degree.
 std::function<void()> turning(WorldTextures* textures, std::vector<Pose> poses) {
     return [textures, poses = std::move(poses), step = 0]() mutable {
         const float degrees = 0.1F * static_cast<float>(++step / 16 % 2 == 0 ? step % 16 : 16 - step % 16);

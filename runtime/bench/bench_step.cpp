@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cost of a step over a bare copy of the state, and feature by feature. Before each block all particles are born anew,
-// so that blocks are alike; births and the first step are not timed.
+// Benchmark: the cost of a step relative to a copy of the state, and of each feature. All particles are respawned
+// before each block, so that blocks are equal; births and the first step are not timed.
 //
-// `copy` is a draw, or on the compute path a dispatch, that only copies the two state textures: it reads and writes 32
-// bytes a particle; a step reads the 16 of the birth texture besides.
+// `copy` is a draw (a dispatch on the compute path) that only copies the two state textures: it reads and writes 32
+// bytes per particle. A step also reads the 16 bytes of the birth texture.
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kWarmUpMs = 100.0;
 
-/// The bare copy of two state textures.
+/// Copies two state textures.
 class Copy {
   public:
     static Result<Copy> create(std::uint32_t particles, StepPath path) {
@@ -31,7 +31,7 @@ class Copy {
         copy.compute_ = path == StepPath::kCompute;
         copy.rows_ = static_cast<GLsizei>(particles / ParticleSystem::kStateWidth);
         Pcg32 random(1);
-        std::vector<float> texels(std::size_t{4} * particles);  // that no driver can compress
+        std::vector<float> texels(std::size_t{4} * particles);  // incompressible
         std::generate(texels.begin(), texels.end(), [&] { return random.uniform(); });
         for (std::size_t i = 0; i < 2; ++i) {
             for (GlTexture& texture : copy.state_[i]) {
@@ -56,14 +56,14 @@ class Copy {
         if (compute_) {
             ImageUnits::write(0, state_[next][0]);
             ImageUnits::write(1, state_[next][1]);
-            // What is written beyond the last row is lost.
+            // Writes beyond the last row are discarded.
             glDispatchCompute(kWidth / kStepGroupWidth,
                               static_cast<GLuint>((rows_ + kStepGroupHeight - 1) / kStepGroupHeight), 1);
             ImageUnits::finish();
         } else {
             program_.drawScreen(target_[next].name(), kWidth, rows_);
         }
-        glUseProgram(0);  // PassState must not save it
+        glUseProgram(0);  // so that PassState does not save it
         current_ = next;
     }
 
@@ -78,9 +78,9 @@ class Copy {
     GlProgram program_;
 };
 
-/// A rival of the collider.
+/// A distance volume to compare with the collider.
 struct Rival {
-    std::string name;  // the file's
+    std::string name;  // of the file
     BrickStep step;
 };
 
@@ -120,7 +120,7 @@ Json bytesOf(const std::vector<Rival>& rivals) {
     return bytes;
 }
 
-/// The variant that is called for, beside those that it is compared with.
+/// Returns the requested variant and those that it is compared with.
 Result<std::vector<BenchVariant>> variantsFor(const std::string& only, const std::vector<Rival>& rivals) {
     std::vector<BenchVariant> variants = benchVariants();
     const auto named = [&](const auto& variant) { return variant.name == only; };
@@ -134,7 +134,7 @@ Result<std::vector<BenchVariant>> variantsFor(const std::string& only, const std
     return variants;
 }
 
-/// Ratios are of the collider alone, which is compared with none, and that with the copy.
+/// Returns the reference of a variant: "collider"; for that, "no_collider"; for that, the copy.
 std::string comparedWith(const std::string& variant) {
     return variant == "no_collider" ? "copy" : variant == "collider" ? "no_collider" : "collider";
 }
@@ -178,7 +178,7 @@ Result<Json> benchStep(const Bench& bench) {
                  warm();
                  system.begin(scene);
              },
-             [&system] { system.particles->step(2.0F * kBenchLifetime); }});  // no particle survives it
+             [&system] { system.particles->step(2.0F * kBenchLifetime); }});  // kills all particles
     }
     for (Rival& rival : rivals) {
         works.push_back(workOf(rival, scene, warm));

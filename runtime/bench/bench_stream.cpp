@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames of a flight over a world that is streamed: whether any takes longer than the others.
+// Benchmark: frame times of a flight over a streamed world, to find slow frames.
 #include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
@@ -17,15 +17,15 @@ namespace relief {
 namespace {
 
 constexpr std::chrono::microseconds kPace(16'667);
-/// Of the world's longest side: how far from the camera all is wanted in full detail.
+/// Radius of full detail around the camera, as a fraction of the world's longest side.
 constexpr float kRadius = 0.05F;
 constexpr int kWarmFrames = 60;
 
-/// Of the frames of a flight, milliseconds.
+/// Times of the frames of a flight, milliseconds.
 struct Frames {
-    std::vector<double> frame;   // by the clock on the wall, with a glFinish at its end
-    std::vector<double> gpu;     // by the GPU's clock
-    std::vector<double> update;  // of the call alone
+    std::vector<double> frame;   // wall clock, with a glFinish at the end
+    std::vector<double> gpu;     // GPU time
+    std::vector<double> update;  // of the update() call
 };
 
 Json summaryOf(std::vector<double> ms) {
@@ -67,7 +67,7 @@ Result<void> fly(WorldStream& world, ParticleSystem& particles, const Bounds& bo
     return {};
 }
 
-/// Everywhere over the world, and there for good.
+/// Returns births distributed over the world, with unlimited lifetime.
 std::vector<Birth> rainOn(const Bounds& box, std::uint32_t count) {
     Pcg32 random(1);
     std::vector<Birth> births;

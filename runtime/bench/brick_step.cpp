@@ -14,15 +14,15 @@ namespace relief {
 namespace {
 
 constexpr auto kWidth = ParticleSystem::kStateWidth;
-// Texture units behind those of the state.
+// Texture units after those of the state.
 constexpr int kIndexUnit = 3;
 constexpr int kAtlasUnit = 4;
 
-/// The three coordinates of a brick in the atlas, in an integer of 16 or 32 bits whose two largest values mean something else.
+/// Packs the coordinates of a brick in the atlas into 16 or 32 bits. The two largest values are reserved.
 struct Packing {
     bool wide;
 
-    [[nodiscard]] std::uint32_t bits() const { return wide ? 10 : 5; }  // of x and of y
+    [[nodiscard]] std::uint32_t bits() const { return wide ? 10 : 5; }  // bits of x and of y
     [[nodiscard]] std::uint32_t outside() const { return wide ? 0xffffffffU : 0xffffU; }
     [[nodiscard]] std::uint32_t inside() const { return outside() - 1; }
     [[nodiscard]] std::uint32_t of(const glm::uvec3& brick) const {
@@ -30,7 +30,7 @@ struct Packing {
     }
 };
 
-/// How many bricks the atlas has along each axis: next to none in vain. Zero if so many find no place.
+/// Returns the number of bricks along each axis of the atlas, with few unused bricks; zero if the bricks do not fit.
 glm::ivec3 atlasOf(std::uint32_t bricks, const glm::ivec3& nodes, const Packing& packing, int side_max) {
     const auto most = [&](int axis, std::uint32_t bits) {
         return std::min<std::uint32_t>(1U << bits, static_cast<std::uint32_t>(side_max / nodes[axis]));
@@ -41,7 +41,7 @@ glm::ivec3 atlasOf(std::uint32_t bricks, const glm::ivec3& nodes, const Packing&
     for (std::uint32_t x = 1; x <= most(0, packing.bits()); ++x) {
         for (std::uint32_t y = 1; y <= most(1, packing.bits()); ++y) {
             const std::uint32_t z = std::max((bricks + x * y - 1) / (x * y), 1U);
-            // The two largest codes are taken.
+            // The two largest codes are reserved.
             const bool fits = z <= most_z && packing.of({x - 1, y - 1, z - 1}) < packing.inside();
             if (fits && std::uint64_t{x} * y * z < least) {
                 least = std::uint64_t{x} * y * z;
@@ -52,7 +52,7 @@ glm::ivec3 atlasOf(std::uint32_t bricks, const glm::ivec3& nodes, const Packing&
     return best;
 }
 
-/// Codes at their places in the atlas.
+/// Returns the codes, arranged as in the atlas.
 template <class Code>
 std::vector<Code> placed(const BrickAtlas& atlas, const glm::ivec3& bricks) {
     const glm::ivec3 nodes = glm::ivec3(atlas.cells) + 1;
@@ -174,7 +174,7 @@ Result<void> BrickStep::compile(const BrickAtlas& atlas) {
     program.set("u_last_cube", glm::vec3(atlas.cubes) - 1.0F);
     program.set("u_cells", glm::vec3(atlas.cells));
     program.set("u_per_node", 1.0F / glm::vec3((glm::ivec3(atlas.cells) + 1) * atlas_bricks_));
-    // A texture's codes are ±1 of the range, which 127 and 32767 stand for.
+    // Texture values ±1 are the codes ±127 or ±32767, which mean ± the range.
     program.set("u_range", atlas.range);
     return {};
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A step of the scene's particles among bricks of distances, with the forces, types, uniforms and state of ours.
+// A particle step with a brick distance volume as collider, with the same forces, types, uniforms and state as Relief's
+// step.
 #pragma once
 
 #include <array>
@@ -13,16 +14,16 @@ namespace relief {
 
 class BrickStep {
   public:
-    /// Particles as many as the scene's births, a multiple of ParticleSystem::kStateWidth.
-    /// Errors: kUsage (a scene's births that are older than 0), kLimit (more bricks or texels than this GL takes), kUnsupported
-    /// (compute), kFailure.
+    /// Creates a system with one particle per birth of the scene, a multiple of ParticleSystem::kStateWidth.
+    /// Errors: kUsage (births with an age above 0), kLimit (GL limits for bricks or texels), kUnsupported (compute),
+    /// kFailure.
     [[nodiscard]] static Result<BrickStep> create(const BrickAtlas& atlas, const BenchScene& scene,
                                                   StepPath path);
 
-    /// Everybody born, and a first step. Keeps no reference.
+    /// Spawns all particles and runs a first step. Keeps no reference.
     void begin(const BenchScene& scene);
     void step();
-    /// Bytes of the textures.
+    /// Returns the size of the textures in bytes.
     [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
     [[nodiscard]] const GlTexture& positions() const { return state_[current_][0]; }
     [[nodiscard]] const GlTexture& velocities() const { return state_[current_][1]; }
@@ -42,7 +43,7 @@ class BrickStep {
     std::array<GlFramebuffer, 2> target_;
     GlTexture birth_;
     bool dense_ = false;
-    bool wide_ = false;  // 32 bits for a cube of the index, not 16
+    bool wide_ = false;  // 32 instead of 16 bits per index cell
     glm::ivec3 atlas_bricks_{1};
     GlTexture index_;
     GlTexture atlas_;

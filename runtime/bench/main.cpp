@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief-bench CASE FILE: prints JSON, times of the runtime's parts on this machine. scripts/bench.py reads it.
+// relief-bench CASE FILE: times parts of the runtime and prints JSON for scripts/bench.py.
 #include <CLI/CLI.hpp>
 
 #include "formats/fields/json_value.h"

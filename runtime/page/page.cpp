@@ -33,7 +33,7 @@ Result<fs::path> findPlayer() {
                 "scripts/build.sh web in the sources once, or name a player with RELIEF_VIEW_PAGE");
 }
 
-/// The place for data in a page, and the format of that data. The player of another release may expect another format.
+/// The place for data in a page, and the format of the data, which depends on the release.
 struct DataPlace {
     std::string text;
     std::uint64_t format;
@@ -54,11 +54,11 @@ const DataPlace& dataPlace() {
 }
 constexpr std::string_view kEmpty = "null";
 
-// Vertices and corners go as they lie in memory.
+// Vertices and corners are copied from memory.
 static_assert(std::endian::native == std::endian::little);
 static_assert(sizeof(glm::vec3) == 12 && sizeof(glm::uvec3) == 12);
 
-/// Ready to stand between <script> and </script>: whatever a name says, it ends nothing there.
+/// Serialises JSON for a <script> element; no string can end the element.
 std::string scriptText(const Json& json) {
     const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
     std::string safe;
@@ -73,10 +73,10 @@ std::string scriptText(const Json& json) {
     return safe;
 }
 
-/// Bytes of everything that one page holds, before they become text: more, and browsers give up.
+/// Maximum data of a page in bytes, before encoding; browsers fail above.
 constexpr std::uint64_t kViewBytesMax = std::uint64_t{128} << 20;
 
-/// A collider as a page draws it: what `relief export --gpu` writes, and facts.
+/// Returns a collider for a page: the output of `relief export --gpu`, and facts.
 Result<Json> colliderJson(const Collider& collider) {
     const GpuImage image = RELIEF_TRY(gpuImage(collider));
     const std::string core = RELIEF_TRY(shaderText("collider/collider.glsl"));

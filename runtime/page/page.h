@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page of `relief view` and `relief-sim --page`: one HTML file with its data in it (runtime/web/view/README.md).
+// Writes the page of `relief view` and `relief-sim --page`: one HTML file with its data (runtime/web/view/README.md).
 #pragma once
 
 #include <cstddef>
@@ -19,21 +19,21 @@
 
 namespace relief {
 
-/// The page of a collider, without data.
+/// Returns the page for a collider, without data.
 [[nodiscard]] std::string viewPage();
 
-/// The page that plays scenes and worlds, without data: the file that RELIEF_VIEW_PAGE names, else that of an installed
-/// tool, or of a build beside this one.
-/// Errors: kUnsupported (there is none); kInvalidInput (the page of another release); those of readForPage().
+/// Returns the page that plays scenes and worlds, without data: the file named by RELIEF_VIEW_PAGE, else that of the
+/// installation, else that of a build next to this one.
+/// Errors: kUnsupported (not found), kInvalidInput (of another release); those of readForPage().
 [[nodiscard]] Result<std::string> playerPage(FileGuard& files);
 
-/// Reads a file that a page holds or depends on. Errors: those of FileGuard::reads() and readFile().
+/// Reads a file for a page. Errors: those of FileGuard::reads() and readFile().
 [[nodiscard]] Result<std::string> readForPage(FileGuard& files, const std::filesystem::path& path);
 
-/// RFC 4648, with padding and without line ends.
+/// Encodes bytes as in RFC 4648, with padding and without line breaks.
 [[nodiscard]] std::string base64(std::span<const std::byte> bytes);
 
-/// The name of a file that a scene or a world names, as that names it.
+/// Returns the path of a file relative to the folder of a scene or world.
 [[nodiscard]] std::string nameBeside(const std::filesystem::path& file, const std::filesystem::path& scene);
 
 struct PageMesh {
@@ -44,18 +44,19 @@ struct PageMesh {
 
 /// The contents of a page.
 struct Page {
-    std::string name = {};                          ///< without its folder
-    std::size_t bytes = 0;                          ///< of the collider's file; of a scene: 0
-    const Collider* collider = nullptr;             ///< shown on a page without a scene
-    std::optional<PageMesh> mesh = {};              ///< of the collider
-    Json check = nullptr;                           ///< the report of `relief check`
-    std::optional<std::string> scene = {};          ///< text of a scene.toml
-    std::string shows = {};                         ///< the one of `files` in the panel; empty: `container`
-    std::vector<std::byte> container = {};          ///< of the collider in the panel
-    std::map<std::string, std::string> files = {};  ///< by the names that the scene has for them
+    std::string name = {};                  ///< file name, without folder
+    std::size_t bytes = 0;                  ///< size of the collider's file; 0 for a scene
+    const Collider* collider = nullptr;     ///< the collider, for a page without a scene
+    std::optional<PageMesh> mesh = {};      ///< source mesh of the collider
+    Json check = nullptr;                   ///< the report of `relief check`
+    std::optional<std::string> scene = {};  ///< text of a scene.toml
+    std::string shows = {};  ///< name in `files` of the collider in the panel; empty: `container`
+    std::vector<std::byte> container = {};          ///< collider in the panel
+    std::map<std::string, std::string> files = {};  ///< keyed by their names in the scene
 
-    /// \param html  viewPage(), or playerPage() for a scene. The same contents give the same bytes.
-    /// Errors: kLimit: more than a page holds; those of gpuImage().
+    /// Inserts the data into a page. Equal contents give equal bytes.
+    /// \param html  viewPage(), or playerPage() for a scene.
+    /// Errors: kLimit (too much data for a page); those of gpuImage().
     [[nodiscard]] Result<std::string> make(const std::string& html) const;
 };
 
