@@ -40,7 +40,7 @@ Result<AnimatedBody*> relief::animatedOf(const Call& call, relief_textures* anim
                                     [&](const AnimatedBody& one) { return one.body == body; });
     if (found == of.animated.end()) {
         return call.refuse("body is " + std::to_string(body) +
-                           ", which does not move by clips; take one that relief_world_add() returned");
+                           "; pass an animated body, as returned by relief_world_add()");
     }
     return &*found;
 }
@@ -134,7 +134,7 @@ int64_t relief_world_add(relief_world* world, const relief_animation* animation,
         }
         const std::size_t body = to.field.world().bodies.size() + to.added.size();
         if (body >= kWorldBodiesMax) {
-            return call.refuse("world has " + std::to_string(body) + " bodies, and no more may be");
+            return call.refuse("world has " + std::to_string(body) + " bodies, which is the maximum");
         }
         to.added.push_back(std::move(added));
         return static_cast<int64_t>(body);
@@ -151,7 +151,7 @@ int relief_textures_play(relief_textures* animated_textures, uint32_t body, cons
         RELIEF_TRY(call.number(seconds, kSeconds, {"seconds"}));
         const std::optional<std::size_t> found = findClip(mesh, clip);
         if (!found) {
-            return call.refuse("clip is '" + cleanUtf8(clip) + "', which the animation does not have");
+            return call.refuse("clip is '" + cleanUtf8(clip) + "'; the animation has no clip of that name");
         }
         return setNext(of, poseAt(mesh, mesh.clips[*found], seconds));
     });

@@ -70,7 +70,7 @@ void CallErrors::fail(const char* message) noexcept {
         text_.swap(text);
         shown_ = text_.c_str();
     } catch (...) {
-        shown_ = "there is not enough memory";
+        shown_ = "out of memory";
     }
 }
 
@@ -125,12 +125,12 @@ tl::unexpected<Error> Call::faulty(HandleKind kind, std::uintptr_t handle, const
                                    const char* type) const {
     if (handle != 0) {
         return refuse(std::string(argument) + " is not a live " + type +
-                      ": it has been freed, is of another kind, or was never given out");
+                      " handle: it was freed, has another type, or was never created");
     }
     if (const std::string& cause = callErrors().unreadOf(kind); !cause.empty()) {
         return fail(ErrorCode::kUsage, cause);
     }
-    return refuse(std::string(argument) + " is NULL, as a " + type + " is that could not be made");
+    return refuse(std::string(argument) + " is NULL; pass a " + type + " that was created successfully");
 }
 
 tl::unexpected<Error> Call::wrongNumber(double value, const FieldRange& range, const NumberName& name) const {

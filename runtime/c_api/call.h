@@ -142,7 +142,7 @@ class Call {
                                      const char* count_argument) const {
         if (count >= static_cast<std::size_t>(PTRDIFF_MAX) / sizeof(T)) {
             return refuse(std::string(count_argument) + " is " + std::to_string(count) +
-                          ", more than memory holds");
+                          "; an array of that size does not fit in memory");
         }
         return count == 0 ? Result<void>() : notNull(items, argument);
     }
@@ -202,7 +202,7 @@ T answer(const char* function, T failed, const F& body) noexcept {
         }
         callErrors().fail(result.error().message.c_str());
     } catch (const std::bad_alloc&) {
-        callErrors().fail("there is not enough memory");
+        callErrors().fail("out of memory");
     } catch (const std::exception& error) {
         callErrors().fail(error.what());
     } catch (...) {

@@ -171,7 +171,7 @@ void relief_textures_attach(const relief_textures* textures, uint32_t program, i
         }
         if (linked != GL_TRUE) {
             return call.refuse("program is " + std::to_string(program) +
-                               ", which is no program of the context that is linked");
+                               "; pass a linked program of the current context");
         }
         from.textures().attach(program, binding);
         return true;

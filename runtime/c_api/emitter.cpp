@@ -44,7 +44,7 @@ Result<EmitterSettings> settingsOf(const Call& call, const relief_emitter_option
                            "; swap them");
     }
     if (all.rate == 0.0F && all.burst == 0) {
-        return call.refuse("options->rate and options->burst are 0, so that nothing is born; raise one");
+        return call.refuse("options->rate and options->burst are both 0; set one above 0");
     }
     EmitterSettings settings;
     settings.shape = EmitterShape::kSurface;
@@ -112,8 +112,8 @@ Result<void> bendWith(const Call& call, EmitterObject& emitter, relief_textures*
     AnimatedBody& on = *RELIEF_TRY(animatedOf(call, textures, body));
     if (on.collider.shared() != emitter.mesh) {
         if (*on.collider.shared() != *emitter.mesh) {
-            return call.refuse("emitter is of another animation than body " + std::to_string(body) +
-                               "; make one of the animation that the body was added with");
+            return call.refuse("emitter has another animation than body " + std::to_string(body) +
+                               "; create it from the animation of the body");
         }
         emitter.mesh = on.collider.shared();  // equal; share it to skip the next comparison
     }
@@ -169,7 +169,7 @@ int64_t relief_particles_emit(relief_particles* particles, relief_emitter* emitt
         } else if (body >= std::max<std::size_t>(among.poses.size(), 1)) {
             return call.refuse("body is " + std::to_string(body) + " of " +
                                std::to_string(std::max<std::size_t>(among.poses.size(), 1)) +
-                               "; they count from 0");
+                               " bodies; the first is 0");
         }
         to.births.clear();
         from.emitter.emit(dt, to.system.room(), to.births);

@@ -82,11 +82,11 @@ Result<relief_view> viewOf(const Call& call, const relief_view* given) {
     RELIEF_TRY(call.number(all.height, kPixels, name("height")));
     RELIEF_TRY(call.number(all.srgb, kShare, name("srgb")));
     if (all.projection[5] == 0.0F) {
-        return call.refuse("view->projection is no perspective: its number 5 is 0");
+        return call.refuse("view->projection is not a perspective projection: element 5 is 0; set it");
     }
     if (all.framebuffer != 0 && glIsFramebuffer(all.framebuffer) == GL_FALSE) {
         return call.refuse("view->framebuffer is " + std::to_string(all.framebuffer) +
-                           ", which is no framebuffer of the context");
+                           "; name a framebuffer of the current context");
     }
     return all;
 }
@@ -181,11 +181,11 @@ relief_picture* relief_picture_create(const relief_textures* textures, const rel
         const auto field = RELIEF_TRY(call.optional(collider, "collider"));
         const bool world = among && among->world;
         if (world && field) {
-            return call.refuse("collider is given beside the textures of a world; give NULL");
+            return call.refuse("collider must be NULL for textures of a world");
         }
         if (!world && (among == nullptr) != (field == nullptr)) {
             return call.refuse(std::string(among ? "collider" : "textures") +
-                               " is NULL; give the textures and the collider that they are of, or neither");
+                               " is NULL; pass the textures and their collider, or NULL for both");
         }
         RELIEF_TRY(call.context());
         std::optional<ColliderView> view;

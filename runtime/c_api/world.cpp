@@ -92,7 +92,7 @@ Result<Pose> relief::poseOf(const Call& call, const relief_pose& given, NumberNa
     const glm::quat turn(given.rotation[3], given.rotation[0], given.rotation[1], given.rotation[2]);
     if (!(std::abs(glm::length(turn) - 1.0F) <= kUnitTolerance)) {
         return call.refuse(name.text() + " has a length of " + shortest(glm::length(turn)) +
-                           ", a unit quaternion one of 1; scale it, or give 0, 0, 0, 1");
+                           "; normalize the quaternion, or pass 0, 0, 0, 1");
     }
     return Pose{vec(given.position), glm::normalize(turn), rest.scale};
 }
@@ -122,7 +122,7 @@ size_t relief_world_find(const relief_world* world, const char* node, uint32_t* 
         const std::vector<std::size_t> found = findBodies(all, node);
         if (found.empty()) {
             return call.refuse("node is '" + cleanUtf8(node) +
-                               "', and no body of the world is of one named so");
+                               "'; no body of the world has a node of that name");
         }
         std::transform(found.begin(),
                        found.begin() + static_cast<std::ptrdiff_t>(std::min(count, found.size())), bodies,
@@ -142,7 +142,7 @@ void relief_world_bounds(const relief_world* world, float min[3], float max[3]) 
     writeBounds(__func__, min, max, [&](const Call& call) -> Result<Bounds> {
         const WorldObject& of = *RELIEF_TRY(call.object(world, "world"));
         if (bodyCount(of) == 0) {
-            return call.refuse("world has no bodies; relief_world_add() adds one");
+            return call.refuse("world has no bodies; add one with relief_world_add()");
         }
         Bounds bounds = worldBounds(of.field.world());
         for (const AddedBody& added : of.added) {
@@ -184,7 +184,7 @@ relief_textures* relief_textures_create_world(const relief_world* world) {
         __func__, [&](const Call& call) -> Result<std::shared_ptr<TexturesObject>> {
             const WorldObject& from = *RELIEF_TRY(call.object(world, "world"));
             if (bodyCount(from) == 0) {
-                return call.refuse("world has no bodies; relief_world_add() adds one");
+                return call.refuse("world has no bodies; add one with relief_world_add()");
             }
             RELIEF_TRY(call.context());
             return std::make_shared<TexturesObject>(RELIEF_TRY(upload(from)));
@@ -199,7 +199,8 @@ int relief_textures_set_poses(relief_textures* world_textures, const uint32_t* b
         RELIEF_TRY(call.array(poses, "poses", count, "count"));
         if (!to.world) {
             return call.refuse(
-                "world_textures is of a single collider, which has no pose; make it of a world");
+                "world_textures contains a single collider, which has no pose; create the textures from a "
+                "world");
         }
         RELIEF_TRY(call.context());
         std::vector<Pose> wanted = to.poses;

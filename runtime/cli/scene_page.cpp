@@ -49,8 +49,8 @@ Result<std::vector<std::string>> writeScenePage(PlayerOptions& options, const st
     const fs::path& file = options.input;
     FileGuard& guard = options.guard;
     if (lowerCase(file.extension().native()) != ".toml") {
-        return fail(ErrorCode::kUsage, "--page is for a scene (.toml), and " + quotedPath(file) +
-                                           " is none; relief view writes the page of a collider or a world");
+        return fail(ErrorCode::kUsage, "--page needs a scene (.toml), not " + quotedPath(file) +
+                                           "; for a collider or a world, use relief view");
     }
     RELIEF_TRY(guard.reads(file));
     RELIEF_TRY(guard.writes(output, "--page"));
@@ -64,7 +64,7 @@ Result<std::vector<std::string>> writeScenePage(PlayerOptions& options, const st
     if (loaded.scene.flow) {
         return fail(ErrorCode::kUnsupported,
                     quotedPath(file) +
-                        " has a [flow], which browsers do not read; play it without --page, or leave it out");
+                        " has a [flow], which pages do not support; run it without --page, or remove it");
     }
     for (const fs::path& protected_file : allFilesOf(loaded)) {
         RELIEF_TRY(guard.reads(protected_file));

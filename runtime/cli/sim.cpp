@@ -196,7 +196,7 @@ Result<void> playScene(SimCommand& command) {
     progress.finish();
     showWarnings(played.warnings, command.quiet);
     if (played.events_dropped > 0) {
-        spdlog::warn("{} hits are missing in --events: a step lists at most {}; raise --events-min-speed",
+        spdlog::warn("--events lacks {} hits: a step records at most {}; raise --events-min-speed",
                      played.events_dropped, Simulation::kEventsMax);
     }
     if (command.json) {

@@ -121,10 +121,9 @@ Result<std::vector<ParticleState>> Outputs::readParticles(const ParticleSystem& 
         who = types[index].place + ": particles of " +
               (name.empty() ? "type " + std::to_string(index) : "the type '" + cleanUtf8(name) + "'");
     }
-    return fail(ErrorCode::kFailure,
-                who +
-                    " are lost: their place or speed is no number that a float holds; lower "
-                    "speeds, strengths, or radius and viscosity over mass, or time.dt");
+    return fail(ErrorCode::kFailure, who +
+                                         " are lost: their position or velocity overflows; lower "
+                                         "speeds, strengths, or radius and viscosity over mass, or time.dt");
 }
 
 Result<void> Outputs::writeDump(std::span<const ParticleState> particles, const fs::path& path) const {

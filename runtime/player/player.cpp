@@ -139,8 +139,8 @@ std::optional<std::string> refusedWarning(const ParticleCounts& counts, std::uin
         return std::nullopt;
     }
     return std::to_string(counts.refused) + " of " + std::to_string(asked) +
-           " births found no free place; raise particles.capacity (now " + std::to_string(capacity) +
-           "), or lower emitter.rate, emitter.burst or emitter.lifetime";
+           " births were rejected because the system was full; raise particles.capacity (now " +
+           std::to_string(capacity) + "), or lower emitter.rate, emitter.burst or emitter.lifetime";
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace relief {
 std::string reportText(const PlayerReport& report) {
     char text[256];
     std::snprintf(text, sizeof(text),
-                  "%u steps, %.2f ms each; %llu born, %llu died, %u alive, %llu found no room; %u frames\n",
+                  "%u steps, %.2f ms each; %llu born, %llu died, %u alive, %llu rejected; %u frames\n",
                   report.scene.time.steps, report.ms_per_step,
                   static_cast<unsigned long long>(report.counts.born),
                   static_cast<unsigned long long>(report.counts.died), report.counts.alive,

@@ -33,7 +33,7 @@ Result<CheckReport> checkScene(const PlayerOptions& options) {
     if (std::uint64_t{render.width} * render.height > Frame::kPixelsMax) {
         return fail(ErrorCode::kLimit, quotedPath(options.input) + ": render.size has more than " +
                                            std::to_string(Frame::kPixelsMax) +
-                                           " pixels in all; choose a smaller one");
+                                           " pixels; choose a smaller one");
     }
     RELIEF_TRY(checkPictures(loaded.scene, loaded.bounds));
     CheckReport report;

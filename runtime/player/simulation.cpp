@@ -484,7 +484,7 @@ Result<void> Simulation::setPose(std::size_t collider, std::optional<MeshPose> p
         }
     }
     return fail(ErrorCode::kUsage,
-                "collider " + std::to_string(collider) + " plays no clip; give it 'play' in the scene");
+                "collider " + std::to_string(collider) + " plays no clip; add 'play' in the scene");
 }
 
 }  // namespace relief

@@ -50,7 +50,7 @@ void Watchdog::feed(const std::string& what) {
     std::snprintf(seconds, sizeof(seconds), "%g", static_cast<double>(limit_.count()) / 1000.0);
     const std::lock_guard lock(mutex);
     last_line = program_ + ": error: the GPU has not finished " + what + " within " + seconds +
-                " seconds; if it is only slow, raise --gpu-timeout (0: wait for ever)\n";
+                " seconds; if it is only slow, raise --gpu-timeout (0: no limit)\n";
     set(limit_);  // 0 stops the timer
 }
 

@@ -177,10 +177,9 @@ Result<Player*> createPlayer(const char* text, const char* path, bool shaded, bo
     auto player = std::make_unique<Player>();
     Scene read = RELIEF_TRY(readScene(text, path));
     if (fetches && !read.stream) {
-        return fail(ErrorCode::kUsage,
-                    quotedPath(path) +
-                        " has no [stream], which a world of streamWorld() needs in a scene "
-                        "that is text; add it, with its radius");
+        return fail(ErrorCode::kUsage, quotedPath(path) +
+                                           " has no [stream], which streamWorld() requires in a scene "
+                                           "given as text; add it, with a radius");
     }
     player->loaded = RELIEF_TRY(loadAll(std::move(read), path, {}));
     const Scene& scene = player->loaded.scene;
@@ -214,24 +213,23 @@ Result<void> takePoses(std::vector<SceneCollider>& now, const std::vector<SceneC
         if (to.path != body.path || to.node != body.node || to.live.has_value() != body.live.has_value() ||
             !sameMaps(to, body) || to.keys != body.keys || to.pose.scale != body.pose.scale ||
             to.restitution != body.restitution || to.friction != body.friction) {
-            return fail(ErrorCode::kUsage,
-                        "collider " + std::to_string(i) +
-                            ": of a collider that plays only position, axis, angle and clip change; "
-                            "make a new system for the rest");
+            return fail(ErrorCode::kUsage, "collider " + std::to_string(i) +
+                                               ": only position, axis, angle and clip can change; "
+                                               "create a new system for other changes");
         }
         body.play = to.play;
         if (to.pose == body.pose) {
             continue;
         }
         if (!body.keys.empty()) {
-            return fail(ErrorCode::kUsage,
-                        "collider " + std::to_string(i) +
-                            " follows its keys; leave out its 'key', and set() may place it");
+            return fail(ErrorCode::kUsage, "collider " + std::to_string(i) +
+                                               " follows its keys; remove 'key' to move it by set()");
         }
         if (now.size() == 1 && !body.posed && !body.deforms()) {
-            return fail(ErrorCode::kUsage,
-                        "a single collider moves if it had a pose from the beginning; make the system with "
-                        "collider: { position: [0, 0, 0] } in its scene");
+            return fail(
+                ErrorCode::kUsage,
+                "a single collider can only move if it has a pose from the beginning; create the system with "
+                "collider: { position: [0, 0, 0] } in its scene");
         }
         body.pose = to.pose;
     }
@@ -251,15 +249,15 @@ Result<int> changePlayer(Player& player, const char* text, const char* path, boo
         wanted.time.integrator != now.time.integrator || wanted.colliders.size() != now.colliders.size() ||
         wanted.world != now.world) {
         return fail(ErrorCode::kUsage,
-                    "other colliders, another capacity or integrator need a new system; make one");
+                    "colliders, capacity and integrator cannot change; create a new system");
     }
     if (wanted.stream.has_value() != now.stream.has_value() ||
         (now.stream && wanted.stream->memory != now.stream->memory)) {
         return fail(ErrorCode::kUsage,
-                    "of 'stream' only the radius changes as it plays; make a new system for the rest");
+                    "only the radius of 'stream' can change; create a new system for other changes");
     }
     if (wanted.materials != now.materials) {
-        return fail(ErrorCode::kUsage, "other materials need a new system; make one");
+        return fail(ErrorCode::kUsage, "materials cannot change; create a new system");
     }
     RELIEF_TRY(checkMaterials(wanted, player.loaded));
     std::optional<std::vector<Emitter>> made;
@@ -308,7 +306,7 @@ Result<int> drawPlayer(Player& player, const CameraMatrices& camera, const Rende
 
 Result<int> drawPlayerMeshes(Player& player, const CameraMatrices& camera, const RenderTarget& target) {
     if (player.loaded.scene.render.meshes.empty()) {
-        return fail(ErrorCode::kUsage, "the scene has no render.meshes, which drawMeshes() draws");
+        return fail(ErrorCode::kUsage, "drawMeshes() needs render.meshes in the scene; add it");
     }
     if (!player.meshes) {
         player.meshes = RELIEF_TRY(MeshPicture::create(player.loaded));

@@ -72,7 +72,7 @@ bool readBuffer(const GlBuffer& buffer, std::size_t offset, std::span<std::byte>
 }
 
 Result<std::vector<std::byte>> compress(std::span<const std::byte>, int) {
-    return fail(ErrorCode::kUnsupported, "a browser compresses nothing; write the collider without zstd");
+    return fail(ErrorCode::kUnsupported, "browsers cannot compress; write the collider without zstd");
 }
 
 Result<std::vector<std::byte>> decompress(std::span<const std::byte> stored, std::uint64_t raw_size) {

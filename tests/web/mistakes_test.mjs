@@ -65,7 +65,7 @@ const kErrors = {
     "system.spawn(3)": /births are an array/,
     "system.set(3)": /set\(\) takes a part of a scene/,
     "system.set({ forces: { gravitation: 3 } })": /^scene: unknown key 'forces.gravitation'/,
-    "system.set({ particles: { capacity: 4096 } })": /make one/,
+    "system.set({ particles: { capacity: 4096 } })": /create a new system/,
     // asking
     "collider.query([1, 2])": /points: 2 numbers are not 3 for each/,
     "collider.query()": /points are an array/,

@@ -46,7 +46,7 @@ TEST(Handles, NoneIsGivenOutTwiceAndOldOnesStayFreed) {
 TEST(Call, NoExceptionPasses) {
     const std::uint64_t before = callErrors().count();
     EXPECT_EQ(answer("f", -1, [](const Call&) -> Result<int> { throw std::bad_alloc(); }), -1);
-    EXPECT_STREQ(callErrors().last(), "there is not enough memory");
+    EXPECT_STREQ(callErrors().last(), "out of memory");
     EXPECT_EQ(answer("f", -1, [](const Call&) -> Result<int> { throw std::runtime_error("two\nlines"); }),
               -1);
     EXPECT_STREQ(callErrors().last(), "two lines");
