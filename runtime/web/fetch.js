@@ -32,7 +32,7 @@ export async function bytesOf(source, signal) {
         throw new ReliefError(`${name}: the server answers ${response.status} ${response.statusText}`.trim());
     }
     if (/^text\/html/.test(response.headers.get("content-type"))) {
-        throw new ReliefError(`${name}: the server sends a web page, no collider; is the path right?`);
+        throw new ReliefError(`${name}: the server sent a web page instead of a collider; check the path`);
     }
     return new Uint8Array(await response.arrayBuffer());
 }
@@ -45,8 +45,8 @@ export async function worldFiles(source, coarse) {
     // The containers are relative to the final URL, after redirects.
     const response = await answerOf(source);
     if (!response.url) {
-        throw new ReliefError("loadWorld() and streamWorld() have to know where the containers lie, and this Response has no URL; " +
-                              "give new World() the files");
+        throw new ReliefError("this Response has no URL, so the containers of the world cannot be found; " +
+                              "pass the files to new World()");
     }
     const base = new URL(response.url);
     const text = await bytesOf(response);
@@ -86,7 +86,7 @@ export class Fetches {
         try {
             bytes = await this.#load(file, signal);
             if (!(bytes instanceof Uint8Array)) {
-                throw new ReliefError(`${file}: 'load' gives no Uint8Array`);
+                throw new ReliefError(`${file}: 'load' returned no Uint8Array`);
             }
         } catch (error) {
             reason = String(error?.message ?? error);
@@ -118,14 +118,14 @@ function namesOf(text, base, coarse) {
     try {
         ({ colliders } = JSON.parse(new TextDecoder().decode(text)));
     } catch (error) {
-        throw new ReliefError(`${base}: it is no world.json of 'relief bake --world' (${error.message})`);
+        throw new ReliefError(`${base}: not a world.json of 'relief bake --world' (${error.message})`);
     }
     const list = Array.isArray(colliders) ? colliders : [];
     const outside = (name) => typeof name !== "string" || name.split("/").some((part) => ["", ".", ".."].includes(part));
     const wrong = list.findIndex((one) => outside(one?.file) || (coarse && one.coarse && outside(one.coarse.file)));
     if (list.length === 0 || wrong >= 0) {
-        throw new ReliefError(`${base}: it is no world.json of 'relief bake --world': ` +
-                              (wrong >= 0 ? `colliders[${wrong}] names no file of its folder` : "it has no colliders"));
+        throw new ReliefError(`${base}: not a world.json of 'relief bake --world': ` +
+                              (wrong >= 0 ? `colliders[${wrong}] names no file in its folder` : "it has no colliders"));
     }
     return [...new Set(list.map((one) => (coarse && one.coarse ? one.coarse.file : one.file)))];
 }

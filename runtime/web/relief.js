@@ -31,7 +31,7 @@ export function init({ wasmUrl = besides, ...options } = {}) {
         (made) => (wasm = made),
         (error) => {
             loading = null;
-            throw new ReliefError(`Relief's WebAssembly does not start: ${error.message ?? error}`);
+            throw new ReliefError(`cannot start the WebAssembly module of Relief: ${error.message ?? error}`);
         },
     );
     return loading;
@@ -56,7 +56,7 @@ function copied(value) {
     const size = typeof value === "string" ? wasm.lengthBytesUTF8(value) + 1 : Math.max(value.byteLength, 1);
     const at = wasm._malloc(size);
     if (at === 0) {
-        throw new ReliefError(`no room for ${size} bytes in this page; use fewer particles, or a smaller collider`);
+        throw new ReliefError(`out of memory for ${size} bytes; use fewer particles or a smaller collider`);
     }
     if (typeof value === "string") {
         wasm.stringToUTF8(value, at, size);
@@ -92,7 +92,7 @@ function call(name, ...args) {
         return result;
     } catch (error) {
         throw error instanceof ReliefError ? error
-            : new ReliefError(`Relief stopped (${error.message ?? error}); load the page again`);
+            : new ReliefError(`Relief crashed (${error.message ?? error}); reload the page`);
     } finally {
         copies.forEach((at) => wasm._free(at));
     }
@@ -122,8 +122,8 @@ function recordOf(gl) {
     if (known === undefined) {
         if (typeof WebGL2RenderingContext === "undefined" || !(gl instanceof WebGL2RenderingContext)) {
             throw new ReliefError(gl === null
-                ? "this browser gave no WebGL2 context; try another browser, or newer drivers"
-                : "particles need a WebGL2 context, as canvas.getContext('webgl2') gives it");
+                ? "this browser provides no WebGL2 context; try another browser or newer drivers"
+                : "particles need a WebGL2 context from canvas.getContext('webgl2')");
         }
         const handle = wasm.GL.registerContext(withPassState(gl), { majorVersion: 2, enableExtensionsByDefault: false });
         known = { handle, losses: 0, ready: false };
@@ -141,13 +141,13 @@ function use(gl) {
     instance();
     const known = recordOf(gl);
     if (gl.isContextLost()) {
-        throw new ReliefError("the WebGL context is lost, and what was on the GPU with it; wait for " +
-                              "'webglcontextrestored', then restart() systems and make new GpuColliders");
+        throw new ReliefError("the WebGL context is lost; wait for 'webglcontextrestored', " +
+                              "then restart() systems and create new GpuColliders");
     }
     if (!known.ready) {
         if (!gl.getExtension("EXT_color_buffer_float")) {
-            throw new ReliefError("this browser's WebGL2 does not render to float textures (EXT_color_buffer_float); " +
-                                  "try another browser, or newer drivers");
+            throw new ReliefError("this browser cannot render to float textures (EXT_color_buffer_float); " +
+                                  "try another browser or newer drivers");
         }
         known.ready = true;
     }
@@ -158,7 +158,7 @@ function use(gl) {
 /** Like use(), but also throws if the context was lost since it had `losses` losses. */
 function useAsOf(gl, losses, cure) {
     if (use(gl) !== losses) {
-        throw new ReliefError(`the WebGL context was lost since; ${cure}`);
+        throw new ReliefError(`the WebGL context was lost meanwhile; ${cure}`);
     }
 }
 
@@ -180,11 +180,11 @@ function free(gl, losses, name, handle) {
 /** Validates an array or typed array whose length is a multiple of `each`, and returns it as a Float32Array. */
 function numbers(what, values, each) {
     if (!Array.isArray(values) && !ArrayBuffer.isView(values)) {
-        throw new ReliefError(`${what} are an array of numbers, ${each} for each`);
+        throw new ReliefError(`${what} must be an array of numbers, ${each} per item`);
     }
     const list = values instanceof Float32Array ? values : Float32Array.from(values);
     if (list.length % each !== 0) {
-        throw new ReliefError(`${what}: ${list.length} numbers are not ${each} for each`);
+        throw new ReliefError(`${what}: the number of values, ${list.length}, is not a multiple of ${each}`);
     }
     return list;
 }
@@ -200,28 +200,28 @@ function checkFinite(what, list) {
 function matrix(what, value) {
     const list = value?.elements ?? value; // a three.js Matrix4
     if (!(Array.isArray(list) || ArrayBuffer.isView(list)) || list.length !== 16) {
-        throw new ReliefError(`draw() needs ${what}: 16 numbers, column by column`);
+        throw new ReliefError(`draw() needs ${what}: 16 numbers in column-major order`);
     }
     return checkFinite(what, Float32Array.from(list));
 }
 
 function pixels(what, value) {
     if (!Number.isInteger(value) || value < 0) {
-        throw new ReliefError(`draw(): the ${what} is ${value}; it is a number of pixels`);
+        throw new ReliefError(`draw(): the ${what} is ${value}; use a number of pixels, 0 or more`);
     }
     return value;
 }
 
 function index(what, value, count) {
     if (!Number.isInteger(value) || value < 0 || value >= count) {
-        throw new ReliefError(`there is no ${what} ${value}; there are ${count}, from 0 on`);
+        throw new ReliefError(`there is no ${what} ${value}; there are ${count}, numbered from 0`);
     }
     return value;
 }
 
 function collider(what, value) {
     if (!(value instanceof Collider)) {
-        throw new ReliefError(`${what} needs a Collider, as load() gives it; did you forget to await it?`);
+        throw new ReliefError(`${what} needs a Collider from load(); did you forget to await it?`);
     }
     return value;
 }
@@ -261,10 +261,10 @@ function checkStream(what, options, keys) {
         throw new ReliefError(`${what} has no option '${wrong}'; it has ${keys.join(", ")}`);
     }
     if (!(Number.isFinite(options.radius) && options.radius > 0)) {
-        throw new ReliefError(`${what} needs a radius above 0: how far from emitters and the camera a world has full detail`);
+        throw new ReliefError(`${what} needs a radius above 0, within which the world has full detail`);
     }
     if (options.memory !== undefined && !(Number.isFinite(options.memory) && options.memory > 0)) {
-        throw new ReliefError(`${what}: the memory is a number of megabytes above 0`);
+        throw new ReliefError(`${what}: memory must be a number of megabytes above 0`);
     }
 }
 
@@ -284,12 +284,12 @@ function removeFolder(folder) {
 function writeIn(folder, name, content) {
     const parts = name.split("/");
     if (parts.some((part) => part === "" || part === "." || part === "..")) {
-        throw new ReliefError(`'${name}' is no file of the scene's folder`);
+        throw new ReliefError(`'${name}' is outside the scene's folder; use a relative path without '..'`);
     }
     if (content instanceof Collider) {
         content.handle; // throws if disposed
     } else if (!(content instanceof Uint8Array) && typeof content !== "string") {
-        throw new ReliefError(`the file '${name}' is a Collider, a Uint8Array or a text`);
+        throw new ReliefError(`the file '${name}' must be a Collider, a Uint8Array or a string`);
     }
     wasm.FS.mkdirTree([folder, ...parts.slice(0, -1)].join("/"));
     wasm.FS.writeFile(`${folder}/${name}`, content instanceof Collider ? content.bytes : content);
@@ -319,9 +319,9 @@ export class World {
         this.files = { ...files };
         this.stream = null;
         if (stream) {
-            checkStream("the streaming of a World", stream, ["radius", "memory", "load"]);
+            checkStream("streaming a World", stream, ["radius", "memory", "load"]);
             if (typeof stream.load !== "function") {
-                throw new ReliefError("the streaming of a World needs 'load', a function that brings the bytes of a file");
+                throw new ReliefError("streaming a World needs 'load', a function that returns the bytes of a file");
             }
             this.stream = { ...stream };
         }
@@ -367,7 +367,7 @@ export class Collider {
 
     constructor(bytes) {
         if (!(bytes instanceof Uint8Array)) {
-            throw new ReliefError("a Collider is made of a Uint8Array; load() takes other things");
+            throw new ReliefError("new Collider() needs a Uint8Array; load() accepts other sources");
         }
         this.bytes = bytes;
         this.#handle = made("relief_collider_read", bytes, bytes.length);
@@ -391,7 +391,7 @@ export class Collider {
     texels(map) {
         const { width, height, faces, format } = this.info.maps[index("map", map, this.info.maps.length)];
         if (format === "patches") {
-            throw new ReliefError(`map ${map} is of patches, which lie in no image; tree(${map}) has them`);
+            throw new ReliefError(`map ${map} contains patches and has no texels; use tree(${map})`);
         }
         const texels = new Float32Array(8 * width * height * faces);
         done("relief_collider_texels", this.handle, map, texels);
@@ -401,7 +401,7 @@ export class Collider {
     tree(map) {
         const { bytes, format } = this.info.maps[index("map", map, this.info.maps.length)];
         if (format !== "patches") {
-            throw new ReliefError(`map ${map} has no tree, as its format is ${format}; texels(${map}) has what it holds`);
+            throw new ReliefError(`map ${map} has no tree, because its format is ${format}; use texels(${map})`);
         }
         const words = new Uint32Array(bytes / 4);
         done("relief_collider_tree", this.handle, map, words);
@@ -435,7 +435,7 @@ export class GpuCollider {
         if (!this.#handle) {
             throw new ReliefError("this GpuCollider is disposed of");
         }
-        useAsOf(this.#gl, this.#losses, "make a new GpuCollider");
+        useAsOf(this.#gl, this.#losses, "create a new GpuCollider");
     }
 
     #places(unit, block) {
@@ -449,7 +449,7 @@ export class GpuCollider {
         this.#places(unit, block);
         const gl = this.#gl;
         if (!(program instanceof WebGLProgram) || !gl.getProgramParameter(program, gl.LINK_STATUS)) {
-            throw new ReliefError("attach() needs a WebGLProgram that is linked");
+            throw new ReliefError("attach() needs a linked WebGLProgram");
         }
         const before = gl.getParameter(gl.CURRENT_PROGRAM);
         gl.useProgram(program);
@@ -485,7 +485,7 @@ const isTable = (value) => value !== null && typeof value === "object" && !Array
 /** Converts a scene to JSON. Non-finite numbers become strings, which the reader rejects with their key. */
 const jsonOf = (scene) => JSON.stringify(scene, (key, value) => {
     if (typeof value === "function" || typeof value === "symbol") {
-        throw new ReliefError(`a scene holds numbers, texts, true, false, lists and tables, but no ${String(value)}`);
+        throw new ReliefError(`a scene can contain numbers, strings, booleans, lists and tables, but no ${String(value)}`);
     }
     return ArrayBuffer.isView(value) ? [...value] : typeof value === "number" && !Number.isFinite(value) ? String(value) : value;
 });
@@ -521,22 +521,22 @@ export class ParticleSystem {
         }
         if (options.world) {
             if (!(options.world instanceof World)) {
-                throw new ReliefError("the option 'world' needs a World, as loadWorld() and streamWorld() give it; did you forget to await it?");
+                throw new ReliefError("the option 'world' needs a World from loadWorld() or streamWorld(); did you forget to await it?");
             }
             if (options.collider) {
-                throw new ReliefError("give the option 'world' or 'collider'; more colliders are the scene's, with 'files'");
+                throw new ReliefError("use either 'world' or 'collider'; name more colliders in the scene, with 'files'");
             }
             options.world.handle; // throws if disposed
         }
         if (options.warn !== undefined && typeof options.warn !== "function") {
-            throw new ReliefError("the option 'warn' is a function that takes a line");
+            throw new ReliefError("the option 'warn' must be a function that takes a line");
         }
         if (options.hits !== undefined && typeof options.hits !== "function") {
-            throw new ReliefError("the option 'hits' is a function that takes those of a step");
+            throw new ReliefError("the option 'hits' must be a function that takes StepHits");
         }
         const { hitSpeed = 0 } = options;
         if (!(Number.isFinite(hitSpeed) && hitSpeed >= 0)) {
-            throw new ReliefError("the option 'hitSpeed' is a speed, 0 or more, below which hits are left out");
+            throw new ReliefError("the option 'hitSpeed' must be a speed, 0 or more");
         }
         use(gl);
         this.#gl = gl;
@@ -564,7 +564,7 @@ export class ParticleSystem {
                 throw new ReliefError("a ParticleSystem needs the option 'collider' or 'world', or a scene that names its colliders");
             }
         } else if (options.collider) {
-            throw new ReliefError("a scene given as text names its colliders itself: give them in 'files'");
+            throw new ReliefError("a scene given as text must name its colliders; pass them in 'files'");
         }
         for (const [name, content] of Object.entries(options.world?.files ?? {})) {
             files[`world/${name}`] = content;
@@ -602,14 +602,14 @@ export class ParticleSystem {
     #checkCoarse({ colliders, files }) {
         const missing = colliders.find(({ coarse }) => coarse && !(coarse.file in files));
         if (missing) {
-            throw new ReliefError(`the scene has a 'stream', and its world lacks '${missing.coarse.file}'; ` +
-                                  "leave out 'stream', or take streamWorld()");
+            throw new ReliefError(`the scene has 'stream', but its world lacks '${missing.coarse.file}'; ` +
+                                  "remove 'stream', or use streamWorld()");
         }
     }
 
     get handle() {
         if (!this.#handle) {
-            throw new ReliefError(this.#folder === null ? "this system is disposed of" : "this system did not restart");
+            throw new ReliefError(this.#folder === null ? "this system is disposed of" : "this system failed to restart");
         }
         return this.#handle;
     }
@@ -630,7 +630,7 @@ export class ParticleSystem {
 
     set(patch) {
         if (typeof this.#scene === "string") {
-            throw new ReliefError("a scene given as text is not changed in parts; make a new system");
+            throw new ReliefError("set() cannot change a scene given as text; create a new system");
         }
         if (!isTable(patch)) {
             throw new ReliefError("set() takes a part of a scene: an object with the keys of scene.toml");
@@ -655,7 +655,7 @@ export class ParticleSystem {
         const seconds = dt ?? this.info.dt;
         if (!(typeof seconds === "number" && seconds >= 0 && seconds <= 1)) {
             const given = typeof seconds === "number" ? seconds : JSON.stringify(seconds);
-            throw new ReliefError(`step(${given}): a step lasts from 0 to 1 second; a page that slept takes ` +
+            throw new ReliefError(`step(${given}): a step must be 0 to 1 seconds; limit it by ` +
                                   "Math.min(seconds, 1 / 30)");
         }
         if (seconds > 0) {
@@ -716,8 +716,8 @@ export class ParticleSystem {
         const places = Array.isArray(points) ? points : [];
         const wrong = places.findIndex((one) => one?.position?.length !== 3 || !(one.radius > 0));
         if (!Array.isArray(points) || wrong >= 0) {
-            throw new ReliefError("near() takes a list of { position: [x, y, z], radius }, whose radius is above 0" +
-                                  (wrong >= 0 ? `; number ${wrong} is none` : ""));
+            throw new ReliefError("near() takes a list of { position: [x, y, z], radius } with a radius above 0" +
+                                  (wrong >= 0 ? `; item ${wrong} is invalid` : ""));
         }
         this.#ready();
         const list = checkFinite("near()", Float32Array.from(places.flatMap(({ position, radius }) => [...position, radius])));
@@ -743,7 +743,7 @@ export class ParticleSystem {
         const rows = Array.isArray(births) && births.every((one) => one !== null && typeof one === "object")
             ? births.flatMap(({ position, velocity = [0, 0, 0], lifetime = 1, type = 0 }, i) => {
                 if (position?.length !== 3 || velocity?.length !== 3) {
-                    throw new ReliefError(`birth ${i} needs a position of three numbers, and such a velocity if any`);
+                    throw new ReliefError(`birth ${i} needs a position of three numbers; a velocity must have three, too`);
                 }
                 return [...position, ...velocity, lifetime, type];
             })
@@ -814,7 +814,7 @@ export class ParticleSystem {
     pose(body, joints = [], weights = []) {
         this.#ready();
         if (!Number.isInteger(body) || body < 0 || joints.length % 16 !== 0) {
-            throw new ReliefError("pose() takes the number of a body, and 16 numbers a joint");
+            throw new ReliefError("pose() needs the number of a body, and 16 numbers per joint");
         }
         done("relief_player_pose", this.handle, body, checkFinite("pose()", Float32Array.from(joints)), joints.length / 16,
              checkFinite("pose()", Float32Array.from(weights)), weights.length);

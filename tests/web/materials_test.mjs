@@ -110,6 +110,6 @@ test("what takes hits is a function, and a slowest speed is one", { timeout: 60_
     const { page } = await libraryPage(t, folder);
     const said = await page.evaluate(() => errorsOf(() => new relief.ParticleSystem(gl, { hits: 3 }),
                                                     () => new relief.ParticleSystem(gl, { hits: () => {}, hitSpeed: -1 })));
-    assert.match(said[0], /option 'hits' is a function/);
-    assert.match(said[1], /option 'hitSpeed' is a speed/);
+    assert.match(said[0], /option 'hits' must be a function/);
+    assert.match(said[1], /option 'hitSpeed' must be a speed/);
 });

@@ -62,7 +62,7 @@ test("where frames take 50 ms the page draws less, says so, and draws all of it 
     });
     await page.waitForFunction("reliefView.quality.pixels === 0.5", undefined, { timeout: 200_000 });
     assert.ok(await drawn() <= 0.51, `${await drawn()} of the pixels each way`);
-    assert.match(await page.locator("#quality").textContent(), /^Coarser, to keep up: 50 % of the pixels each way$/);
+    assert.match(await page.locator("#quality").textContent(), /^Reduced resolution: 50 % per side$/);
     assert.ok(await page.isVisible("#quality"));
     await page.evaluate(() => (reliefView.particles.paused = true));
     await page.waitForFunction("document.getElementById('quality').hidden", undefined, { timeout: 60_000 });

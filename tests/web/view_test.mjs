@@ -95,7 +95,7 @@ test("patches show their cells", { timeout: 300_000 }, async (t) => {
 
     await page.click("#tab-maps");
     await page.waitForFunction("reliefView.panel.picturesDone");
-    assert.match(await page.locator("#maps button").textContent(), /0 patches in \d+ × \d+ × \d+ cubes, halved up to [1-9]\d* times/);
+    assert.match(await page.locator("#maps button").textContent(), /0 patches in \d+ × \d+ × \d+ roots, up to [1-9]\d* levels/);
     assert.ok(await page.locator("#patches-note").isVisible());
     // The smallest cells are the darkest, and all levels show.
     const colors = await page.evaluate(() => {
@@ -157,9 +157,9 @@ test("what is given by error ends in a sentence, and the page goes on", { timeou
     };
     const cut = structuredClone(data);
     cut.collider.textures.find(({ texels }) => texels).texels = "AAAA";
-    for (const [other, pattern] of [["{ broken", /this page is damaged/i], [{ ...data, format: 1 }, /format 1/], [cut, /cut off/],
+    for (const [other, pattern] of [["{ broken", /this page is damaged/i], [{ ...data, format: 1 }, /format 1/], [cut, /truncated/],
                                     [{ ...data, collider: { ...data.collider, block: "%%%" } }, /cannot be decoded/],
-                                    [{ ...data, mesh: { name: "m", vertices: "AAAAAA==", triangles: "" } }, /cut off/]]) {
+                                    [{ ...data, mesh: { name: "m", vertices: "AAAAAA==", triangles: "" } }, /truncated/]]) {
         await sentence(withData(made, other), pattern);
     }
     const scene = scenePage(folder, file);

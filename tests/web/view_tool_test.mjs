@@ -36,7 +36,7 @@ test("a check says what relief check says; a sheet is right in the middle of its
     const verdicts = check().split("\n").filter((line) => /^[^ :]+\.relief: /.test(line));
     assert.equal(await page.locator("#verdict").textContent(), verdicts.map((line) => line.replace(/^[^:]+: /, "")).join("; "));
     assert.equal(await page.locator("#verdict").getAttribute("class"), said.verdict.grade);
-    assert.match(await page.locator("#sheets-note").textContent(), /Sheets have a thickness of [0-9.]+ /);
+    assert.match(await page.locator("#sheets-note").textContent(), /Sheets have a thickness of [0-9.]+/);
     const depth = await page.evaluate("reliefView.look.depth");
     assert.ok(depth > 1e-3, `half of the thickness is ${depth}`);
     // The heat map says so too: nothing in the strong colours of the range's ends.
@@ -68,7 +68,7 @@ test("the page of a check holds its findings: numbers, places to fly to, parts, 
     assert.deepEqual(await page.locator("#advice li code").allTextContents(),
                      said.advice.filter((one) => one.helps || !one.tried).map((one) => one.command));
     assert.match(await page.locator("#parts").textContent(), /<b>pillar<\/b>.*texels/s);
-    assert.match(await page.locator("#measures").textContent(), /surface that no map sees.*points of each kind5,000seed1/);
+    assert.match(await page.locator("#measures").textContent(), /surface unseen by maps.*samples of each kind5,000seed1/);
     const worst = said.worst_places.at(-1);
     await page.locator("#places button").last().click();
     const target = await page.evaluate("reliefView.camera.target");
@@ -180,7 +180,7 @@ test("a click picks a body; a check colours all, shows the worst, and keys fly",
     }
     await click(await middle(1));
     const facts = await page.locator("#picked-facts").textContent();
-    assert.match(facts, /^meshboxcolliderbox-[0-9a-f]+\.reliefsize[0-9.]+ kBscale1at0, 0, 0wrong near it[1-9][0-9.]+ %$/);
+    assert.match(facts, /^meshboxcolliderbox-[0-9a-f]+\.reliefsize[0-9.]+ kBscale1at0, 0, 0wrong points[1-9][0-9.]+ %$/);
     // Dragging turns, and picks nothing; the sky is no body.
     const [x, y] = await click(await middle(1));
     await page.mouse.move(x, y);

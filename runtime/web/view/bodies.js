@@ -153,7 +153,7 @@ export class Bodies {
             ["size", bytes && bytesText(bytes)],
             ["scale", shortNumber(scale)],
             ["at", [...model.slice(12, 15)].map(shortNumber).join(", ")],
-            ["wrong near it", wrong && `${shortNumber(wrong.wrong_percent)} %`],
+            ["wrong points", wrong && `${shortNumber(wrong.wrong_percent)} %`],
         ].filter(([, value]) => value !== undefined && value !== "");
     }
 

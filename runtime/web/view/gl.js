@@ -23,7 +23,7 @@ export function program(gl, vertex, fragment, prefix = "") {
     gl.linkProgram(made);
     if (!gl.getProgramParameter(made, gl.LINK_STATUS) && !gl.isContextLost()) {
         const logs = gl.getAttachedShaders(made).map((shader) => gl.getShaderInfoLog(shader)).join(" ").trim();
-        throw new Error(`this browser's WebGL2 refuses a shader of this page: ${logs || gl.getProgramInfoLog(made)}`);
+        throw new Error(`this browser failed to compile a shader of this page: ${logs || gl.getProgramInfoLog(made)}`);
     }
     const places = new Map();
     return {

@@ -14,7 +14,7 @@ import { View } from "./view.js";
 import { WorldPanel } from "./world_panel.js";
 
 const canvas = $("canvas");
-const kLost = "The GPU was reset; the page begins anew when the browser gives it back.";
+const kLost = "The GPU was reset; the page reloads when the browser restores it.";
 const dark = matchMedia("(prefers-color-scheme: dark)");
 
 /** Shows a message; null hides it. */
@@ -69,8 +69,8 @@ class App {
             const gl = canvas.getContext("webgl2", { antialias: false, alpha: false, depth: true,
                                                      powerPreference: "high-performance" });
             if (!gl || (this.data?.scene && !gl.getExtension("EXT_color_buffer_float"))) {
-                throw new Error(`this browser gives no WebGL2${gl ? " with EXT_color_buffer_float" : ""}, which the page draws ` +
-                                "with: turn on hardware acceleration, or try another browser");
+                throw new Error(`this browser does not support WebGL2${gl ? " with EXT_color_buffer_float" : ""}: ` +
+                                "enable hardware acceleration, or try another browser");
             }
             this.gl = gl;
             await this.#begin();

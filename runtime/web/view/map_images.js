@@ -88,7 +88,7 @@ export function mapTitle(collider, index) {
     const { width, height, projection, rows, format } = collider.info.maps[index];
     if (projection === "local") {
         const { roots, levels } = treeOf(collider, index);
-        return `patches in ${roots.join(" × ")} cubes, halved up to ${levels} times`;
+        return `patches in ${roots.join(" × ")} roots, up to ${levels} levels`;
     }
     const size = `${width} × ${height}`;
     const z = rows[2].slice(0, 3);

@@ -34,7 +34,7 @@ export class PageCollider {
             const Words = kTextures[i][4];
             const bytes = texels && fromBase64(texels, "collider");
             if (bytes && bytes.length !== 4 * Words.BYTES_PER_ELEMENT * width * height) {
-                throw damaged("its collider is cut off");
+                throw damaged("its collider is truncated");
             }
             return { width, height, texels: bytes && new Words(bytes.buffer) };
         });
@@ -95,7 +95,7 @@ class PageTextures {
         this.textures = textures.map(({ width, height, texels }, i) => {
             const [, internal, format, type, Words] = kTextures[i];
             if (texels && Math.max(width, height) > most) {
-                throw new Error(`this collider has a texture of ${width} × ${height} texels, and this browser allows ${most}: ` +
+                throw new Error(`this collider has a texture of ${width} × ${height} texels, but this browser allows ${most}: ` +
                                 "bake it with a smaller --budget");
             }
             const texture = gl.createTexture();

@@ -9,7 +9,7 @@ export function fromBase64(text, what) {
     }
 }
 
-export const damaged = (how) => new Error(`this page is damaged: ${how}; make the page again with the tool that made it, 'relief view' or 'relief-sim --page'`);
+export const damaged = (how) => new Error(`this page is damaged: ${how}; create it again with 'relief view' or 'relief-sim --page'`);
 
 /** Returns the decoded data, or null if the page is empty. For a scene, `file` is the collider in the panel. */
 export function readPageData() {
@@ -25,7 +25,7 @@ export function readPageData() {
         return null;
     }
     if (data.format !== format) {
-        throw new Error(`this page's data has the format ${data.format}, and the page understands ${format}; make it again ` +
+        throw new Error(`the data of this page has format ${data.format}, but the page needs ${format}; create it again ` +
                         "with tools of one release");
     }
     if (!data.scene) {
@@ -40,11 +40,11 @@ export function readPageData() {
 function meshOf(mesh) {
     const [vertices, triangles] = [mesh.vertices, mesh.triangles].map((text) => fromBase64(text, "mesh"));
     if (vertices.length % 12 !== 0 || triangles.length % 12 !== 0) {
-        throw damaged("its mesh is cut off");
+        throw damaged("its mesh is truncated");
     }
     const corners = new Uint32Array(triangles.buffer);
     if (corners.some((i) => i >= vertices.length / 12)) {
-        throw damaged("its mesh names a vertex that is not there");
+        throw damaged("its mesh has an invalid vertex index");
     }
     return { vertices: new Float32Array(vertices.buffer), triangles: corners };
 }
@@ -53,7 +53,7 @@ function meshOf(mesh) {
 export async function readWasm() {
     const packed = fromBase64(document.getElementById("relief-wasm").textContent.trim(), "WebAssembly");
     if (typeof DecompressionStream === "undefined") {
-        throw new Error("this browser is too old for this page (no DecompressionStream); try one of 2023 or later");
+        throw new Error("this browser is too old for this page (no DecompressionStream); use one from 2023 or later");
     }
     const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
     return new Uint8Array(await new Response(stream).arrayBuffer());

@@ -184,8 +184,8 @@ export class Panel {
         look.heat = $("heat").checked ? range : 0;
         // A sheet lies in the middle of its shell: subtract half of the recorded thickness, if any.
         look.depth = 0.5 * Number(/(?:^| )--thickness (?:auto=)?([0-9.e+-]+)/.exec(body.collider.info.options)?.[1] ?? 0);
-        $("sheets-note").textContent = look.depth === 0 ? "" : `Sheets have a thickness of ${this.#length(2 * look.depth)} round ` +
-            "the mesh: white is where they lie in its middle.";
+        $("sheets-note").textContent = look.depth === 0 ? "" : `Sheets have a thickness of ${this.#length(2 * look.depth)}; ` +
+            "white: the mesh is in the middle of its shell.";
         this.#legend("heat", range);
         this.app.changed();
     }
@@ -200,7 +200,7 @@ export class Panel {
         $("advice-title").hidden = advice.length === 0;
         $("advice").replaceChildren(...advice.map(({ command, ...one }) => element("li", {},
             ...(one.tried && !one.helps ? [] : [element("code", {}, command)]), element("p", { class: "hint" }, adviceText(one, verdict)))));
-        $("places-title").textContent = places.length ? "Worst places, by their share of what is wrong" : "No place is wrong";
+        $("places-title").textContent = places.length ? "Worst places, by fraction of wrong points" : "No wrong places";
         $("places").replaceChildren(...places.map((place) => element("li", {}, element("button", { onclick: () => this.#goTo(place) },
             element("b", {}, `${shortNumber(place.share_percent)} %`),
             element("span", {}, [`${this.#length(place.size)} across`, kCauses[place.cause],
@@ -226,7 +226,7 @@ export class Panel {
     /** Updates the particle count and the quality note. share: fraction of the resolution per side. */
     tick(now, share) {
         $("quality").hidden = share === 1;
-        $("quality").textContent = `Coarser, to keep up: ${Math.round(100 * share)} % of the pixels each way`;
+        $("quality").textContent = `Reduced resolution: ${Math.round(100 * share)} % per side`;
         const { system } = this.app.particles;
         if (now - this.#lastTick > 250 && system) {
             this.#lastTick = now;
@@ -264,20 +264,20 @@ function checkRows({ accuracy: original, repaired, sampling }, length) {
     const accuracy = repaired?.accuracy ?? original;
     const percent = (v) => `${shortNumber(v)} %`;
     const { near, uniform, distance_error: distance, normal_error_degrees: normal } = accuracy;
-    return [["called inside near it", percent(near.false_inside_percent)], ["called outside near it", percent(near.false_outside_percent)],
-            ["wrong anywhere in the box", percent(uniform.wrong_percent)],
-            ["mean error", length(distance.mean)], ["99 % below", length(distance.p99)],
-            ["normal, mean", `${shortNumber(normal.mean)}°`], ["normal, 99 % below", `${shortNumber(normal.p99)}°`],
-            ["surface that no map sees", percent(accuracy.unseen_area_percent)],
-            ["outside without a distance", percent(accuracy.far_percent)], ["no map votes", percent(accuracy.unknown_percent)],
-            ["no normal", percent(accuracy.no_normal_percent)],
-            ["inside, the nearest face does not decide", percent(accuracy.inside.far_face_percent)],
-            ["on the GPU", `${accuracy.gpu_bytes.toLocaleString("en")} bytes`],
-            ["points of each kind", sampling.samples.toLocaleString("en")], ["seed", `${sampling.seed}`]];
+    return [["false inside near the surface", percent(near.false_inside_percent)], ["false outside near the surface", percent(near.false_outside_percent)],
+            ["wrong in the whole box", percent(uniform.wrong_percent)],
+            ["distance error, mean", length(distance.mean)], ["distance error, 99 % below", length(distance.p99)],
+            ["normal error, mean", `${shortNumber(normal.mean)}°`], ["normal error, 99 % below", `${shortNumber(normal.p99)}°`],
+            ["surface unseen by maps", percent(accuracy.unseen_area_percent)],
+            ["far outside, without a distance", percent(accuracy.far_percent)], ["no map votes", percent(accuracy.unknown_percent)],
+            ["without a normal", percent(accuracy.no_normal_percent)],
+            ["inside, decided by a farther face", percent(accuracy.inside.far_face_percent)],
+            ["size on the GPU", `${accuracy.gpu_bytes.toLocaleString("en")} bytes`],
+            ["samples of each kind", sampling.samples.toLocaleString("en")], ["seed", `${sampling.seed}`]];
 }
 
 function adviceText({ about, tried, helps, wrong_percent: left, untried }, verdict) {
     return !tried ? `${about}; not tried: ${untried}` : helps
-        ? `${about}; tried: ${shortNumber(left)} % wrong instead of ${shortNumber(verdict.wrong_percent)} %`
-        : `Tried, and of no help: ${about} (${shortNumber(left)} %)`;
+        ? `${about}; tried: ${shortNumber(left)} % wrong points instead of ${shortNumber(verdict.wrong_percent)} %`
+        : `Tried without improvement: ${about} (${shortNumber(left)} %)`;
 }

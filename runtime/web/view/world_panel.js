@@ -36,15 +36,15 @@ export class WorldPanel {
         $("wrong").checked = Boolean(bodies.measured);
         $("wrong").onchange();
         const { places } = data.check.accuracy;
-        $("bodies-title").textContent = places.length ? "Worst bodies" : "No body is wrong";
+        $("bodies-title").textContent = places.length ? "Worst bodies" : "No body has wrong points";
         $("bodies").replaceChildren(...places.map((place) => element("li", {},
             element("button", { onclick: () => this.#goTo(place), "aria-expanded": false },
                     element("b", {}, `${shortNumber(place.wrong_percent)} %`), element("span", {}, place.node || place.mesh)),
             element("div", { class: "place", hidden: "" },
                     element("img", { alt: `A slice through (${place.position.map(shortNumber).join(", ")})`,
                                      src: `data:image/png;base64,${place.picture}` }),
-                    element("p", { class: "hint" }, `At (${place.position.map(shortNumber).join(", ")}), ` +
-                            `${this.#length(place.distance)} off${place.texel > 0 ? `, where texels are ${this.#length(place.texel)} wide` : ""}.`),
+                    element("p", { class: "hint" }, `At (${place.position.map(shortNumber).join(", ")}): ` +
+                            `error ${this.#length(place.distance)}${place.texel > 0 ? `, texel ${this.#length(place.texel)}` : ""}.`),
                     ...(place.advice ? [element("p", { class: "hint" }, `${place.advice[0].toUpperCase()}${place.advice.slice(1)}.`)] : [])))));
     }
 
