@@ -91,7 +91,7 @@ Result<std::vector<Rival>> rivalsFor(const Bench& bench, const BenchScene& scene
         const glm::vec3 apart = glm::abs(atlas.box.center() - scene.collider.bounds.center());
         if (glm::any(glm::greaterThan(apart, glm::vec3(0.05F * scene.side)))) {
             return fail(ErrorCode::kUsage,
-                        quotedPath(file) + " is of another mesh than the collider; make both of one");
+                        quotedPath(file) + " has another mesh than the collider; bake both from one mesh");
         }
         rivals.push_back({std::filesystem::path(file).stem().string(),
                           RELIEF_TRY(BrickStep::create(atlas, scene, bench.path))});
@@ -125,7 +125,7 @@ Result<std::vector<BenchVariant>> variantsFor(const std::string& only, const std
     std::vector<BenchVariant> variants = benchVariants();
     const auto named = [&](const auto& variant) { return variant.name == only; };
     if (!only.empty() && std::ranges::none_of(variants, named) && std::ranges::none_of(rivals, named)) {
-        return fail(ErrorCode::kUsage, "--only " + only + ": no such variant; without it all are named");
+        return fail(ErrorCode::kUsage, "--only " + only + ": no such variant; omit it to run all");
     }
     std::erase_if(variants, [&](const BenchVariant& variant) {
         return !only.empty() && !named(variant) && variant.name != "collider" &&

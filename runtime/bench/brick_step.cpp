@@ -78,7 +78,7 @@ std::uint64_t texelsOf(const glm::ivec3& size) {
 Result<BrickStep> BrickStep::create(const BrickAtlas& atlas, const BenchScene& scene, StepPath path) {
     const auto old = [](const Birth& birth) { return birth.age != 0.0F; };
     if (scene.births.size() % kWidth != 0 || std::ranges::any_of(scene.births, old)) {
-        return fail(ErrorCode::kUsage, "a step among bricks needs whole rows of newborns");
+        return fail(ErrorCode::kUsage, "a brick step needs complete rows of births with age 0");
     }
     const PassState state;
     BrickStep made;
@@ -121,7 +121,7 @@ Result<void> BrickStep::uploadAtlas(const BrickAtlas& atlas) {
     if (atlas_bricks_.x == 0 || glm::any(glm::greaterThan(glm::ivec3(atlas.cubes), glm::ivec3(side_max)))) {
         return fail(ErrorCode::kLimit,
                     std::to_string(bricks) + " bricks are more than a 3-D texture of side " +
-                        std::to_string(side_max) + " holds; give relief-accuracy a smaller --budget");
+                        std::to_string(side_max) + " can hold; run relief-accuracy with a smaller --budget");
     }
     forgetGlErrors();
     const glm::ivec3 size = nodes * atlas_bricks_;
@@ -152,7 +152,7 @@ Result<void> BrickStep::uploadAtlas(const BrickAtlas& atlas) {
                                wide_ ? GL_UNSIGNED_INT : GL_UNSIGNED_SHORT, GL_NEAREST, pixels);
         bytes_ += index.size() * (wide_ ? 4 : 2);
     }
-    return checkAllocated("the bricks", "give relief-accuracy a smaller --budget");
+    return checkAllocated("the bricks", "run relief-accuracy with a smaller --budget");
 }
 
 Result<void> BrickStep::compile(const BrickAtlas& atlas) {

@@ -20,7 +20,7 @@ const std::map<std::string_view, Case> kCases{{"step", benchStep},
                                               {"stream", benchStream}};
 
 Result<void> run(int argc, char** argv) {
-    CLI::App app("Times of the runtime's parts, as JSON", "relief-bench");
+    CLI::App app("Times parts of the runtime, and prints JSON", "relief-bench");
     setUpHelp(app);
     app.footer("relief-bench step bunny.relief --path compute --particles 1048576");
     std::string name;

@@ -167,7 +167,7 @@ Result<void> refuseEmptyValues(const CLI::App& app) {
         const std::vector<std::string>& words = option->results();
         if (option->get_expected_min() > 0 && std::ranges::find(words, "") != words.end()) {
             return fail(ErrorCode::kUsage,
-                        option->get_name() + " is given without a value; leave it out, or give it one");
+                        option->get_name() + " has no value; add one, or remove the option");
         }
     }
     return {};

@@ -19,7 +19,7 @@ static_assert(std::endian::native == std::endian::little,
 Result<void> readNodes(const FlowFile& file, FlowField& flow) {
     const std::string name = quotedPath(file.path);
     if (file.components != 2 && file.components != 3) {
-        return fail(ErrorCode::kUsage, name + ": a node has 2 or 3 components");
+        return fail(ErrorCode::kUsage, name + ": components must be 2 or 3");
     }
     RELIEF_TRY(withPrefix(name, checkFlowSize({file.size[0], file.size[1], file.size[2]})));
     const std::size_t nodes = std::size_t{file.size[0]} * file.size[1] * file.size[2];
@@ -27,7 +27,7 @@ Result<void> readNodes(const FlowFile& file, FlowField& flow) {
     const auto bytes = RELIEF_TRY(readFile(file.path, FlowField::kNodesMax * 3 * sizeof(float)));
     if (bytes.size() != expected) {
         return fail(ErrorCode::kInvalidInput, name + " has " + std::to_string(bytes.size()) +
-                                                  " bytes, but size and components ask for " +
+                                                  " bytes, but size and components require " +
                                                   std::to_string(expected));
     }
     flow.size = file.size;
@@ -51,7 +51,7 @@ Result<void> checkSpeeds(const FlowFile& file, const FlowField& flow) {
                         quotedPath(file.path) + ": the velocity at node " + std::to_string(i % flow.size[0]) +
                             ", " + std::to_string(i / flow.size[0] % flow.size[1]) + ", " +
                             std::to_string(i / slice) +
-                            (std::isfinite(v) ? " is above 1000000 a second" : " is not finite"));
+                            (std::isfinite(v) ? " is above 1000000 per second" : " is not finite"));
         }
     }
     return {};
@@ -82,7 +82,7 @@ Result<FlowField> loadFlow(const FlowFile& file) {
 std::optional<FieldFault> check(FlowFile& flow, const GivenFields& /*given*/) {
     flow.origin += ": flow.raw: ";
     if (auto checked = checkFlowSize({flow.size[0], flow.size[1], flow.size[2]}); !checked) {
-        return FieldFault{"size", "is not possible: " + checked.error().message};
+        return FieldFault{"size", "is invalid: " + checked.error().message};
     }
     for (int i = 0; i < 3; ++i) {
         if (!(flow.box_min[i] < flow.box_max[i])) {

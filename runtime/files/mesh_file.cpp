@@ -72,7 +72,7 @@ Result<NamedMesh> loadNamedMesh(const std::filesystem::path& path) {
     const std::string extension = lowerCase(path.extension().native());
     if (extension != ".obj" && extension != ".ply") {
         return fail(ErrorCode::kUnsupported,
-                    quotedPath(path) + " is no mesh that can be read here; convert it to .obj or .ply");
+                    quotedPath(path) + " is not a supported mesh file; convert it to .obj or .ply");
     }
     return parseNamedMesh(RELIEF_TRY(readFile(path, kMeshBytesMax)), extension, quotedPath(path));
 }

@@ -15,7 +15,7 @@ Result<std::vector<std::byte>> encodePng(std::span<const std::uint8_t> rgb, std:
         rgb.size() != std::size_t{3} * width * height) {
         return fail(ErrorCode::kUsage, "a picture of " + std::to_string(width) + "x" +
                                            std::to_string(height) + " pixels cannot be written as PNG from " +
-                                           std::to_string(rgb.size()) + " bytes; sides go from 1 to " +
+                                           std::to_string(rgb.size()) + " bytes; sides must be 1 to " +
                                            std::to_string(kSideMax));
     }
     png_image image{};
@@ -43,7 +43,7 @@ Result<RgbaPicture> decodePng(std::span<const std::byte> bytes, std::string_view
     if (side > kPngReadSideMax) {
         png_image_free(&image);
         return fail(ErrorCode::kLimit, std::string(name) + " has a side of " + std::to_string(side) +
-                                           " pixels; " + std::to_string(kPngReadSideMax) + " are the most");
+                                           " pixels; the maximum is " + std::to_string(kPngReadSideMax));
     }
     RgbaPicture picture;
     picture.width = image.width;

@@ -29,8 +29,8 @@ Result<fs::path> findPlayer() {
         }
     }
     return fail(ErrorCode::kUnsupported,
-                "the page of a scene or a world plays particles, which needs the player of browsers; run "
-                "scripts/build.sh web in the sources once, or name a player with RELIEF_VIEW_PAGE");
+                "the browser player for pages of scenes and worlds is missing; build it with "
+                "scripts/build.sh web, or set RELIEF_VIEW_PAGE to its file");
 }
 
 /// The place for data in a page, and the format of the data, which depends on the release.
@@ -110,12 +110,11 @@ Result<void> checkSize(const Page& page) {
     if (rest + of_mesh <= kViewBytesMax) {
         return {};
     }
-    const std::string limit = "; a page holds " + megabytes(kViewBytesMax);
+    const std::string limit = "; the maximum of a page is " + megabytes(kViewBytesMax);
     if (rest <= kViewBytesMax) {
         return fail(ErrorCode::kLimit,
                     page.mesh->name + " has " + std::to_string(page.mesh->triangles.size()) + " triangles, " +
-                        megabytes(of_mesh) + limit +
-                        "; leave out the page or the mesh, or give it with fewer triangles");
+                        megabytes(of_mesh) + limit + "; simplify the mesh, or omit the page or the mesh");
     }
     return fail(ErrorCode::kLimit, page.name + " has " + megabytes(rest) + limit +
                                        "; bake with a smaller --budget, or smaller maps");
@@ -180,7 +179,7 @@ Result<std::string> playerPage(FileGuard& files) {
     const std::size_t at = text.find(place);
     if (at == std::string::npos || text.find(place, at + 1) != std::string::npos) {
         return invalidInput(quotedPath(file) +
-                            " is the page of another release; run scripts/build.sh web again");
+                            " is a page of another release; run scripts/build.sh web again");
     }
     return text;
 }

@@ -28,7 +28,7 @@ void ColliderMesh::setVertices(const GlBuffer& buffer) {
 Result<ColliderMesh::View> ColliderMesh::view(const Camera& camera, GLsizei width, GLsizei height) const {
     const PassState state;
     RELIEF_TRY(checkTextureSize(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height),
-                                "the mesh's picture's pixels", "choose a smaller size"));
+                                "the picture of the mesh", "choose a smaller size"));
     forgetGlErrors();
     View view;
     view.normal = makeTexture2D(GL_RGBA16F, width, height, GL_RGBA, GL_HALF_FLOAT);

@@ -15,8 +15,7 @@ Result<Frame> Frame::create(std::uint32_t width, std::uint32_t height) {
     RELIEF_TRY(checkContext());
     const std::string size = std::to_string(width) + "x" + std::to_string(height);
     if (width == 0 || height == 0) {
-        return fail(ErrorCode::kUsage,
-                    "a picture of " + size + " pixels has nothing to show; sides start at 1");
+        return fail(ErrorCode::kUsage, "a picture of " + size + " pixels is empty; sides must be at least 1");
     }
     GLint side_max = 0;
     std::array<GLint, 2> viewport_max{};
@@ -26,8 +25,8 @@ Result<Frame> Frame::create(std::uint32_t width, std::uint32_t height) {
     const std::uint64_t pixels = std::uint64_t{width} * height;
     if (std::max(width, height) > limit || pixels > kPixelsMax) {
         return fail(ErrorCode::kLimit,
-                    "a picture of " + size + " pixels is too large; this GL takes sides up to " +
-                        std::to_string(limit) + ", Relief " + std::to_string(kPixelsMax) + " pixels in all");
+                    "a picture of " + size + " pixels is too large; this GL supports sides up to " +
+                        std::to_string(limit) + ", and Relief " + std::to_string(kPixelsMax) + " pixels");
     }
     Frame frame;
     frame.width_ = width;

@@ -100,11 +100,10 @@ Result<MeshRenderer> MeshRenderer::create(std::span<const PictureMesh> meshes) {
 
 Result<void> MeshRenderer::setPositions(std::size_t mesh, std::span<const glm::vec3> positions) {
     if (mesh >= meshes_.size() || positions.size() != meshes_[mesh].shape.positions.size()) {
-        return fail(ErrorCode::kUsage,
-                    "vertices of a mesh that a picture does not have, or of another number");
+        return fail(ErrorCode::kUsage, "the mesh does not exist, or has another number of vertices");
     }
     if (!std::all_of(positions.begin(), positions.end(), [](const glm::vec3& p) { return isFinite(p); })) {
-        return invalidInput("a mesh of a picture has a position that is not finite");
+        return invalidInput("a position of the mesh is not finite");
     }
     const PassState state;
     Mesh& to = meshes_[mesh];
@@ -186,8 +185,8 @@ void MeshRenderer::drawPrints(std::span<const MeshPlace> places, float metre) {
 Result<void> MeshRenderer::checkPlaces(std::span<const MeshPlace> places) const {
     for (const MeshPlace& place : places) {
         if (place.mesh >= meshes_.size()) {
-            return fail(ErrorCode::kUsage, "a picture of mesh " + std::to_string(place.mesh) + " of " +
-                                               std::to_string(meshes_.size()));
+            return fail(ErrorCode::kUsage, "there is no mesh " + std::to_string(place.mesh) +
+                                               "; the number of meshes is " + std::to_string(meshes_.size()));
         }
     }
     return {};

@@ -21,18 +21,18 @@ bool within(const glm::vec3& value, float low, float high) {
 }
 
 constexpr float kHuge = 1e30F;
-constexpr const char* kOutOfRange = "a value is out of its range or not finite";
+constexpr const char* kOutOfRange = "a value is out of range or not finite";
 
 template <class T>
 std::string trackProblem(const AgeTrack<T>& track, const char* name, float low, float high) {
     if (track.size() > kLookKeysMax) {
-        return std::string(name) + " has " + std::to_string(track.size()) + " keys; give " +
-               std::to_string(kLookKeysMax) + " at most";
+        return std::string(name) + " has " + std::to_string(track.size()) + " keys; the maximum is " +
+               std::to_string(kLookKeysMax);
     }
     float before = -1.0F;
     for (const AgeKey<T>& key : track) {
         if (!(within(key.age, 0.0F, 1.0F) && key.age > before)) {
-            return std::string("the ages of ") + name + " do not rise within 0 to 1";
+            return std::string("the ages of ") + name + " are not ascending within 0 to 1";
         }
         if (!within(key.value, low, high)) {
             return kOutOfRange;

@@ -102,7 +102,7 @@ Result<ParticleRenderer> ParticleRenderer::create(const std::optional<ColliderVi
     renderer.nothing_ = makeTexture2D(GL_RGBA8, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, zero.data());
     constexpr std::array<std::uint32_t, 2> kNoRank{};
     renderer.no_order_ = makeTexture2D(GL_RG32UI, 1, 1, GL_RG_INTEGER, GL_UNSIGNED_INT, kNoRank.data());
-    RELIEF_TRY(checkAllocated("the renderer of the particles", "close what else is on the GPU"));
+    RELIEF_TRY(checkAllocated("the renderer of the particles", "close other programs that use the GPU"));
     return renderer;
 }
 
@@ -203,13 +203,13 @@ Result<void> ParticleRenderer::draw(const ParticleSystem& particles, const Camer
                                     const ParticleStyle& style, const RenderTarget& target,
                                     const ParticleOrder& order, const GlTexture* behind) {
     if (!(style.soft >= 0.0F && style.soft < 1e30F)) {
-        return fail(ErrorCode::kUsage, "the soft edge of particles is a distance, 0 or more");
+        return fail(ErrorCode::kUsage, "the soft distance of particles must be 0 or more");
     }
     if (!isFinite(camera.view) || !isFinite(camera.projection)) {
         return fail(ErrorCode::kUsage, "the matrices of a camera must be finite");
     }
     if (style.sprite == Sprite::kPoint && anyStretched(style)) {
-        return fail(ErrorCode::kUsage, "points cannot be stretched; choose sprites that are quads");
+        return fail(ErrorCode::kUsage, "points cannot be stretched; use quads as sprites");
     }
     const PassState state;
     RELIEF_TRY(uploadLooks(style));

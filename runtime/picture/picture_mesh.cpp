@@ -134,7 +134,7 @@ std::vector<glm::uvec3> trianglesOf(const PictureMesh& mesh) {
 
 Result<void> checkMesh(const PictureMesh& mesh) {
     if (mesh.triangles.empty() || mesh.triangles.size() % 3 != 0) {
-        return fail(ErrorCode::kInvalidInput, "a mesh without whole triangles shows nothing");
+        return fail(ErrorCode::kInvalidInput, "a mesh must have triangles with three indices each");
     }
     if (!mesh.normals.empty() && mesh.normals.size() != mesh.positions.size()) {
         return fail(ErrorCode::kInvalidInput, "a mesh has " + std::to_string(mesh.positions.size()) +
@@ -148,8 +148,8 @@ Result<void> checkMesh(const PictureMesh& mesh) {
     }
     for (const std::uint32_t v : mesh.triangles) {
         if (v >= mesh.positions.size()) {
-            return fail(ErrorCode::kInvalidInput, "a triangle names vertex " + std::to_string(v) + " of " +
-                                                      std::to_string(mesh.positions.size()));
+            return fail(ErrorCode::kInvalidInput, "a triangle has vertex index " + std::to_string(v) +
+                                                      " of " + std::to_string(mesh.positions.size()));
         }
     }
     for (const glm::vec3& p : mesh.positions) {

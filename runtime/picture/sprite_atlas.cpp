@@ -51,17 +51,17 @@ Result<SpriteAtlas> SpriteAtlas::create(std::span<const std::uint8_t> rgba, std:
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side_max);
     const std::uint32_t limit = std::min(kSideMax, static_cast<std::uint32_t>(std::max(side_max, 1)));
     if (std::max(width, height) > limit) {
-        return fail(ErrorCode::kLimit,
-                    "an atlas of " + size + " pixels is too large; sides go up to " + std::to_string(limit));
+        return fail(ErrorCode::kLimit, "an atlas of " + size + " pixels is too large; the maximum side is " +
+                                           std::to_string(limit));
     }
     if (width == 0 || height == 0 || rgba.size() != std::size_t{4} * width * height) {
-        return fail(ErrorCode::kUsage, "an atlas of " + size + " pixels does not have " +
-                                           std::to_string(rgba.size()) + " bytes");
+        return fail(ErrorCode::kUsage,
+                    "an atlas of " + size + " pixels cannot have " + std::to_string(rgba.size()) + " bytes");
     }
     if (columns == 0 || rows == 0 || width % columns != 0 || height % rows != 0) {
-        return fail(ErrorCode::kUsage, "an atlas of " + size + " pixels cannot be cut into " +
+        return fail(ErrorCode::kUsage, "an atlas of " + size + " pixels cannot be divided into " +
                                            std::to_string(columns) + "x" + std::to_string(rows) +
-                                           " cells of whole pixels; choose numbers that divide its sides");
+                                           " cells; choose numbers that divide its sides");
     }
     const PassState state;
     forgetGlErrors();

@@ -105,7 +105,8 @@ Result<TilePainter> TilePainter::create() {
     GLint together = 0;
     glGetIntegerv(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, &together);
     if (together < kTileSide * kTileSide || together < kRadixDigits) {
-        return fail(ErrorCode::kUnsupported, "this GL's work groups are too small to paint tiles");
+        return fail(ErrorCode::kUnsupported,
+                    "the work groups of this GL are too small for tiles; use the fragment path");
     }
     const std::string counted = "#define RELIEF_RADIX_COUNTED\n";
     TilePainter painter;

@@ -58,9 +58,9 @@ void fields(FieldVisitor& visit, const HitLine& line) {
     visit("body", onlyIf(hit.body >= 0, hit.body),
           {"Collider of the scene, from 0; null: the ground", {}, kFromZero});
     visit("material", known < materials.size() ? std::optional(materials[known]) : std::nullopt,
-          {"Name of the material there; null: the collider has none, or the ground"});
+          {"Name of the material; null: the ground, or a collider without materials"});
     visit("position", hit.position, {"Point where the particle touched the surface", "world units"});
-    visit("normal", hit.normal, {"Normal of the surface, out of the body, of length 1"});
+    visit("normal", hit.normal, {"Outward unit normal of the surface"});
     visit("velocity", hit.velocity, {"Velocity of the particle before the hit", "world units per second"});
     visit(
         "speed", hit.speed,

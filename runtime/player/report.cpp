@@ -30,10 +30,10 @@ GeneratedTexts playerSchemas() {
 }
 
 void fields(FieldVisitor& visit, const PlayerReport& report) {
-    visit("settings", report.scene, {"Effective scene, by its own keys"});
+    visit("settings", report.scene, {"Scene as simulated, with its own keys"});
     visit("device", report.device, {"OpenGL version, renderer and platform"});
     visit("path", stepPathName(report.path),
-          {.help = "Shaders that moved the particles", .words = kWords<"fragment", "compute">});
+          {.help = "Path of the particle steps", .words = kWords<"fragment", "compute">});
     const auto collider = [&](FieldVisitor& visit_collider) {
         visit_collider("maps", report.collider_maps, {"Maps of all colliders"});
         visit_collider("gpu_bytes", report.collider_bytes, {"Size on the GPU", "bytes"});
@@ -43,10 +43,9 @@ void fields(FieldVisitor& visit, const PlayerReport& report) {
         visit_particles("alive", report.counts.alive, {"Live particles at the end"});
         visit_particles("born", report.counts.born, {"Particles born"});
         visit_particles("died", report.counts.died, {"Particles that died"});
-        visit_particles("refused", report.counts.refused, {"Births that found no room"});
-        visit_particles("in_contact", report.in_contact,
-                        {"Particles that touched something in the last step"});
-        visit_particles("collisions", report.collisions, {"Steps in contact of all particles"});
+        visit_particles("refused", report.counts.refused, {"Births rejected because the system was full"});
+        visit_particles("in_contact", report.in_contact, {"Particles in contact in the last step"});
+        visit_particles("collisions", report.collisions, {"Steps in contact, summed over live particles"});
     };
     visit("particles", group(particles), {"Numbers of particles"});
     visit("steps", report.scene.time.steps, {"Steps played"});
@@ -54,7 +53,7 @@ void fields(FieldVisitor& visit, const PlayerReport& report) {
     visit("ms_per_step_median", report.ms_per_step_median, {"Median time of a step", "ms", kFromZero});
     visit("frames", report.frames_written, {"Pictures written"});
     visit("dumps", report.dumps_written, {"States written"});
-    visit("warnings", report.warnings, {"Probable errors, one line each"});
+    visit("warnings", report.warnings, {"Probable mistakes in the scene, one line each"});
 }
 
 }  // namespace relief

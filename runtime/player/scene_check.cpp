@@ -119,17 +119,17 @@ void fields(FieldVisitor& visit, const CheckedFile& file) {
 void fields(FieldVisitor& visit, const CheckReport& report) {
     visit("valid", true, {.help = "The scene is valid", .words = kWords<"true">});
     visit("steps", report.steps, {"Steps to play"});
-    visit("capacity", report.capacity, {"Particles, at most"});
+    visit("capacity", report.capacity, {"Maximum number of particles"});
     visit("bodies", report.world_bodies, {"Bodies of the world"});
     visit("maps", report.collider_maps, {"Maps of all colliders"});
     visit("files", report.files, {"The input and the files that it names"});
-    visit("warnings", report.warnings, {"Probable errors, one line each"});
+    visit("warnings", report.warnings, {"Probable mistakes in the scene, one line each"});
 }
 
 void fields(FieldVisitor& visit, const CheckFailure& failure) {
     visit("valid", false, {.help = "The scene is not valid", .words = kWords<"false">});
     visit("code", static_cast<int>(failure.error.code), {"Exit code", {}, {1.0, 7.0}});
-    visit("error", failure.error.message, {"One line for people"});
+    visit("error", failure.error.message, {"Error message, one line"});
 }
 
 }  // namespace relief

@@ -42,9 +42,9 @@ Result<Scene> openScene(const fs::path& input, const fs::path& root) {
         return scene;
     }
     RELIEF_TRY(refuseMeshName(input));
-    return fail(ErrorCode::kUsage,
-                quotedPath(input) +
-                    " is no scene, no collider and no world; name a .toml, a .relief or a world.json file");
+    return fail(
+        ErrorCode::kUsage,
+        quotedPath(input) + " is not a scene, collider or world; use a .toml, .relief or world.json file");
 }
 
 Result<Collider> openCollider(const SceneCollider& from, const ContainerLimits& limits) {
@@ -184,10 +184,9 @@ Result<void> checkOverlap(const LoadedScene& loaded) {
             around += contains(body, center) ? 1 : 0;
         }
         if (around > kOverlapMax) {
-            return fail(ErrorCode::kLimit,
-                        std::to_string(around) + " bodies overlap at " + shortest(center) +
-                            ", and a particle there is tested against each; place at most " +
-                            std::to_string(kOverlapMax) + " at one place, or bake them into one collider");
+            return fail(ErrorCode::kLimit, std::to_string(around) + " bodies overlap at " + shortest(center) +
+                                               "; place at most " + std::to_string(kOverlapMax) +
+                                               " at one place, or bake them into one collider");
         }
     }
     return {};
@@ -209,7 +208,7 @@ Result<LoadedScene> loadAll(Scene scene, const fs::path& input, const SceneOverr
         return fail(ErrorCode::kUsage, "the first frame, of step " + std::to_string(*scene.render.first) +
                                            ", comes after the last, of step " +
                                            std::to_string(*scene.render.last) +
-                                           "; choose --first-frame and --last-frame in order");
+                                           "; swap --first-frame and --last-frame");
     }
     for (SceneEmitter& emitter : scene.emitters) {
         emitter.seed = overrides.seed.value_or(emitter.seed);
@@ -253,7 +252,7 @@ Result<LoadedScene> loadAll(Scene scene, const fs::path& input, const SceneOverr
         const Bounds bounds = posed ? worldBounds(from, collider.bounds) : collider.bounds;
         if (!from.origin.empty() && withinLengths(collider.bounds) && !withinLengths(bounds)) {
             return fail(ErrorCode::kInvalidInput,
-                        from.origin + ": its position and scale bring the collider beyond " +
+                        from.origin + ": its position and scale move the collider beyond " +
                             numberText(kLengthMax) + "; place it nearer, or scale it less");
         }
         if (loaded.colliders.empty()) {

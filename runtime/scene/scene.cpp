@@ -18,7 +18,7 @@ const char* cameraProblem(const glm::vec3& eye, const glm::vec3& target) {
         return "is at camera.target; move one of them";
     }
     if (std::hypot(d.x, d.z) <= 1e-4F * std::abs(d.y)) {
-        return "is straight above or below camera.target, where no side is up; move it aside";
+        return "is directly above or below camera.target; move it sideways";
     }
     return nullptr;
 }
@@ -34,9 +34,8 @@ std::optional<FieldFault> checkAirOf(Scene& scene, const GivenFields& given) {
     const float drag = scene.air.viscosity.value_or(scene.forces.drag);
     for (const char* table : {"flow", "curl_noise"}) {
         if (given(table) && drag == 0.0F) {
-            return FieldFault{
-                table, std::string("does nothing without drag, which carries particles along; raise ") +
-                           (viscous ? "forces.viscosity" : "forces.drag")};
+            return FieldFault{table, std::string("has no effect without drag; raise ") +
+                                         (viscous ? "forces.viscosity" : "forces.drag")};
         }
     }
     return std::nullopt;
@@ -63,19 +62,20 @@ std::optional<FieldFault> checkMesh(const Scene& scene) {
         return std::nullopt;
     }
     if (!scene.world.empty()) {
-        return FieldFault{"render.mesh", "is drawn for a single collider, and not for a world; remove it"};
+        return FieldFault{"render.mesh", "cannot be used with a world; remove it"};
     }
     const SceneCollider& first = scene.colliders.front();
     if (scene.colliders.size() > 1 || !first.keys.empty() || !(first.pose == Pose{})) {
-        return FieldFault{"render.mesh",
-                          "is drawn where it was baked, and for a single collider; remove the mesh, or the "
-                          "collider's position, angle, scale and keys"};
+        return FieldFault{
+            "render.mesh",
+            "only works with a single collider without a pose; remove it, or the position, angle, "
+            "scale and keys of the collider"};
     }
     if (first.play) {
-        return FieldFault{"render.mesh", "does not move as the clip does; remove it, and the maps are drawn"};
+        return FieldFault{"render.mesh", "cannot follow the clip; remove it to draw the maps"};
     }
     if (first.live && scene.render.mesh != first.path) {
-        return FieldFault{"render.mesh", "is not the mesh that deforms; name collider.mesh"};
+        return FieldFault{"render.mesh", "is not the deforming mesh; use the file of collider.mesh"};
     }
     return std::nullopt;
 }
@@ -89,14 +89,14 @@ std::optional<FieldFault> checkCells(const Scene& scene) {
         any = any || look.cell_first;
         if (look.cell_first && look.cell_last >= cells) {
             return FieldFault{nth("type", i, ".cell"),
-                              cells == 0 ? "does nothing without render.atlas; name a PNG there, or remove it"
+                              cells == 0 ? "has no effect without render.atlas; add a PNG there, or remove it"
                                          : "is out of range; choose 0 to " + std::to_string(cells - 1)};
         }
     }
     if (cells > 0 && !any) {
         return FieldFault{
             "render.atlas",
-            "does nothing while no [[type]] has a cell; give one 'cell = 0', or remove the atlas"};
+            "has no effect unless a [[type]] has a cell; add 'cell = 0' to one, or remove the atlas"};
     }
     return std::nullopt;
 }
@@ -125,11 +125,11 @@ std::optional<FieldFault> completeTypes(Scene& scene, const GivenFields& given) 
         inherit(".friction_threshold", type.friction_threshold, scene.collision.friction_threshold);
         if (type.look.stretch > 0.0F && scene.render.sprite == Sprite::kPoint) {
             return FieldFault{nth("type", i, ".stretch"),
-                              "does nothing for points; choose render.sprite = \"quad\""};
+                              "has no effect on points; set render.sprite = \"quad\""};
         }
         for (std::size_t k = 0; k < i && !type.name.empty(); ++k) {
             if (scene.types[k].name == type.name) {
-                return FieldFault{nth("type", i, ".name"), "is taken; choose another"};
+                return FieldFault{nth("type", i, ".name"), "is already used; choose another"};
             }
         }
     }
@@ -151,8 +151,8 @@ std::optional<FieldFault> check(SceneForces& forces, const GivenFields& /*given*
     if (forces.wind != glm::vec3(0.0F) && forces.viscosity.value_or(forces.drag) == 0.0F) {
         return FieldFault{"wind",
                           forces.viscosity
-                              ? "does nothing while forces.viscosity is 0; raise it or remove the wind"
-                              : "does nothing while forces.drag is 0; raise the drag or remove the wind"};
+                              ? "has no effect while forces.viscosity is 0; raise it, or remove the wind"
+                              : "has no effect while forces.drag is 0; raise the drag, or remove the wind"};
     }
     return std::nullopt;
 }
@@ -163,14 +163,14 @@ std::optional<FieldFault> check(SceneCamera& camera, const GivenFields& /*given*
         const SceneCameraKey& key = camera.keys[i];
         if (key.time <= before) {
             return FieldFault{nth("key", i, ".time"),
-                              "= " + numberText(key.time) + " does not rise; sort the keys by time"};
+                              "= " + numberText(key.time) + " is not ascending; sort the keys by time"};
         }
         before = key.time;
         const glm::vec3 target =
             key.target.value_or(camera.target.value_or(key.eye + glm::vec3(0.0F, 0.0F, 1.0F)));
         if (cameraProblem(key.eye, target) != nullptr) {
             return FieldFault{nth("key", i, ".eye"),
-                              "is straight above or below its target, or in it; move it aside"};
+                              "is at its target, or directly above or below it; move it sideways"};
         }
     }
     const char* const problem =
@@ -183,7 +183,7 @@ std::optional<FieldFault> check(SceneRender& render, const GivenFields& /*given*
     for (std::size_t i = 0; i < render.weather.size(); ++i) {
         if (render.weather[i].time <= before) {
             return FieldFault{nth("weather", i, ".time"), "= " + numberText(render.weather[i].time) +
-                                                              " does not rise; sort the list by time"};
+                                                              " is not ascending; sort the list by time"};
         }
         before = render.weather[i].time;
     }
@@ -197,7 +197,7 @@ std::optional<FieldFault> check(SceneRender& render, const GivenFields& /*given*
 std::optional<FieldFault> check(SceneType& type, const GivenFields& given) {
     ParticleLook& look = type.look;
     if (given("name") && type.name.empty()) {
-        return FieldFault{"name", "is empty; give a name, or remove it"};
+        return FieldFault{"name", "is empty; set a name, or remove it"};
     }
     if (look.opacity.size() > 1 && !given("fade")) {  // the track defines the beginning and the end
         look.fade_in = 0.0F;
@@ -212,15 +212,17 @@ std::optional<FieldFault> check(Scene& scene, const GivenFields& given) {
             "", "a scene needs collider.file, the .relief file to collide with; bake one with 'relief bake'"};
     }
     if (scene.stream && scene.world.empty()) {
-        return FieldFault{"stream", "needs world, the world.json whose colliders come and go"};
+        return FieldFault{"stream", "needs 'world', a world.json to stream; add it"};
     }
     for (std::size_t i = 0; i < scene.colliders.size(); ++i) {
         if (!scene.colliders[i].node.empty() && scene.world.empty()) {
-            return FieldFault{nth("collider", i, ".node"), "needs world, the world.json with that node"};
+            return FieldFault{nth("collider", i, ".node"),
+                              "needs 'world', the world.json with that node; add it"};
         }
     }
     if (const auto again = repeatedName(scene.materials)) {
-        return FieldFault{nth("material", *again, ".name"), "is taken; choose another, or join the two"};
+        return FieldFault{nth("material", *again, ".name"),
+                          "is already used; choose another, or merge the two"};
     }
     for (std::size_t i = 0; i < scene.emitters.size(); ++i) {
         const std::uint32_t capacity = scene.particles.capacity;
@@ -312,10 +314,11 @@ Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
         // A scene without a world already checked this when it was read.
         const std::uint32_t absent = type.collides & ~(bodiesOf(scene) | kCollidesWithGround);
         if (!scene.world.empty() && type.collides != kCollidesWithAll && absent != 0) {
-            return fail(ErrorCode::kInvalidInput,
-                        nth("type", i, ".collides") +
-                            " names a body that the scene does not have; with those of its world there are " +
-                            std::to_string(numbered(scene)) + ", numbered from 0");
+            return fail(
+                ErrorCode::kInvalidInput,
+                nth("type", i, ".collides") +
+                    " names a body that does not exist; the number of bodies, including the world, is " +
+                    std::to_string(numbered(scene)) + ", numbered from 0");
         }
         type.collides &= bodiesOf(scene);
     }

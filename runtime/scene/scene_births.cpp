@@ -77,8 +77,8 @@ Result<EmitterSurface> surfaceOf(const Collider& container, const SceneEmitter& 
     const bool unknown_material = !emitter.material.empty() && container.materials.empty();
     if (!emitter.group.empty() || unknown_material) {
         return invalidInput(std::string(emitter.group.empty() ? "emitter.material" : "emitter.group") +
-                            " needs a mesh, and it keeps none; name the one that it was baked from by "
-                            "emitter.mesh, or bake it with --animated");
+                            " needs a mesh, which the container lacks; set emitter.mesh to its source mesh, "
+                            "or bake it with --animated");
     }
     if (!known.contains(&container)) {
         known[&container] = RELIEF_TRY(colliderSurface(container));
@@ -118,7 +118,7 @@ Result<std::vector<Emitter>> makeEmitters(std::span<const SceneEmitter> emitters
             if (emitter.aim && !emitter.aim->direction && settings.points.normals.empty()) {
                 return fail(ErrorCode::kInvalidInput,
                             key + ": " + quotedPath(emitter.points_file) +
-                                " has no normals to aim along; give emitter.direction, or nx, ny and nz");
+                                " has no normals; set emitter.direction, or add nx, ny and nz");
             }
         }
         if (emitter.shape == EmitterShape::kSurface) {

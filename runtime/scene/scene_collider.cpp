@@ -30,11 +30,12 @@ std::vector<PoseKey> completeKeys(std::vector<SceneKey>& keys, const Pose& rest)
 std::optional<FieldFault> checkKeys(const std::vector<SceneKey>& keys, const char* instead) {
     for (std::size_t i = 1; i < keys.size(); ++i) {
         if (!(keys[i].time > keys[i - 1].time)) {
-            return FieldFault{"key[" + std::to_string(i) + "].time", "does not rise; order the keys by time"};
+            return FieldFault{"key[" + std::to_string(i) + "].time",
+                              "is not ascending; sort the keys by time"};
         }
     }
     if (keys.size() == 1) {
-        return FieldFault{"key", std::string("alone moves nothing; give a second, or ") + instead};
+        return FieldFault{"key", std::string("needs at least two entries; add one, or use ") + instead};
     }
     return std::nullopt;
 }
@@ -42,15 +43,15 @@ std::optional<FieldFault> checkKeys(const std::vector<SceneKey>& keys, const cha
 std::optional<FieldFault> check(SceneCollider& collider, const GivenFields& given) {
     if (given("mesh") && !collider.live) {
         return FieldFault{
-            "mesh", "needs collider.deform; for a mesh at rest give collider.file, baked with 'relief bake'"};
+            "mesh", "needs collider.deform; for a rigid mesh, use collider.file, baked with 'relief bake'"};
     }
     if (given("node")) {
         if (collider.node.empty()) {
-            return FieldFault{"node", "is empty; name a node of the world"};
+            return FieldFault{"node", "is empty; set a node of the world"};
         }
         for (const char* key : {"scale", "restitution", "friction"}) {
             if (given(key)) {
-                return FieldFault{key, "of a body is the world's; remove it here"};
+                return FieldFault{key, "is defined by the world; remove it here"};
             }
         }
         collider.posed = true;

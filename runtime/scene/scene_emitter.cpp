@@ -39,9 +39,10 @@ Result<void> shareRates(std::span<SceneEmitter> emitters, double run, std::uint3
         emitter.rate = seconds > 0.0 ? std::min(share / seconds, kRateMax) : 0.0;
         emitter.has_rate = true;
         if (seconds > 0.0 && emitter.rate == 0.0 && emitter.burst == 0) {
-            return fail(ErrorCode::kInvalidInput,
-                        "an emitter without a rate finds the capacity used up by the others; give it "
-                        "emitter.rate, or raise particles.capacity");
+            return fail(
+                ErrorCode::kInvalidInput,
+                "other emitters use up the capacity, so an emitter without a rate would emit nothing; "
+                "set its emitter.rate, or raise particles.capacity");
         }
     }
     return {};
@@ -56,25 +57,27 @@ std::optional<FieldFault> checkPlace(SceneEmitter& emitter, const GivenFields& g
     }
     for (int i = 0; i < 3; ++i) {
         if (emitter.box_min[i] > emitter.box_max[i]) {
-            return FieldFault{"box_min", "lies above emitter.box_max on the " + std::string(1, "xyz"[i]) +
+            return FieldFault{"box_min", "is above emitter.box_max on the " + std::string(1, "xyz"[i]) +
                                              " axis; swap them"};
         }
     }
     if (given("attach") && emitter.shape == EmitterShape::kBox && !emitter.has_box) {
-        return FieldFault{"attach", "needs a place in the collider's space: emitter.point, for example"};
+        return FieldFault{"attach",
+                          "needs a place in the space of the collider; add emitter.point, for example"};
     }
     if (emitter.followsShape() && !given("attach")) {
         return FieldFault{
-            "shape", "= \"surface\" needs emitter.attach, the collider whose surface it is, or emitter.mesh"};
+            "shape",
+            "= \"surface\" needs emitter.attach with the number of a collider, or emitter.mesh; add one"};
     }
     if (emitter.followsShape() && given("key")) {
         return FieldFault{"key",
-                          "moves no surface of a collider, which goes where that goes; remove it, or give "
+                          "cannot move the surface of a collider, which moves with it; remove it, or set "
                           "emitter.mesh"};
     }
     for (const auto& [key, name] : {std::pair("group", &emitter.group), {"material", &emitter.material}}) {
         if (given(key) && name->empty()) {
-            return FieldFault{key, "is empty; give a name, or remove it"};
+            return FieldFault{key, "is empty; set a name, or remove it"};
         }
     }
     return std::nullopt;
@@ -93,14 +96,14 @@ std::optional<FieldFault> check(SceneEmitter& emitter, const GivenFields& given)
     }
     if (emitter.has_rate && emitter.rate == 0.0 && emitter.burst == 0) {
         return FieldFault{given("burst") ? "burst" : "rate",
-                          "gives birth to nothing: raise emitter.rate or emitter.burst above 0"};
+                          "emits no particles; set emitter.rate or emitter.burst above 0"};
     }
     const char* const by = given("direction") ? "direction" : given("cone") ? "cone" : "speed";
     emitter.has_aim = emitter.has_aim || emitter.has_speed;
     if (!emitter.has_aim) {
         emitter.aim.reset();
     } else if (!emitter.aim->direction && emitter.shape == EmitterShape::kBox) {
-        return FieldFault{by, "needs emitter.direction: a box or point has no normal"};
+        return FieldFault{by, "needs emitter.direction, because a box or point has no normal; add it"};
     }
     emitter.keys = completeKeys(emitter.given_keys, {});
     return checkKeys(emitter.given_keys, "emitter.point");

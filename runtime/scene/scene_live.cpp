@@ -23,7 +23,7 @@ Result<LiveMesh> loadLiveMesh(const SceneCollider& from) {
     }
     if (!(box.longestSide() > 0.0F)) {
         return fail(ErrorCode::kInvalidInput,
-                    place + ": " + quotedPath(from.path) + " has no extent; name another mesh");
+                    place + ": " + quotedPath(from.path) + " has no extent; use another mesh");
     }
     const SceneLive& live = *from.live;
     out.wobble = {live.amplitude, live.frequency, glm::radians(live.phase),

@@ -43,8 +43,7 @@ Result<fs::path> fileOf(const fs::path& folder, const std::string& mesh) {
         if (fs::is_regular_file(file, error)) {
             return resolveInside(folder, name + extension)
                        ? Result<fs::path>(file)
-                       : invalidInput(quotedPath(file) +
-                                      " is a link out of its folder; put the file itself there");
+                       : invalidInput(quotedPath(file) + " is a link out of its folder; copy the file there");
         }
     }
     return invalidInput(quotedPath(folder) + " has no '" + name + ".ply' or .obj for a collider; add it");

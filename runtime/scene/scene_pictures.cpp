@@ -39,11 +39,10 @@ Result<PictureMesh> readMesh(const Scene& scene, const Bounds& bounds) {
         apart = apart || box.min[i] > bounds.max[i] || box.max[i] < bounds.min[i];
     }
     if (apart) {
-        return failAt(
-            render.mesh_origin, "render.mesh",
-            {ErrorCode::kInvalidInput,
-             quotedPath(render.mesh) +
-                 " does not lie where the collider lies; name the mesh that the collider was baked from"});
+        return failAt(render.mesh_origin, "render.mesh",
+                      {ErrorCode::kInvalidInput,
+                       quotedPath(render.mesh) +
+                           " does not overlap the collider; use the source mesh of the collider"});
     }
     return mesh;
 }

@@ -127,7 +127,7 @@ std::string SceneSweep::thinWarning(std::span<const Thin> all, bool sweeps) {
                                           [](const Thin& a, const Thin& b) { return a.thick < b.thick; });
     const bool several = all.size() > 1;
     return "at a speed of " + number(double{worst.speed}) + " a step is " + number(double{worst.step}) +
-           " long, and " + worst.file + " mostly " + number(double{worst.thick}) + " thick" +
+           " long, but " + worst.file + " is typically " + number(double{worst.thick}) + " thick" +
            (several ? ", the thinnest of " + std::to_string(all.size()) + " such colliders" : "") +
            ": particles may pass through " + (several ? "them" : "it") + "; set " +
            (sweeps ? "collision.sweep = " + number(0.5 * double{worst.thick}) + ", or " : "") +

@@ -49,8 +49,8 @@ void readTrack(const TomlValue& from, void* into, const FieldInfo& info) {
         return;
     }
     if (size(from) > kLookKeysMax) {
-        from.fail(from.name() + " has " + std::to_string(size(from)) + " keys; give " +
-                  std::to_string(kLookKeysMax) + " at most");
+        from.fail(from.name() + " has " + std::to_string(size(from)) + " keys; the maximum is " +
+                  std::to_string(kLookKeysMax));
     }
     for (std::size_t i = 0; i < size(from); ++i) {
         const TomlValue one = from[i];
@@ -59,7 +59,7 @@ void readTrack(const TomlValue& from, void* into, const FieldInfo& info) {
         }
         const auto age = static_cast<float>(one[0].number({0.0, 1.0}));
         if (!track.empty() && age <= track.back().age) {
-            one[0].fail("the ages of " + from.name() + " do not rise; sort its keys");
+            one[0].fail("the ages of " + from.name() + " are not ascending; sort its keys");
         }
         track.push_back({age, numbers(one, 1)});
     }
@@ -90,13 +90,14 @@ void readNames(const TomlValue& from, void* value, const FieldInfo& /*info*/) {
         names.push_back(one.text());
     }
     if (std::count(names.begin(), names.end(), "") > 0 || count == 0) {
-        from.fail(from.name() + " has no name, or an empty one; give one, or remove it");
+        from.fail(from.name() + " has no name, or an empty one; add one, or remove it");
     }
 }
 
 void readCollides(const TomlValue& from, void* value, const FieldInfo& /*info*/) {
     std::uint32_t& bits = static_cast<const CollidesList*>(value)->bits;
-    constexpr std::string_view kWanted = "numbers of colliders and perhaps \"ground\", as in [0, \"ground\"]";
+    constexpr std::string_view kWanted =
+        "numbers of colliders, and optionally \"ground\", as in [0, \"ground\"]";
     static constexpr std::array<std::string_view, 1> kGround{"ground"};
     if (from.array() == nullptr) {
         from.wrongType(kWanted);
@@ -124,7 +125,8 @@ void readCollides(const TomlValue& from, void* value, const FieldInfo& /*info*/)
         }
         static_cast<void>(one.word(kGround));
         if (no_ground) {
-            one.fail(from.name() + " names the ground, which ground.enabled = false takes away");
+            one.fail(from.name() +
+                     " names the ground, which ground.enabled = false disables; remove one of them");
         }
         bits |= kCollidesWithGround;
     }

@@ -33,16 +33,16 @@ Result<std::vector<std::size_t>> bodiesNamed(const Scene& scene, const World& wo
         scene.world_origin + ": collider[" + std::to_string(collider) + "].node = '" + cleanUtf8(node) + "' ";
     const auto found = nodes.find(node);
     if (found == nodes.end()) {
-        return invalidInput(named + "is the name of no body of " + quotedPath(scene.world) +
-                            "; take one that its \"bodies\" list as \"node\"");
+        return invalidInput(named + "is not a node of a body in " + quotedPath(scene.world) +
+                            "; use a \"node\" of its \"bodies\"");
     }
     const std::vector<std::size_t>& bodies = found->second;
     const Pose first = poseOf(world.bodies[bodies.front()]);
     for (const std::size_t body : bodies) {
         if (!(poseOf(world.bodies[body]) == first)) {
-            return invalidInput(named + "is the name of " + std::to_string(bodies.size()) + " bodies of " +
+            return invalidInput(named + "has " + std::to_string(bodies.size()) + " bodies in " +
                                 quotedPath(scene.world) +
-                                " in different places; give their nodes names of their own");
+                                " with different poses; give their nodes different names");
         }
     }
     return bodies;
@@ -103,10 +103,10 @@ Result<void> placeBodies(Scene& scene, const World& world) {
         scene.colliders.push_back(std::move(tile));
     }
     if (scene.colliders.size() > WorldTextures::kBodiesMax) {
-        return fail(ErrorCode::kLimit, scene.world_origin + ": the world's " +
-                                           std::to_string(world.bodies.size()) +
-                                           " bodies and the scene's other colliders are more than " +
-                                           std::to_string(WorldTextures::kBodiesMax) + "; leave some out");
+        return fail(ErrorCode::kLimit,
+                    scene.world_origin + ": the world's " + std::to_string(world.bodies.size()) +
+                        " bodies and the other colliders of the scene exceed the maximum of " +
+                        std::to_string(WorldTextures::kBodiesMax) + "; remove some");
     }
     return {};
 }

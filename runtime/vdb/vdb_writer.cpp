@@ -18,7 +18,7 @@ constexpr const char* kModule = "relief-vdb.so";
 Result<VdbWriter*> load() {
     std::error_code error;
     const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
-    std::string why = "it has no " + std::string(kModule);
+    std::string why = std::string(kModule) + " is missing";
     for (const fs::path& module : {folder / kModule, folder / "../lib/relief" / kModule}) {
         if (!fs::is_regular_file(module, error)) {
             continue;
@@ -54,7 +54,7 @@ Result<std::vector<std::byte>> encodeVdbPoints(std::span<const VdbPoint> particl
         if (!std::isfinite(p.position.x) || !std::isfinite(p.position.y) || !std::isfinite(p.position.z)) {
             return fail(ErrorCode::kFailure,
                         "particle " + std::to_string(p.id) +
-                            " is nowhere: its position is not finite; OpenVDB has no place for it");
+                            " has a position that is not finite; OpenVDB cannot store it");
         }
     }
     std::vector<VdbPoint> ordered(particles.begin(), particles.end());

@@ -107,7 +107,7 @@ test("a body that plays a clip pushes as natively", { timeout: 60_000 }, async (
     assert.equal(still, null);
     assert.equal(triangles, 12);
     assert.ok(Math.abs(tops[0] - kSteps / 64) < 1e-5 && tops[1] < -0.7, `${tops}`);
-    assert.match(errors[0], /'run' is no clip of .*'rise', 'sink'/);
+    assert.match(errors[0], /'run' is not a clip of .*'rise', 'sink'/);
     assert.match(errors[1], /only position, axis, angle and clip can change/);
     assert.match(errors[2], /16 numbers per joint/);
     assert.match(errors[3], /2 joints/);

@@ -77,7 +77,7 @@ position = [5.0, 1.0, 5.0]
     assert.ok(Math.abs(got.asked.distance[0] + 0.1) < 0.01 && got.asked.normal[1] > 0.99, JSON.stringify(got.asked));
     assert.ok(got.asked.distance[1] > 20);
     const expected = [/404/, /not a world\.json/, /this Response has no URL/, /bodies\[0\]\.collider = 9 is not one of the 3/, /does not match its hash/, /needs a World/,
-                      /'window' is the name of no body/, /collider 0: .*create a new system/];
+                      /'window' is not a node of a body/, /collider 0: .*create a new system/];
     got.errors.forEach((message, i) => {
         assert.match(message, /^ReliefError: /);
         assert.match(message, expected[i]);

@@ -141,7 +141,7 @@ TEST_F(CApiEmitter, ErrorsOfEmittersAreNamed) {
     relief_emitter* emitter = relief_emitter_create(animation, nullptr, nullptr, &options);
     ASSERT_NE(emitter, nullptr) << relief_error();
     EXPECT_EQ(relief_particles_emit(stage_.particles, emitter, stage_.animated_textures, 0, 1.0F), -1);
-    expectError("emitter is ");
+    expectError("emitter has ");
     relief_emitter* own = relief_emitter_create(stage_.animation, nullptr, nullptr, &options);
     EXPECT_EQ(relief_particles_emit(stage_.particles, own, stage_.world_textures, 0, 1.0F), -1);
     expectError("body is 0");

@@ -102,7 +102,7 @@ TEST(CommandLine, WhatCannotBeReadIsNamedWithACure) {
     EXPECT_EQ(error({"--cuont", "1"}), "unknown option --cuont; did you mean '--count'?");
     EXPECT_EQ(error({"--nothing-like-it"}), "unknown option --nothing-like-it; see tool --help");
     EXPECT_EQ(error({"word"}), "unexpected argument 'word'; see tool --help");
-    EXPECT_EQ(error({"--text", ""}), "--text is empty; omit it, or give it a value");
+    EXPECT_EQ(error({"--text", ""}), "--text has no value; add one, or remove the option");
     EXPECT_EQ(error({"--count", "1"}), "");
 }
 

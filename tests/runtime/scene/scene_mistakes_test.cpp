@@ -91,7 +91,7 @@ TEST(SceneErrors, OfPlacesAndWaysOfColliders) {
     expectErrors(kSceneHead, {{"axis = [0, 1, 0]\n", "3:8", "collider.angle"},
                               {"axis = [0, 0, 0]\nangle = 3\n", "3:8", "collider.axis"},
                               {key, "3:1", "collider.key"},
-                              {key + key, "6:8", "does not rise"},
+                              {key + key, "6:8", "is not ascending"},
                               {key + "axis = [1, 0, 0]\n" + key, "5:8", "collider.key.angle"},
                               {key + "scale = 2\n" + key, "5:1", "collider.key.scale"}});
 }
@@ -129,7 +129,7 @@ TEST(SceneErrors, OfTypesAndMaterials) {
                   {"[[type]]\ncollides = [2]\n", "6:13", "choose 0 to 1"},
                   {"[[type]]\ncollides = [1.5]\n", "6:13", "numbers of colliders"},
                   {"[[type]]\ncollides = [\"floor\"]\n", "6:13", "ground"},
-                  {"[ground]\nenabled = false\n[[type]]\ncollides = [\"ground\"]\n", "8:13", "takes away"}});
+                  {"[ground]\nenabled = false\n[[type]]\ncollides = [\"ground\"]\n", "8:13", "disables"}});
 }
 
 TEST(SceneErrors, OfLooksAndPictures) {
@@ -153,7 +153,7 @@ TEST(SceneErrors, OfLooksAndPictures) {
                   {"[[type]]\nsize = [0, 1]\n", "4:8", "type.size"},
                   {"[[type]]\nsize = [[0, 1], 2]\n", "4:17", "type.size"},
                   {"[[type]]\nsize = [[0, 1, 2]]\n", "4:9", "type.size"},
-                  {"[[type]]\nsize = [[0, 1], [0, 2]]\n", "4:18", "do not rise"},
+                  {"[[type]]\nsize = [[0, 1], [0, 2]]\n", "4:18", "are not ascending"},
                   {"[[type]]\nsize = [[0, 1], [1.5, 2]]\n", "4:18", "choose 0 to 1"},
                   {"[[type]]\nsize = [" + keys + "]\n", "4:8", "255"},
                   {"[[type]]\nopacity = [[0, 1], [1, 2]]\n", "4:24", "choose 0 to 1"},
@@ -162,14 +162,14 @@ TEST(SceneErrors, OfLooksAndPictures) {
                   {"[render]\nfog = 5\n", "4:7", "render.meshes"},
                   {"[render]\n[[render.weather]]\nsnow = 1\n", "4:1", "render.meshes"},
                   {"[render]\nmeshes = \"m\"\n[[render.weather]]\ntime = 1\n[[render.weather]]\ntime = 1\n",
-                   "8:8", "does not rise"}});
+                   "8:8", "is not ascending"}});
 }
 
 TEST(SceneErrors, OfTheCamera) {
     const std::string key = "[[camera.key]]\ntime = 1\neye = [1, 2, 3]\n";
     expectErrors(kSceneHead, {{"[camera]\neye = [1, 1, 1]\ntarget = [1, 1, 1]\n", "4:7", "camera.target"},
                               {"[camera]\neye = [1, 9, 1]\ntarget = [1, 1, 1]\n", "4:7", "aside"},
-                              {key + key, "7:8", "does not rise"},
+                              {key + key, "7:8", "is not ascending"},
                               {key + "target = [1, 0, 3]\n", "5:7", "aside"},
                               {key + "target = [1, 2, 3]\n", "5:7", "aside"},
                               {"[camera]\neye = [1, 2, 3]\n" + key, "4:7", "exclude each other"}});
@@ -186,7 +186,7 @@ TEST(SceneErrors, OfEmitters) {
          {"point = [1, 0, 0]\nattach = 1\n", "5:10", "1 colliders"},
          {"inherit = 1\n", "4:11", "emitter.attach or emitter.key"},
          {key, "4:1", "emitter.key"},
-         {key + key, "7:8", "does not rise"},
+         {key + key, "7:8", "is not ascending"},
          {"box_min = [0, 1, 2]\n", "4:11", "emitter.box_max"},
          {"box_max = [0, 1, 2]\n", "4:11", "emitter.box_min"},
          {"box_min = [0, 3, 2]\nbox_max = [0, 1, 2]\n", "4:11", "y axis"},
