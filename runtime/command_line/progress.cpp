@@ -87,10 +87,10 @@ struct Progress::Impl {
     [[noreturn]] void timeIsUp() {
         wipe();
         TemporaryFile::removeAll();
-        reportError({ErrorCode::kLimit, options.name + ": the bake did not end within " +
-                                            secondsText(double{*options.seconds}) + "; it was " + stage +
-                                            ", for " + secondsText(secondsSince(stage_start)) +
-                                            "; simplify the mesh, ask for less, or raise --time-limit"});
+        reportError({ErrorCode::kLimit,
+                     options.name + ": the bake did not end within " + secondsText(double{*options.seconds}) +
+                         "; it was " + stage + ", for " + secondsText(secondsSince(stage_start)) +
+                         "; simplify the mesh, lower the budget or resolution, or raise --time-limit"});
         ::_exit(static_cast<int>(ErrorCode::kLimit));
     }
 
