@@ -20,13 +20,13 @@ const kPieces = { // setter: parameters to query
 const kBlocks = [0, 1]; // uniform block bindings that passes use
 const kBuffers = ["ARRAY_BUFFER", "COPY_READ_BUFFER", "COPY_WRITE_BUFFER", "PIXEL_PACK_BUFFER", "PIXEL_UNPACK_BUFFER",
                   "UNIFORM_BUFFER"];
-const kSwitches = ["BLEND", "DEPTH_TEST", "CULL_FACE", "SCISSOR_TEST", "STENCIL_TEST", "DITHER", "SAMPLE_ALPHA_TO_COVERAGE",
+const kCapabilities = ["BLEND", "DEPTH_TEST", "CULL_FACE", "SCISSOR_TEST", "STENCIL_TEST", "DITHER", "SAMPLE_ALPHA_TO_COVERAGE",
                    "SAMPLE_COVERAGE", "RASTERIZER_DISCARD", "POLYGON_OFFSET_FILL"]; // disabled during a pass
-const kStores = { UNPACK_ALIGNMENT: 1, UNPACK_ROW_LENGTH: 0, UNPACK_SKIP_ROWS: 0, UNPACK_SKIP_PIXELS: 0, UNPACK_IMAGE_HEIGHT: 0,
+const kUnpackParameters = { UNPACK_ALIGNMENT: 1, UNPACK_ROW_LENGTH: 0, UNPACK_SKIP_ROWS: 0, UNPACK_SKIP_PIXELS: 0, UNPACK_IMAGE_HEIGHT: 0,
                   UNPACK_SKIP_IMAGES: 0, UNPACK_FLIP_Y_WEBGL: false, UNPACK_PREMULTIPLY_ALPHA_WEBGL: false,
                   UNPACK_COLORSPACE_CONVERSION_WEBGL: 0 };
 // properties that emscripten stores on the context: current program and pixel buffers
-const kNotes = ["currentProgram", "currentPixelPackBufferBinding", "currentPixelUnpackBufferBinding"];
+const kContextProperties = ["currentProgram", "currentPixelPackBufferBinding", "currentPixelUnpackBufferBinding"];
 
 export function withPassState(gl) {
     const levels = []; // one entry per nested pass: { kept, undo }
@@ -40,21 +40,21 @@ export function withPassState(gl) {
     const blockPiece = (index) => `block ${index}`;
     const writers = Object.fromEntries(Object.keys(kPieces).map((piece) => [piece, (values) => gl[piece](...values)]));
     writers.pack = (values) => kPack.forEach((name, i) => gl.pixelStorei(gl[name], values[i]));
-    const askers = Object.fromEntries(Object.entries(kPieces).map(([piece, names]) =>
+    const readers = Object.fromEntries(Object.entries(kPieces).map(([piece, names]) =>
         [piece, () => names.map(get).flatMap((one) => (one.length === undefined ? one : [...one]))]));
     for (const index of kBlocks) { // buffer, start and size; 0, 0: the whole buffer
         writers[blockPiece(index)] = ([buffer, start, size]) => (size > 0
             ? gl.bindBufferRange(gl.UNIFORM_BUFFER, index, buffer, start, size) : gl.bindBufferBase(gl.UNIFORM_BUFFER, index, buffer));
-        askers[blockPiece(index)] = () => {
-            const asked = (part) => gl.getIndexedParameter(gl[`UNIFORM_BUFFER_${part}`], index);
-            const buffer = asked("BINDING");
-            return buffer === null ? [null, 0, 0] : [buffer, asked("START"), asked("SIZE")];
+        readers[blockPiece(index)] = () => {
+            const query = (part) => gl.getIndexedParameter(gl[`UNIFORM_BUFFER_${part}`], index);
+            const buffer = query("BINDING");
+            return buffer === null ? [null, 0, 0] : [buffer, query("START"), query("SIZE")];
         };
     }
     const write = (piece, values) => writers[piece](values);
     const set = (piece, values) => {
         if (levels.length > 0) {
-            const before = known[piece] ?? askers[piece]();
+            const before = known[piece] ?? readers[piece]();
             levels.forEach(({ kept }) => (kept[piece] ??= before));
             known[piece] = values;
         }
@@ -116,7 +116,7 @@ export function withPassState(gl) {
         if (levels.length === 0) {
             known = {};
         }
-        kNotes.forEach((note) => keep(own[note], (value) => (own[note] = value)));
+        kContextProperties.forEach((note) => keep(own[note], (value) => (own[note] = value)));
         keep(get("CURRENT_PROGRAM"), (program) => gl.useProgram(program));
         keep(get("VERTEX_ARRAY_BINDING"), (array) => gl.bindVertexArray(array));
         for (const target of ["DRAW_FRAMEBUFFER", "READ_FRAMEBUFFER"]) {
@@ -138,11 +138,11 @@ export function withPassState(gl) {
         for (const target of kBuffers) {
             keep(get(`${target}_BINDING`), (buffer) => gl.bindBuffer(gl[target], buffer));
         }
-        for (const name of kSwitches) {
+        for (const name of kCapabilities) {
             keep(gl.isEnabled(gl[name]), (on) => (on ? gl.enable(gl[name]) : gl.disable(gl[name])));
             gl.disable(gl[name]);
         }
-        for (const [name, wanted] of Object.entries(kStores)) {
+        for (const [name, wanted] of Object.entries(kUnpackParameters)) {
             keep(get(name), (value) => gl.pixelStorei(gl[name], value));
             gl.pixelStorei(gl[name], wanted);
         }

@@ -13,14 +13,14 @@ export { ReliefError };
 let loading = null; // promise of the WebAssembly instance
 let wasm = null;
 const contexts = new WeakMap(); // WebGL2 context to its record (recordOf())
-let nowhere = 0; // emscripten handle of a context whose functions do nothing
+let nullContext = 0; // emscripten handle of a context whose functions do nothing
 let folders = 0;
 
 // The development server of Vite serves this module from its dependency cache, which lacks the .wasm file.
 const cached = /^(.*\/node_modules\/)\.vite\/deps[^/]*\//.exec(import.meta.url);
-const besides = cached ? `${cached[1]}relief-particles/relief_wasm.wasm` : null;
+const wasmBeside = cached ? `${cached[1]}relief-particles/relief_wasm.wasm` : null;
 
-export function init({ wasmUrl = besides, ...options } = {}) {
+export function init({ wasmUrl = wasmBeside, ...options } = {}) {
     loading ??= createReliefWasm({
         ...(wasmUrl ? { locateFile: () => String(wasmUrl) } : {}),
         ...options,
@@ -99,7 +99,7 @@ function call(name, ...args) {
 }
 
 /** Like call(), for functions that return null on failure. */
-function made(name, ...args) {
+function callForHandle(name, ...args) {
     const handle = call(name, ...args);
     if (handle === 0) {
         throw lastError();
@@ -108,7 +108,7 @@ function made(name, ...args) {
 }
 
 /** Like call(), for functions that return a negative number on failure. */
-function done(name, ...args) {
+function callChecked(name, ...args) {
     const code = call(name, ...args);
     if (code < 0) {
         throw lastError();
@@ -156,7 +156,7 @@ function use(gl) {
 }
 
 /** Like use(), but also throws if the context was lost since it had `losses` losses. */
-function useAsOf(gl, losses, cure) {
+function useUnlessLost(gl, losses, cure) {
     if (use(gl) !== losses) {
         throw new ReliefError(`the WebGL context was lost meanwhile; ${cure}`);
     }
@@ -167,8 +167,8 @@ function free(gl, losses, name, handle) {
     const known = recordOf(gl);
     if (known.losses !== losses || gl.isContextLost()) {
         const nothing = new Proxy({}, { get: (kept, key) => kept[key] ?? (key === "canvas" ? undefined : () => null) });
-        nowhere ||= wasm.GL.registerContext(nothing, { majorVersion: 2, enableExtensionsByDefault: false });
-        wasm.GL.makeContextCurrent(nowhere);
+        nullContext ||= wasm.GL.registerContext(nothing, { majorVersion: 2, enableExtensionsByDefault: false });
+        wasm.GL.makeContextCurrent(nullContext);
     } else {
         wasm.GL.makeContextCurrent(known.handle);
     }
@@ -296,7 +296,7 @@ function writeIn(folder, name, content) {
 }
 
 /** Runs a query and splits its relief_samples (runtime/c_api/relief.h) into arrays; `which` names the last one. */
-function asked(query, handle, points, which) {
+function runQuery(query, handle, points, which) {
     const xyz = checkFinite("points", numbers("points", points, 3));
     const count = xyz.length / 3;
     const samples = new Float32Array(5 * count);
@@ -330,7 +330,7 @@ export class World {
             for (const [name, content] of Object.entries(this.files)) {
                 writeIn(folder, name, content);
             }
-            this.#handle = made(stream ? "relief_world_load_coarse" : "relief_world_load", `${folder}/world.json`);
+            this.#handle = callForHandle(stream ? "relief_world_load_coarse" : "relief_world_load", `${folder}/world.json`);
         } finally {
             removeFolder(folder);
         }
@@ -351,7 +351,7 @@ export class World {
     }
 
     query(points) {
-        return asked("relief_world_query", this.handle, points, "body");
+        return runQuery("relief_world_query", this.handle, points, "body");
     }
 
     dispose() {
@@ -370,7 +370,7 @@ export class Collider {
             throw new ReliefError("new Collider() needs a Uint8Array; load() accepts other sources");
         }
         this.bytes = bytes;
-        this.#handle = made("relief_collider_read", bytes, bytes.length);
+        this.#handle = callForHandle("relief_collider_read", bytes, bytes.length);
         this.info = JSON.parse(textAt(call("relief_collider_info", this.handle)));
     }
 
@@ -385,7 +385,7 @@ export class Collider {
     }
 
     query(points) {
-        return asked("relief_collider_query", this.handle, points, "map");
+        return runQuery("relief_collider_query", this.handle, points, "map");
     }
 
     texels(map) {
@@ -394,7 +394,7 @@ export class Collider {
             throw new ReliefError(`map ${map} contains patches and has no texels; use tree(${map})`);
         }
         const texels = new Float32Array(8 * width * height * faces);
-        done("relief_collider_texels", this.handle, map, texels);
+        callChecked("relief_collider_texels", this.handle, map, texels);
         return texels;
     }
 
@@ -404,7 +404,7 @@ export class Collider {
             throw new ReliefError(`map ${map} has no tree, because its format is ${format}; use texels(${map})`);
         }
         const words = new Uint32Array(bytes / 4);
-        done("relief_collider_tree", this.handle, map, words);
+        callChecked("relief_collider_tree", this.handle, map, words);
         return words;
     }
 
@@ -427,7 +427,7 @@ export class GpuCollider {
         this.#losses = use(gl);
         this.#gl = gl;
         this.collider = collider("a GpuCollider", from);
-        this.#handle = made("relief_textures_create", from.handle);
+        this.#handle = callForHandle("relief_textures_create", from.handle);
         this.glsl = kPrecision + textAt(call("relief_textures_glsl", this.#handle));
     }
 
@@ -435,7 +435,7 @@ export class GpuCollider {
         if (!this.#handle) {
             throw new ReliefError("this GpuCollider is disposed of");
         }
-        useAsOf(this.#gl, this.#losses, "create a new GpuCollider");
+        useUnlessLost(this.#gl, this.#losses, "create a new GpuCollider");
     }
 
     #places(unit, block) {
@@ -589,12 +589,12 @@ export class ParticleSystem {
 
     #create() {
         this.#losses = use(this.#gl);
-        this.#handle = made("relief_player_create", ...this.#text(), this.#shaded ? 1 : 0, this.#fetches ? 1 : 0);
+        this.#handle = callForHandle("relief_player_create", ...this.#text(), this.#shaded ? 1 : 0, this.#fetches ? 1 : 0);
         if (this.#near) {
-            done("relief_player_near", this.#handle, this.#near, this.#near.length / 4);
+            callChecked("relief_player_near", this.#handle, this.#near, this.#near.length / 4);
         }
         if (this.#hits) {
-            done("relief_player_list_hits", this.#handle, this.#hitSpeed);
+            callChecked("relief_player_list_hits", this.#handle, this.#hitSpeed);
         }
     }
 
@@ -616,7 +616,7 @@ export class ParticleSystem {
 
     #ready() {
         this.handle;
-        useAsOf(this.#gl, this.#losses, "restart() the system");
+        useUnlessLost(this.#gl, this.#losses, "restart() the system");
     }
 
     restart() {
@@ -643,7 +643,7 @@ export class ParticleSystem {
         }
         const emitters = JSON.stringify(this.#scene.emitter) !== JSON.stringify(before.emitter);
         try {
-            done("relief_player_change", this.handle, ...this.#text(), emitters ? 1 : 0);
+            callChecked("relief_player_change", this.handle, ...this.#text(), emitters ? 1 : 0);
         } catch (error) {
             this.#scene = before;
             throw error;
@@ -659,11 +659,11 @@ export class ParticleSystem {
                                   "Math.min(seconds, 1 / 30)");
         }
         if (seconds > 0) {
-            const warnings = done("relief_player_step", this.handle, seconds);
+            const warnings = callChecked("relief_player_step", this.handle, seconds);
             this.#fetch();
             this.#passHits();
             if (warnings > 0) {
-                this.#tell();
+                this.#passWarnings();
             }
         }
     }
@@ -680,7 +680,7 @@ export class ParticleSystem {
     }
 
     /** Passes on warnings about colliders that failed to load. */
-    #tell() {
+    #passWarnings() {
         for (const line of JSON.parse(textAt(call("relief_player_warnings", this.#handle)))) {
             this.#warn(line);
         }
@@ -690,22 +690,22 @@ export class ParticleSystem {
     #fetch() {
         for (let next; this.#fetches && (next = JSON.parse(textAt(call("relief_player_next", this.#handle))));) {
             const { collider, file } = next;
-            this.#fetches.start(file, (bytes, reason) => this.#take(collider, file, bytes, reason));
+            this.#fetches.start(file, (bytes, reason) => this.#receive(collider, file, bytes, reason));
         }
     }
 
-    #take(collider, file, bytes, reason) {
+    #receive(collider, file, bytes, reason) {
         try {
             let fault = reason;
             try {
                 if (bytes) {
-                    done("relief_player_give", this.#handle, collider, bytes, bytes.length);
+                    callChecked("relief_player_give", this.#handle, collider, bytes, bytes.length);
                 }
             } catch (error) { // out of memory
                 fault = `${file}: ${error.message}`;
             }
             if (fault !== null) {
-                done("relief_player_refuse", this.#handle, collider, fault);
+                callChecked("relief_player_refuse", this.#handle, collider, fault);
             }
         } catch {
             // The instance has ended; the next step reports it.
@@ -721,16 +721,16 @@ export class ParticleSystem {
         }
         this.#ready();
         const list = checkFinite("near()", Float32Array.from(places.flatMap(({ position, radius }) => [...position, radius])));
-        done("relief_player_near", this.handle, list, list.length / 4);
+        callChecked("relief_player_near", this.handle, list, list.length / 4);
         this.#near = list;
     }
 
     async loaded() {
         while (true) {
             this.#ready();
-            const underWay = done("relief_player_load", this.handle);
+            const underWay = callChecked("relief_player_load", this.handle);
             this.#fetch();
-            this.#tell();
+            this.#passWarnings();
             if (underWay === 0) {
                 return;
             }
@@ -749,7 +749,7 @@ export class ParticleSystem {
             })
             : births;
         const list = checkFinite("births", numbers("births", rows, 8));
-        return done("relief_player_spawn", this.handle, list, list.length / 8);
+        return callChecked("relief_player_spawn", this.handle, list, list.length / 8);
     }
 
     draw(options) {
@@ -778,7 +778,7 @@ export class ParticleSystem {
             wasm.GL.framebuffers[name] = target;
         }
         try {
-            done(how, this.handle, matrices, name, ...size, srgb ? 1 : 0);
+            callChecked(how, this.handle, matrices, name, ...size, srgb ? 1 : 0);
         } finally {
             if (name) {
                 wasm.GL.framebuffers[name] = null;
@@ -816,13 +816,13 @@ export class ParticleSystem {
         if (!Number.isInteger(body) || body < 0 || joints.length % 16 !== 0) {
             throw new ReliefError("pose() needs the number of a body, and 16 numbers per joint");
         }
-        done("relief_player_pose", this.handle, body, checkFinite("pose()", Float32Array.from(joints)), joints.length / 16,
-             checkFinite("pose()", Float32Array.from(weights)), weights.length);
+        callChecked("relief_player_pose", this.handle, body, checkFinite("pose()", Float32Array.from(joints)), joints.length / 16,
+                    checkFinite("pose()", Float32Array.from(weights)), weights.length);
     }
 
     read() {
         this.#ready();
-        const rows = new Float32Array(12 * done("relief_player_read", this.handle));
+        const rows = new Float32Array(12 * callChecked("relief_player_read", this.handle));
         call("relief_player_states", this.handle, rows);
         return rows;
     }

@@ -18,7 +18,7 @@ const kLost = "The GPU was reset; the page reloads when the browser restores it.
 const dark = matchMedia("(prefers-color-scheme: dark)");
 
 /** Shows a message; null hides it. */
-function say(message) {
+function showMessage(message) {
     $("message").hidden = !message;
     $("message").querySelector("p").textContent = message ?? "";
 }
@@ -39,7 +39,7 @@ class App {
         this.waiting = false; // a frame is requested
         this.panel = new Panel(this);
         dark.addEventListener("change", () => this.changed());
-        $("message").querySelector("button").onclick = () => say(null);
+        $("message").querySelector("button").onclick = () => showMessage(null);
     }
 
     /** Runs f and shows its error as a message. */
@@ -47,20 +47,20 @@ class App {
         try {
             await f();
         } catch (error) {
-            this.#sayError(error);
+            this.#showError(error);
         }
     }
 
-    #sayError(error) {
+    #showError(error) {
         const text = (error.message ?? String(error)).trim();
-        say(this.gl?.isContextLost() ? kLost : text[0].toUpperCase() + text.slice(1) + (/[.!?]$/.test(text) ? "" : "."));
+        showMessage(this.gl?.isContextLost() ? kLost : text[0].toUpperCase() + text.slice(1) + (/[.!?]$/.test(text) ? "" : "."));
     }
 
     async start() {
         followInput(canvas, this.camera, (x, y) => this.attempt(() => this.#pick(x, y)));
         canvas.addEventListener("webglcontextlost", (event) => {
             event.preventDefault();
-            say(kLost);
+            showMessage(kLost);
         });
         canvas.addEventListener("webglcontextrestored", () => location.reload());
         new ResizeObserver(() => this.changed()).observe(canvas);
@@ -219,7 +219,7 @@ class App {
             if (this.look.show === "picture") {
                 this.panel.setShow("surface"); // needs no mesh
             }
-            this.#sayError(error);
+            this.#showError(error);
         }
     }
 
