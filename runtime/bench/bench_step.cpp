@@ -79,13 +79,13 @@ class Copy {
 };
 
 /// A distance volume to compare with the collider.
-struct Rival {
+struct Baseline {
     std::string name;  // of the file
     BrickStep step;
 };
 
-Result<std::vector<Rival>> rivalsFor(const Bench& bench, const BenchScene& scene) {
-    std::vector<Rival> rivals;
+Result<std::vector<Baseline>> baselinesFor(const Bench& bench, const BenchScene& scene) {
+    std::vector<Baseline> baselines;
     for (const std::string& file : bench.bricks) {
         const BrickAtlas atlas = RELIEF_TRY(loadBrickAtlas(file));
         const glm::vec3 apart = glm::abs(atlas.box.center() - scene.collider.bounds.center());
@@ -93,38 +93,39 @@ Result<std::vector<Rival>> rivalsFor(const Bench& bench, const BenchScene& scene
             return fail(ErrorCode::kUsage,
                         quotedPath(file) + " has another mesh than the collider; bake both from one mesh");
         }
-        rivals.push_back({std::filesystem::path(file).stem().string(),
-                          RELIEF_TRY(BrickStep::create(atlas, scene, bench.path))});
+        baselines.push_back({std::filesystem::path(file).stem().string(),
+                             RELIEF_TRY(BrickStep::create(atlas, scene, bench.path))});
     }
-    return rivals;
+    return baselines;
 }
 
-Work workOf(Rival& rival, const BenchScene& scene, const std::function<void()>& warm) {
-    return {rival.name,
-            [&rival]() -> Result<void> {
-                rival.step.step();
+Work workOf(Baseline& baseline, const BenchScene& scene, const std::function<void()>& warm) {
+    return {baseline.name,
+            [&baseline]() -> Result<void> {
+                baseline.step.step();
                 return {};
             },
             "collider",
-            [&rival, &scene, warm] {
+            [&baseline, &scene, warm] {
                 warm();
-                rival.step.begin(scene);
+                baseline.step.begin(scene);
             }};
 }
 
-Json bytesOf(const std::vector<Rival>& rivals) {
+Json bytesOf(const std::vector<Baseline>& baselines) {
     Json bytes = Json::object();
-    for (const Rival& rival : rivals) {
-        bytes[rival.name] = rival.step.bytes();
+    for (const Baseline& baseline : baselines) {
+        bytes[baseline.name] = baseline.step.bytes();
     }
     return bytes;
 }
 
 /// Returns the requested variant and those that it is compared with.
-Result<std::vector<BenchVariant>> variantsFor(const std::string& only, const std::vector<Rival>& rivals) {
+Result<std::vector<BenchVariant>> variantsFor(const std::string& only,
+                                              const std::vector<Baseline>& baselines) {
     std::vector<BenchVariant> variants = benchVariants();
     const auto named = [&](const auto& variant) { return variant.name == only; };
-    if (!only.empty() && std::ranges::none_of(variants, named) && std::ranges::none_of(rivals, named)) {
+    if (!only.empty() && std::ranges::none_of(variants, named) && std::ranges::none_of(baselines, named)) {
         return fail(ErrorCode::kUsage, "--only " + only + ": no such variant; omit it to run all");
     }
     std::erase_if(variants, [&](const BenchVariant& variant) {
@@ -148,8 +149,8 @@ Result<Json> benchStep(const Bench& bench) {
                                            std::to_string(ParticleSystem::kStateWidth) + " for step");
     }
     const BenchScene scene = makeBenchScene(RELIEF_TRY(loadCollider(bench.file)), count, kBenchLifetime);
-    std::vector<Rival> rivals = RELIEF_TRY(rivalsFor(bench, scene));
-    const std::vector<BenchVariant> variants = RELIEF_TRY(variantsFor(bench.only, rivals));
+    std::vector<Baseline> baselines = RELIEF_TRY(baselinesFor(bench, scene));
+    const std::vector<BenchVariant> variants = RELIEF_TRY(variantsFor(bench.only, baselines));
     const int steps = bench.software ? 4 : kBenchStepsMost;
     auto copy = RELIEF_TRY(Copy::create(count, bench.path));
     const auto copies = [&] {
@@ -180,14 +181,14 @@ Result<Json> benchStep(const Bench& bench) {
              },
              [&system] { system.particles->step(2.0F * kBenchLifetime); }});  // kills all particles
     }
-    for (Rival& rival : rivals) {
-        works.push_back(workOf(rival, scene, warm));
+    for (Baseline& baseline : baselines) {
+        works.push_back(workOf(baseline, scene, warm));
     }
     const int rounds = bench.software ? 5 : count > (1U << 20) ? 3 : 11;
     return Json{{{"particles", count},
                  {"maps", scene.collider.maps.size()},
                  {"steps", steps},
-                 {"brick_bytes", bytesOf(rivals)},
+                 {"brick_bytes", bytesOf(baselines)},
                  {"rows", RELIEF_TRY(timeInTurns(bench, works, {.rounds = rounds, .calls = steps}))}}};
 }
 

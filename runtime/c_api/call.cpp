@@ -29,12 +29,12 @@ std::uintptr_t kindOf(std::uintptr_t handle) {
 
 std::uintptr_t HandleTable::add(HandleKind kind, std::shared_ptr<void> object) {
     const std::lock_guard lock(mutex_);
-    if (given_ + 1 == kHighest >> kKindBits) {
+    if (issued_ + 1 == kHighest >> kKindBits) {
         throw std::bad_alloc();
     }
-    const std::uintptr_t handle = kHighest | (given_ + 1) << kKindBits | static_cast<std::uintptr_t>(kind);
+    const std::uintptr_t handle = kHighest | (issued_ + 1) << kKindBits | static_cast<std::uintptr_t>(kind);
     objects_.emplace(handle, std::move(object));
-    ++given_;
+    ++issued_;
     return handle;
 }
 

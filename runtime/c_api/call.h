@@ -50,7 +50,7 @@ class HandleTable {
   private:
     mutable std::shared_mutex mutex_;
     std::unordered_map<std::uintptr_t, std::shared_ptr<void>> objects_;
-    std::uintptr_t given_ = 0;  // handles so far
+    std::uintptr_t issued_ = 0;  // handles so far
 };
 
 /// The table of the process. It is never destroyed; the system reclaims objects that the program does not free.

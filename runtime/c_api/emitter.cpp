@@ -65,33 +65,33 @@ Result<EmitterSettings> settingsOf(const Call& call, const relief_emitter_option
 
 /// Prefixes an error with the name of the argument.
 template <class T>
-Result<T> ofArgument(const Call& call, const char* argument, Result<T> result) {
+Result<T> withArgument(const Call& call, const char* argument, Result<T> result) {
     return result ? std::move(result)
                   : Result<T>(call.refuse(std::string(argument) + ": " + result.error().message));
 }
 
 Result<EmitterSurface> surfaceOf(const Call& call, const Collider& collider, const char* material) {
-    const ColliderSurface surface = RELIEF_TRY(ofArgument(call, "collider", colliderSurface(collider)));
+    const ColliderSurface surface = RELIEF_TRY(withArgument(call, "collider", colliderSurface(collider)));
     std::vector<glm::uvec3> triangles = surface.triangles;
     if (material != nullptr) {
         triangles = RELIEF_TRY(
-            ofArgument(call, "material", materialTriangles(surface, collider.materials, material)));
+            withArgument(call, "material", materialTriangles(surface, collider.materials, material)));
     }
-    return ofArgument(call, "collider", EmitterSurface::create(triangles, {}, surface.positions));
+    return withArgument(call, "collider", EmitterSurface::create(triangles, {}, surface.positions));
 }
 
 Result<EmitterSurface> surfaceOf(const Call& call, const AnimatedMesh& mesh, const char* group,
                                  const char* material) {
     std::vector<float> weights;
     if (group != nullptr) {
-        weights = RELIEF_TRY(ofArgument(call, "group", groupWeights(mesh, group)));
+        weights = RELIEF_TRY(withArgument(call, "group", groupWeights(mesh, group)));
     }
     std::vector<glm::uvec3> triangles = mesh.triangles;
     if (material != nullptr) {
-        triangles = RELIEF_TRY(ofArgument(call, "material", materialTriangles(mesh, material)));
+        triangles = RELIEF_TRY(withArgument(call, "material", materialTriangles(mesh, material)));
     }
-    return ofArgument(call, "animation",
-                      EmitterSurface::create(triangles, std::move(weights), posed(mesh, firstPose(mesh))));
+    return withArgument(call, "animation",
+                        EmitterSurface::create(triangles, std::move(weights), posed(mesh, firstPose(mesh))));
 }
 
 /// \param mesh     animated mesh; null for a collider.
@@ -101,14 +101,14 @@ Result<std::shared_ptr<EmitterObject>> emitterOf(const Call& call, const relief_
                                                  EmitterSurface surface) {
     EmitterSettings settings = RELIEF_TRY(settingsOf(call, options));
     settings.surface = BirthSurfaceValue(std::make_unique<EmitterSurface>(std::move(surface)));
-    RELIEF_TRY(ofArgument(call, "options", Emitter::check(settings)));
+    RELIEF_TRY(withArgument(call, "options", Emitter::check(settings)));
     return std::make_shared<EmitterObject>(
         EmitterObject{std::move(mesh), Emitter(std::move(settings), options.seed), options.inherit});
 }
 
 /// Deforms the emitter's mesh like the body, which reached its current pose during the last dt seconds.
-Result<void> bendWith(const Call& call, EmitterObject& emitter, relief_textures* textures, std::uint32_t body,
-                      double dt) {
+Result<void> deformSurface(const Call& call, EmitterObject& emitter, relief_textures* textures,
+                           std::uint32_t body, double dt) {
     AnimatedBody& on = *RELIEF_TRY(animatedOf(call, textures, body));
     if (on.collider.shared() != emitter.mesh) {
         if (*on.collider.shared() != *emitter.mesh) {
@@ -124,7 +124,7 @@ Result<void> bendWith(const Call& call, EmitterObject& emitter, relief_textures*
 }
 
 /// Returns the motion of a body during the last `seconds`, extrapolated so that its velocity at the end is defined.
-std::vector<PoseKey> wayOf(const Pose& before, const Pose& now, double seconds) {
+std::vector<PoseKey> motionOf(const Pose& before, const Pose& now, double seconds) {
     const Pose next{now.position + (now.position - before.position),
                     glm::normalize(now.rotation * glm::conjugate(before.rotation) * now.rotation), now.scale};
     return {{0.0, before}, {seconds, now}, {2.0 * seconds, next}};
@@ -165,7 +165,7 @@ int64_t relief_particles_emit(relief_particles* particles, relief_emitter* emitt
         RELIEF_TRY(call.number(seconds, kStep, {"seconds"}));
         const double dt{seconds};
         if (from.mesh) {
-            RELIEF_TRY(bendWith(call, from, textures, body, dt));
+            RELIEF_TRY(deformSurface(call, from, textures, body, dt));
         } else if (body >= std::max<std::size_t>(among.poses.size(), 1)) {
             return call.refuse("body is " + std::to_string(body) + " of " +
                                std::to_string(std::max<std::size_t>(among.poses.size(), 1)) +
@@ -175,7 +175,7 @@ int64_t relief_particles_emit(relief_particles* particles, relief_emitter* emitt
         from.emitter.emit(dt, to.system.room(), to.births);
         EmitterMotion motion{.keys = {}, .body = {}, .inherit = from.inherit};
         if (!among.poses.empty()) {
-            motion.body = wayOf(among.before[body], among.poses[body], dt);
+            motion.body = motionOf(among.before[body], among.poses[body], dt);
         }
         carry(motion, dt, to.births, from.emitter.placeVelocities());
         return static_cast<int64_t>(RELIEF_TRY(to.system.spawn(to.births)));

@@ -132,7 +132,7 @@ struct HandleType<relief_emitter> {
 // Ranges of relief.h. A particle beyond 1e15 counts as lost (isLost()).
 inline constexpr FieldRange kAny{-1e15, 1e15};
 inline constexpr FieldRange kNotNegative{0.0, 1e15};
-inline constexpr FieldRange kShare{0.0, 1.0};
+inline constexpr FieldRange kFraction{0.0, 1.0};
 inline constexpr FieldRange kLifetime{0.0, 1e15, false};
 inline constexpr FieldRange kStep{0.0, 1e9, false};
 inline constexpr FieldRange kPixels{0.0, 65536.0};

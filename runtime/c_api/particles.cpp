@@ -27,10 +27,10 @@ Result<relief_particles_options> optionsOf(const Call& call, const relief_partic
     RELIEF_TRY(call.number(all.gravity, kAny, name("gravity")));
     RELIEF_TRY(call.number(all.wind, kAny, name("wind")));
     RELIEF_TRY(call.number(all.drag, kNotNegative, name("drag")));
-    RELIEF_TRY(call.number(all.restitution, kShare, name("restitution")));
-    RELIEF_TRY(call.number(all.friction, kShare, name("friction")));
+    RELIEF_TRY(call.number(all.restitution, kFraction, name("restitution")));
+    RELIEF_TRY(call.number(all.friction, kFraction, name("friction")));
     RELIEF_TRY(call.number(all.radius, kNotNegative, name("radius")));
-    RELIEF_TRY(call.number(all.has_ground, kShare, name("has_ground")));
+    RELIEF_TRY(call.number(all.has_ground, kFraction, name("has_ground")));
     RELIEF_TRY(call.number(all.ground_height, kAny, name("ground_height")));
     return all;
 }
@@ -62,8 +62,8 @@ Result<ParticleStyle> styleOf(const Call& call, const relief_picture_options* gi
     }
     const auto name = [](const char* field) { return NumberName{.argument = "options", .field = field}; };
     RELIEF_TRY(call.number(all.diameter, kNotNegative, name("diameter")));
-    RELIEF_TRY(call.number(all.color, kShare, name("color")));
-    RELIEF_TRY(call.number(all.opacity, kShare, name("opacity")));
+    RELIEF_TRY(call.number(all.color, kFraction, name("color")));
+    RELIEF_TRY(call.number(all.opacity, kFraction, name("opacity")));
     const glm::vec3 color = vec(all.color);
     ParticleStyle style;
     style.diameter = all.diameter > 0.0F ? all.diameter : picture.diameter;
@@ -80,7 +80,7 @@ Result<relief_view> viewOf(const Call& call, const relief_view* given) {
     RELIEF_TRY(call.number(all.projection, kAny, name("projection")));
     RELIEF_TRY(call.number(all.width, kPixels, name("width")));
     RELIEF_TRY(call.number(all.height, kPixels, name("height")));
-    RELIEF_TRY(call.number(all.srgb, kShare, name("srgb")));
+    RELIEF_TRY(call.number(all.srgb, kFraction, name("srgb")));
     if (all.projection[5] == 0.0F) {
         return call.refuse("view->projection is not a perspective projection: element 5 is 0; set it");
     }

@@ -27,7 +27,7 @@ std::size_t bodyCount(const WorldObject& world) {
     return world.field.world().bodies.size() + world.added.size();
 }
 
-Result<const WorldObject*> holderOf(const Call& call, const relief_world* world, std::size_t body) {
+Result<const WorldObject*> worldWithBody(const Call& call, const relief_world* world, std::size_t body) {
     const WorldObject* of = RELIEF_TRY(call.object(world, "world"));
     if (body >= bodyCount(*of)) {
         return call.refuse("body is " + std::to_string(body) + ", and the world has " +
@@ -133,7 +133,8 @@ size_t relief_world_find(const relief_world* world, const char* node, uint32_t* 
 
 const char* relief_world_node(const relief_world* world, size_t body) {
     return answer(__func__, "", [&](const Call& call) -> Result<const char*> {
-        const std::vector<WorldBody>& bodies = RELIEF_TRY(holderOf(call, world, body))->field.world().bodies;
+        const std::vector<WorldBody>& bodies =
+            RELIEF_TRY(worldWithBody(call, world, body))->field.world().bodies;
         return body < bodies.size() ? bodies[body].node.c_str() : "";
     });
 }
@@ -159,7 +160,7 @@ int relief_world_pose(const relief_world* world, size_t body, relief_pose* pose)
         RELIEF_TRY(call.notNull(pose, "pose"));
         std::fill_n(pose->position, 3, kNan);
         std::fill_n(pose->rotation, 4, kNan);
-        const WorldObject& of = *RELIEF_TRY(holderOf(call, world, body));
+        const WorldObject& of = *RELIEF_TRY(worldWithBody(call, world, body));
         const Pose from = poseIn(of, body);
         put(from.position, pose->position);
         const std::array<float, 4> turn{from.rotation.x, from.rotation.y, from.rotation.z, from.rotation.w};

@@ -152,7 +152,7 @@ Result<void> Simulation::step(float dt) {
 
 Result<void> Simulation::stepAs(std::uint64_t tag, float dt) {
     RELIEF_TRY(takeEvents(kStepsUnderWay));
-    RELIEF_TRY(giveBirth(dt));
+    RELIEF_TRY(emitBirths(dt));
     RELIEF_TRY(moveColliders(particles_->time() + static_cast<double>(dt)));
     RELIEF_TRY(stream());
     RELIEF_TRY(particles_->setSweep(sweep_.lengthFor(dt, *scene_, warnings_)));
@@ -269,7 +269,7 @@ Result<void> Simulation::change(std::optional<std::vector<Emitter>> emitters) {
     return setEvents();
 }
 
-void Simulation::bendSurfaces(double dt) {
+void Simulation::updateSurfaces(double dt) {
     for (std::size_t i = 0; i < emitters_.size(); ++i) {
         const SceneEmitter& from = scene_->emitters[i];
         if (!from.followsShape() || !emitters_[i].isDue(dt)) {
@@ -286,8 +286,8 @@ void Simulation::bendSurfaces(double dt) {
     }
 }
 
-Result<void> Simulation::giveBirth(float dt) {
-    bendSurfaces(static_cast<double>(dt));
+Result<void> Simulation::emitBirths(float dt) {
+    updateSurfaces(static_cast<double>(dt));
     births_.clear();
     births_.swap(spawned_);
     sweep_.add(*scene_, births_);

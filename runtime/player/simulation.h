@@ -144,8 +144,8 @@ class Simulation {
     /// of its end.
     [[nodiscard]] Result<void> showLive(double time);
     /// Updates the emitting surfaces to the current shapes of their colliders.
-    void bendSurfaces(double dt);
-    [[nodiscard]] Result<void> giveBirth(float dt);
+    void updateSurfaces(double dt);
+    [[nodiscard]] Result<void> emitBirths(float dt);
     [[nodiscard]] Result<void> prewarm(Watchdog* watchdog, const std::function<void()>& checkpoint);
     /// \param tag  of the events; 0: do not pass them on.
     [[nodiscard]] Result<void> stepAs(std::uint64_t tag, float dt);

@@ -21,13 +21,13 @@
 namespace relief {
 namespace {
 
-constexpr int kGrid = 8;                // sample points along each side of the box
-constexpr std::size_t kPlacesMin = 16;  // minimum number of samples for an estimate
-constexpr float kThinnest = 0x1p-14F;   // thicknesses tested, in longest sides
-constexpr float kThickest = 2.0F;
-constexpr float kWider = 1.2F;           // factor between tested depths
-constexpr int kHalvings = 5;             // bisections of the last interval
-constexpr std::uint64_t kBirths = 1000;  // sampled births per emitter
+constexpr int kGrid = 8;                   // sample points along each side of the box
+constexpr std::size_t kSamplesMin = 16;    // minimum number of samples for an estimate
+constexpr float kThicknessMin = 0x1p-14F;  // thicknesses tested, in longest sides
+constexpr float kThicknessMax = 2.0F;
+constexpr float kThicknessFactor = 1.2F;        // factor between tested depths
+constexpr int kHalvings = 5;                    // bisections of the last interval
+constexpr std::uint64_t kBirthsSampled = 1000;  // sampled births per emitter
 
 std::string number(double value) {
     char text[32];
@@ -40,13 +40,13 @@ std::optional<float> thicknessAt(const Collider& collider, const SurfaceSample& 
     const auto inside = [&](float depth) {
         return evaluate(collider, place.point - depth * place.normal).inside();
     };
-    float depth = kThinnest * longest;
+    float depth = kThicknessMin * longest;
     if (!inside(depth)) {
         return std::nullopt;
     }
-    float beyond = kWider * depth;
-    while (beyond < kThickest * longest && inside(beyond)) {
-        depth = std::exchange(beyond, kWider * beyond);
+    float beyond = kThicknessFactor * depth;
+    while (beyond < kThicknessMax * longest && inside(beyond)) {
+        depth = std::exchange(beyond, kThicknessFactor * beyond);
     }
     for (int i = 0; i < kHalvings; ++i) {
         const float middle = 0.5F * (depth + beyond);
@@ -61,7 +61,7 @@ std::vector<Birth> birthsOf(Emitter emitter, const EmitterMotion& motion, const 
     const double begin = -dt * prewarmSteps(scene);
     const double end = dt * scene.time.steps;
     std::vector<Birth> births;
-    emitter.emit(end - begin, kBirths, births);
+    emitter.emit(end - begin, kBirthsSampled, births);
     for (Birth& birth : births) {
         // Births without an age belong to a burst; the first burst is at the start.
         const double moment = birth.age > 0.0F ? end - double{birth.age} : begin + emitter.settings().start;
@@ -104,7 +104,7 @@ std::optional<float> typicalThickness(const Collider& collider) {
             }
         }
     }
-    if (found.size() < kPlacesMin) {
+    if (found.size() < kSamplesMin) {
         return std::nullopt;
     }
     const auto middle = found.begin() + static_cast<std::ptrdiff_t>(found.size() / 2);
