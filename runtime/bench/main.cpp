@@ -32,24 +32,26 @@ Result<void> run(int argc, char** argv) {
            "FILE", bench.file,
            "The collider of step, picture and animated; the .obj or .ply of mesh; the world.json of stream")
         ->required();
-    app.add_option("--particles", bench.particles, "For step, a multiple of 1024")
+    app.add_option("--particles", bench.particles,
+                   "Number of particles; a multiple of 1024 for step (default: that of the case)")
         ->option_text("N")
         ->transform(CLI::Validator(wholeNumber(4, ParticleSystem::kCapacityMax), ""));
-    app.add_option("--blocks", bench.rounds, "Rounds of measurements")
+    app.add_option("--blocks", bench.rounds, "Number of measurement rounds (default: that of the case)")
         ->option_text("N")
         ->transform(CLI::Validator(wholeNumber(1, 1000), ""));
     addWords(app, "--path", bench.path,
              WordsFor<StepPath>{{"fragment", StepPath::kFragment}, {"compute", StepPath::kCompute}},
-             "Of the particles");
-    app.add_option("--only", bench.only, "One variant of step, beside those it is compared with");
-    app.add_option("--bricks", bench.bricks,
-                   "Files of relief-accuracy --atlas, made of the collider's mesh: variants of step, named "
-                   "as they are")
+             "Shaders of particle steps (default: fragment)");
+    app.add_option("--only", bench.only, "Run only one variant of step, and those that it is compared with");
+    app.add_option(
+           "--bricks", bench.bricks,
+           "Files of relief-accuracy --atlas for the same mesh, as further variants of step, named by "
+           "file")
         ->option_text("FILE...");
-    app.add_option("--stream-bytes", bench.stream_bytes, "Of the GPU, for stream")
+    app.add_option("--stream-bytes", bench.stream_bytes, "GPU budget of stream in bytes (default: 134217728)")
         ->option_text("N")
         ->transform(CLI::Validator(wholeNumber(1, std::uint64_t{1} << 33U), ""));
-    app.add_flag("--large", bench.large, "Sizes for a GPU, even where there is none");
+    app.add_flag("--large", bench.large, "Use the sizes for a GPU on a software renderer, too");
     if (!RELIEF_TRY(parseCommandLine(app, argumentsOf(argc, argv)))) {
         return {};
     }

@@ -17,8 +17,9 @@
  * calls relief_error() or creates an object of that type. After that, it is valid again.
  *
  * OpenGL. Functions marked (GL) need a current OpenGL context on the calling thread: OpenGL 3.3, or OpenGL ES 3.0 with
- * renderable float textures. Use the same context for all objects that work together. These functions restore the GL
- * state that they change. They fail if no context is current; a handle to be freed then stays valid.
+ * renderable float textures. Use the same context for all objects that work together. The functions restore the GL
+ * state that they change, unless stated otherwise. They fail if no context is current; a handle to be freed then stays
+ * valid.
  *
  * Threads. Several threads may call at once with different handles. relief_collider_query() and
  * relief_collider_nearest() may also share a handle. Errors are stored per thread.
@@ -240,7 +241,7 @@ typedef struct relief_particle {
 } relief_particle;
 
 typedef struct relief_counts {
-    uint64_t born, died, refused;
+    uint64_t born, died, refused; /* refused: births rejected because the system was full */
     uint32_t alive;
 } relief_counts;
 

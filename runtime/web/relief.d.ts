@@ -31,13 +31,15 @@ export function init(options?: InitOptions): Promise<unknown>;
 /** Loads a .relief file. */
 export function load(source: Source): Promise<Collider>;
 
-/** Loads a world.json written by `relief bake LEVEL --world`, and the containers that it names, from the same folder.
- * */
+/**
+ * Loads a world.json written by `relief bake LEVEL --world`, and the containers that it names, from the same folder.
+ */
 export function loadWorld(source: string | URL | Request | Response): Promise<World>;
 
 export interface StreamOptions {
-    /** Full detail within this distance of emitters, the camera of draw() and points of near(); world units, above 0.
-     * */
+    /**
+     * Full detail within this distance of emitters, the camera of draw() and points of near(); world units, above 0.
+     */
     radius: number;
     /** GPU memory budget for the colliders of a system in megabytes, coarse colliders included. Default 256. */
     memory?: number;
@@ -122,8 +124,10 @@ export class Collider {
      * patches.
      */
     texels(map: number): Float32Array;
-    /** Returns the tree of a map of patches: two words per texel, low and high. See "Patches" in the format
-     * specification. */
+    /**
+     * Returns the tree of a map of patches: two words per texel, low and high. See "Patches" in the format
+     * specification.
+     */
     tree(map: number): Uint32Array;
     dispose(): void;
 }
@@ -188,8 +192,10 @@ export class GpuCollider {
      * `bool reliefInside(ReliefField)`.
      */
     readonly glsl: string;
-    /** Sets the three samplers (units `unit` to `unit` + 2) and the uniform block of a linked program. Call once per
-     * program. */
+    /**
+     * Sets the three samplers (units `unit` to `unit` + 2) and the uniform block of a linked program. Call once per
+     * program.
+     */
     attach(program: WebGLProgram, unit?: number, block?: number): void;
     /**
      * Binds three textures to units `unit` to `unit` + 2 and a buffer to uniform block binding `block`. Call it before
@@ -296,13 +302,16 @@ export interface SystemInfo {
      * that failed to load, and the GPU bytes of everything loaded.
      */
     stream: { wanted: number; present: number; failed: number; gpu_bytes: number } | null;
-    /** The colliders of the scene; `matrix`: object space to world space, column-major. `file` of a deforming one is
-     * its mesh. */
+    /**
+     * The colliders of the scene; `matrix`: object space to world space, column-major. `file` of a deforming one is its
+     * mesh.
+     */
     bodies: { file: string; node: string; deforms: boolean; moves: boolean; matrix: number[] }[];
 }
 
-/** A mesh deformed on the GPU, in object space. Item i of a texture is at texel (i & ((1 << shift) - 1), i >> shift).
- * */
+/**
+ * A mesh deformed on the GPU, in object space. Item i of a texture is at texel (i & ((1 << shift) - 1), i >> shift).
+ */
 export interface LiveMesh {
     /** Float texture: xyz of each vertex. */
     positions: WebGLTexture;
@@ -319,8 +328,7 @@ export class ParticleSystem {
     readonly info: SystemInfo;
     /**
      * Advances the simulation.
-     * @param dt  seconds, 0 to 1 (default: the scene's); in a frame loop, Math.min(seconds since the last frame, 1 /
-     * 30).
+     * @param dt  seconds, 0 to 1 (default: the scene's). In a frame loop, pass Math.min(seconds since last frame, 1 / 30).
      */
     step(dt?: number): void;
     /** Draws the particles over the contents of the target, with its depth test. Writes no depth. */
@@ -350,8 +358,9 @@ export class ParticleSystem {
      * draw(). Replaces the previous points. Takes effect with the next step.
      */
     near(points: readonly PointOfInterest[]): void;
-    /** Resolves when all wanted colliders of a streamed world are loaded or have failed. Useful before the first step.
-     * */
+    /**
+     * Resolves when all wanted colliders of a streamed world are loaded or have failed. Useful before the first step.
+     */
     loaded(): Promise<void>;
     /** Restarts without particles, and retries failed loads. Call it after 'webglcontextrestored', too. */
     restart(): void;
@@ -372,9 +381,8 @@ export class ParticleSystem {
     /**
      * Sets the pose of a body that plays a clip, from the next step on. Without `joints`, the clip continues. The pose
      * may not exceed the extent of the clips, scaled by `room` of `play`.
-     * @param joints  the glTF joint matrices, column-major, one per joint. For a three.js skeleton: boneMatrices,
-     * multiplied by
-     *                the mesh's bindMatrix on the right and bindMatrixInverse on the left.
+     * @param joints  glTF joint matrices, column-major, one per joint. For a three.js skeleton: boneMatrices, multiplied
+     *                by the mesh's bindMatrix on the right and bindMatrixInverse on the left.
      * @param weights  one weight per morph target.
      */
     pose(body: number, joints?: Numbers, weights?: Numbers): void;

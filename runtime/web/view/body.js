@@ -11,8 +11,10 @@ const kDeep = 0.014;
 const kClearUnit = 3; // texture unit after those of the collider
 const kBoxSides = [0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5];
 
-/** Returns the maximum number of ray steps in a map: each row and column is crossed once. finest: texels along the
- * longest side. */
+/**
+ * Returns the maximum number of ray steps in a map: each row and column is crossed once. finest: texels along the
+ * longest side.
+ */
 function stepsAcross({ projection, width, height }, finest) {
     return projection === "local" ? 6 * finest : 2 * (width + height);
 }

@@ -81,8 +81,10 @@ export class Camera {
         this.changed();
     }
 
-    /** Flies for `seconds`. way: right, up and forward, each from −1 to 1. The camera then rotates about its own
-     * position. */
+    /**
+     * Flies for `seconds`. way: right, up and forward, each from −1 to 1. The camera then rotates about its own
+     * position.
+     */
     fly(way, seconds) {
         const { eye } = this;
         const back = normalize(sub(eye, this.target));
@@ -154,8 +156,10 @@ export class FlightKeys {
 
 const kTap = 5; // maximum pointer movement of a click, in pixels
 
-/** Connects pointer, wheel and keyboard input. tap(x, y): called for clicks, in fractions of the canvas from the lower
- * left. */
+/**
+ * Connects pointer, wheel and keyboard input. tap(x, y): called for clicks, in fractions of the canvas from the lower
+ * left.
+ */
 export function followInput(canvas, camera, tap) {
     const down = new Map();
     let pressed = null; // position of a press that may become a click

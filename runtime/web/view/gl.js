@@ -34,8 +34,10 @@ export function program(gl, vertex, fragment, prefix = "") {
             }
             return places.get(name);
         },
-        /** Sets uniforms by their values: a number, 2 to 4 numbers, or a matrix of 16; { int } for integers and
-         * samplers. */
+        /**
+         * Sets uniforms by their values: a number, 2 to 4 numbers, or a matrix of 16; { int } for integers and
+         * samplers.
+         */
         set(values) {
             gl.useProgram(made);
             for (const [key, value] of Object.entries(values)) {

@@ -114,8 +114,9 @@ class PageTextures {
         gl.bindBuffer(gl.UNIFORM_BUFFER, null);
     }
 
-    /** Sets the samplers of a program to three units from `unit` on, and its uniform block. Call it once per program.
-     * */
+    /**
+     * Sets the samplers of a program to three units from `unit` on, and its uniform block. Call it once per program.
+     */
     attach(program, unit = 0) {
         const { gl } = this;
         gl.useProgram(program);
