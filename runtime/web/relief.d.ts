@@ -205,7 +205,7 @@ export class GpuCollider {
     dispose(): void;
 }
 
-// Scene, with the keys of scene.toml: package.py puts it here, made of runtime/scene/scene.schema.json.
+// Scene, with the keys of scene.toml: package.py inserts it, generated from runtime/scene/scene.schema.json.
 
 export interface ParticleSystemOptions {
     /** The collider, if the scene names none. */
