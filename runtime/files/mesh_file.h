@@ -32,8 +32,7 @@ struct PictureMeshPart {
 };
 struct NamedMesh {
     PictureMesh mesh;
-    std::vector<PictureMeshPart>
-        parts;  ///< in ascending order; triangles before the first part have no names
+    std::vector<PictureMeshPart> parts;  ///< ascending; triangles before the first part have no names
 };
 /// Like loadPictureMesh(), with groups and materials, which only .obj files can have.
 [[nodiscard]] Result<NamedMesh> loadNamedMesh(const std::filesystem::path& path);

@@ -69,9 +69,8 @@ class ParticleRenderer {
     /// Needs a current context, as draw() does.
     /// \param collider  shades the particles; nullopt: no shading.
     /// \param path      kCompute: paint by compute shaders (tile_painter.h) if the depth of the target is a plain
-    /// texture,
-    ///                  with equal results except for rounding. kAuto: kCompute on GPUs whose drivers compile it.
-    ///                  Normally picturePath() of the path of the particle system.
+    ///                  texture, with equal results except for rounding. kAuto: kCompute on GPUs whose drivers compile
+    ///                  it. Normally picturePath() of the path of the particle system.
     /// Errors: kUnsupported (kCompute without compute shaders), kFailure (shader compiler).
     [[nodiscard]] static Result<ParticleRenderer> create(const std::optional<ColliderView>& collider,
                                                          StepPath path = StepPath::kAuto);
@@ -80,8 +79,7 @@ class ParticleRenderer {
     /// Does not read back or wait for the GPU.
     /// \param order   drawing order; without a texture, that of the particle indices.
     /// \param behind  depths for style.soft: window depths of a picture with the same camera and size, not attached to
-    /// the
-    ///                target, such as ColliderRenderer::depth(). Null: style.soft has no effect.
+    ///                the target, such as ColliderRenderer::depth(). Null: style.soft has no effect.
     /// Errors: kUsage (looks, see packLooks(); a stretched look of points; soft; a camera that is not finite),
     /// kUnsupported, kFailure (shader compiler), kLimit (out of memory for the light around the collider).
     Result<void> draw(const ParticleSystem& particles, const CameraMatrices& camera,

@@ -15,8 +15,7 @@ namespace relief {
 class Watchdog {
   public:
     /// \param limit  maximum time between feed() and the next feed() or rest(); 0: no limit. If the system has no timer
-    /// left,
-    ///               prints a warning to standard error and sets no limit.
+    ///               left, prints a warning to standard error and sets no limit.
     Watchdog(const std::string& program, std::chrono::milliseconds limit);
     ~Watchdog();
     Watchdog(const Watchdog&) = delete;
