@@ -55,8 +55,8 @@ struct PlayerOptions {
     GpuOptions gpu;
     StepPath path = StepPath::kAuto;
     Watchdog* watchdog = nullptr;  ///< may be null
-    std::function<void(std::uint32_t step, std::uint32_t steps)>
-        progress;  ///< called between steps; may be empty
+    /// Called between steps; may be empty.
+    std::function<void(std::uint32_t step, std::uint32_t steps)> progress;
 };
 
 struct PlayerReport {

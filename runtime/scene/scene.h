@@ -174,8 +174,8 @@ inline constexpr std::size_t kSceneMaterialsMax = 4096;
 /// Values with a default that depends on the collider's size are optional; withDefaults() fills them.
 struct Scene {
     std::filesystem::path world;  ///< resolved; empty: none
-    std::string
-        world_origin;  ///< position of the key, "scene.toml:3:8", for messages; empty without a scene file
+    /// Position of the key, "scene.toml:3:8", for messages; empty without a scene file.
+    std::string world_origin;
     std::optional<SceneStream> stream;  ///< nullopt: the whole world has full detail
     /// Colliders of the file. Loading appends the bodies of the world that no table names; then there is at least one.
     std::vector<SceneCollider> colliders;
