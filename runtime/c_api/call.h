@@ -40,7 +40,7 @@ inline constexpr std::size_t kHandleKinds = 7;
 /// All functions are thread-safe. Removing an object while another thread uses it is a race.
 class HandleTable {
   public:
-    /// Returns a handle, never 0. Throws std::bad_alloc without memory or unused numbers, and then changes nothing.
+    /// Returns a handle, never 0. Throws std::bad_alloc if memory or numbers run out, and changes nothing then.
     [[nodiscard]] std::uintptr_t add(HandleKind kind, std::shared_ptr<void> object);
     /// Returns null if the handle was freed, is of another kind, or was never issued.
     [[nodiscard]] const std::shared_ptr<void>* find(HandleKind kind, std::uintptr_t handle) const;
@@ -146,7 +146,7 @@ class Call {
         }
         return count == 0 ? Result<void>() : notNull(items, argument);
     }
-    /// Copies a structure that starts with its size. Each has had only one size so far.
+    /// Copies a structure that starts with its size. Every structure has only one size so far.
     /// \param name  the name of its type.
     template <class T>
     [[nodiscard]] Result<T> structure(const T* given, const char* argument, const char* name) const {

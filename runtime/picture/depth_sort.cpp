@@ -81,7 +81,7 @@ class RadixSort {
     /// program and textures; restores image and storage units.
     void sort(const GlTexture& positions, std::uint32_t width, std::uint32_t extent, const glm::vec3& eye);
 
-    /// x: index, y: key, per rank; as many ranks as the `extent` of the last sort().
+    /// One texel per rank: index (x) and key (y). The number of ranks is the `extent` of the last sort().
     [[nodiscard]] const GlTexture& order() const { return order_; }
 
   private:

@@ -140,8 +140,8 @@ class Simulation {
     [[nodiscard]] std::vector<PointOfInterest> streamPointsNow() const;
     [[nodiscard]] Result<void> stream();
     [[nodiscard]] Result<void> makeLive(const LoadedScene& loaded);
-    /// Deforms all live colliders to a time, in seconds, and draws their maps. Called before each step, with the time
-    /// of its end.
+    /// Deforms all live colliders to their shapes at a time, in seconds, and draws their maps. Called before each step,
+    /// with the time of its end.
     [[nodiscard]] Result<void> showLive(double time);
     /// Updates the emitting surfaces to the current shapes of their colliders.
     void updateSurfaces(double dt);

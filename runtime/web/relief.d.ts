@@ -13,7 +13,7 @@ export class ReliefError extends Error {
 export type Vec3 = [number, number, number];
 /** A flat list of numbers. A Float32Array is used without conversion. */
 export type Numbers = ArrayLike<number> & (readonly number[] | ArrayBufferView);
-/** 16 numbers in column-major order, or an object with such `elements`, such as a three.js Matrix4. */
+/** 16 numbers in column-major order, or an object that stores them in `elements`, such as a three.js Matrix4. */
 export type Matrix = Numbers | { readonly elements: Numbers };
 /** A URL, a request or response of fetch(), a file, or the bytes. */
 export type Source = string | URL | Request | Response | Blob | ArrayBuffer | Uint8Array;
@@ -341,7 +341,7 @@ export class ParticleSystem {
      */
     drawMeshes(options: DrawOptions): void;
     /**
-     * Queues births in addition to those of the emitters. As numbers, a birth is 8 of them: position, velocity,
+     * Queues births in addition to those of the emitters. A flat list has 8 numbers per birth: position, velocity,
      * lifetime, type. Returns the number accepted.
      */
     spawn(births: readonly Birth[] | Numbers): number;
