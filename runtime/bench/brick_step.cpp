@@ -174,7 +174,7 @@ Result<void> BrickStep::compile(const BrickAtlas& atlas) {
     program.set("u_last_cube", glm::vec3(atlas.cubes) - 1.0F);
     program.set("u_cells", glm::vec3(atlas.cells));
     program.set("u_per_node", 1.0F / glm::vec3((glm::ivec3(atlas.cells) + 1) * atlas_bricks_));
-    // Texture values ±1 are the codes ±127 or ±32767, which mean ± the range.
+    // Texture values of ±1 (codes ±127 or ±32767) mean ± the range.
     program.set("u_range", atlas.range);
     return {};
 }

@@ -13,8 +13,9 @@ namespace relief {
 /// Returns the path of a container of the world.
 [[nodiscard]] std::filesystem::path containerOf(const Scene& scene, const WorldFile& file);
 
-/// Fills missing values of colliders that name a node from its body. Appends the other bodies of the world, in its
-/// order, and then the further bodies of those nodes, which have the same pose: the tiles of a large mesh.
+/// Places the bodies of a world. If a collider names a node, its missing values are filled from the body of that node.
+/// The other bodies are appended in the order of the world, then the further bodies of those nodes, which have the same
+/// pose: the tiles of a large mesh.
 /// \param world  of scene.world. Errors, with the place in the scene: kInvalidInput (a node without a body, with
 /// several bodies in different places, or named by two colliders); kLimit (more bodies than WorldTextures supports).
 [[nodiscard]] Result<void> placeBodies(Scene& scene, const World& world);

@@ -11,7 +11,7 @@ export class ReliefError extends Error {
 /** Fetches a source, or returns it if it already is a Response. */
 async function answerOf(source, signal) {
     return source instanceof Response ? source : fetch(source, { signal }).catch((error) => {
-        throw new ReliefError(`${source?.url ?? source}: the server does not answer (${error.message})`);
+        throw new ReliefError(`${source?.url ?? source}: the server does not respond (${error.message})`);
     });
 }
 
@@ -29,7 +29,7 @@ export async function bytesOf(source, signal) {
     const response = await answerOf(source, signal);
     const name = response.url || source;
     if (!response.ok) {
-        throw new ReliefError(`${name}: the server answers ${response.status} ${response.statusText}`.trim());
+        throw new ReliefError(`${name}: the server returned ${response.status} ${response.statusText}`.trim());
     }
     if (/^text\/html/.test(response.headers.get("content-type"))) {
         throw new ReliefError(`${name}: the server sent a web page instead of a collider; check the path`);

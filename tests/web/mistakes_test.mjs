@@ -12,9 +12,9 @@ import { run, scratch } from "./lib/native.mjs";
 // What is done (with collider, gpu, system, made for each), and what the sentence says.
 const kErrors = {
     // loading
-    "relief.load('/files/nothing.relief')": /nothing\.relief: the server answers 404/,
+    "relief.load('/files/nothing.relief')": /nothing\.relief: the server returned 404/,
     "relief.load('/page.html')": /page\.html: the server sent a web page instead of a collider/,
-    "relief.load('http://127.0.0.1:1/a.relief')": /a\.relief: the server does not answer/,
+    "relief.load('http://127.0.0.1:1/a.relief')": /a\.relief: the server does not respond/,
     "relief.load('/files/noise.relief')": /noise\.relief: .*(not|no) /,
     "relief.load('/files/cut.relief')": /cut\.relief: /,
     "relief.load(new ArrayBuffer(0))": /./,

@@ -243,7 +243,7 @@ test("a tile that is missing or damaged is named once, and its coarse one stays"
     }, { scene: { ...kScene, emitter: emitterAt(236, 236) }, steps: kSteps });
     const count = tilesAt(world, 236, 236).length;
     const named = got.lines.slice(0, 2).sort((a, b) => a.includes(broken) - b.includes(broken));
-    assert.match(named[0], new RegExp(`^http.*/files/w/${gone}: the server answers 404 .*; its coarse collider remains in use$`));
+    assert.match(named[0], new RegExp(`^http.*/files/w/${gone}: the server returned 404 .*; its coarse collider remains in use$`));
     assert.match(named[1], new RegExp(`${broken}.* does not match its hash.*; its coarse collider remains in use$`));
     assert.deepEqual([got.info.wanted, got.info.present, got.info.failed], [count, count - 2, 2]);
     assert.equal(below(got.rows).count, 500);
