@@ -21,7 +21,7 @@ Result<void> index(const Call& call, std::size_t i, std::size_t count, const cha
     if (i < count) {
         return {};
     }
-    return call.refuse(std::string(argument) + " is " + std::to_string(i) + ", and there are " +
+    return call.reject(std::string(argument) + " is " + std::to_string(i) + ", and there are " +
                        std::to_string(count));
 }
 
@@ -39,7 +39,7 @@ Result<AnimatedBody*> relief::animatedOf(const Call& call, relief_textures* anim
     const auto found = std::find_if(of.animated.begin(), of.animated.end(),
                                     [&](const AnimatedBody& one) { return one.body == body; });
     if (found == of.animated.end()) {
-        return call.refuse("body is " + std::to_string(body) +
+        return call.reject("body is " + std::to_string(body) +
                            "; pass an animated body, as returned by relief_world_add()");
     }
     return &*found;
@@ -50,7 +50,7 @@ relief_animation* relief_animation_create(const relief_collider* collider) {
         __func__, [&](const Call& call) -> Result<std::shared_ptr<AnimationObject>> {
             const Collider& from = *RELIEF_TRY(call.object(collider, "collider"));
             if (from.animation.empty()) {
-                return call.refuse("collider has no animated mesh; bake it with --animated");
+                return call.reject("collider has no animated mesh; bake it with --animated");
             }
             auto mesh = std::make_shared<const AnimatedMesh>(RELIEF_TRY(readAnimatedMesh(from.animation)));
             const PoseExtent extent = poseExtent(*mesh);
@@ -119,7 +119,7 @@ int64_t relief_world_add(relief_world* world, const relief_animation* animation,
         added.pose = RELIEF_TRY(poseOf(call, *pose, {"pose"}, {}));
         RELIEF_TRY(call.number(resolution, kResolution, {"resolution"}));
         if (resolution > 0 && resolution < kResolutionMin) {
-            return call.refuse("resolution is " + std::to_string(resolution) + "; choose " +
+            return call.reject("resolution is " + std::to_string(resolution) + "; choose " +
                                std::to_string(kResolutionMin) + " to 4096, or 0 for 512");
         }
         added.options.resolution = resolution > 0 ? resolution : added.options.resolution;
@@ -134,7 +134,7 @@ int64_t relief_world_add(relief_world* world, const relief_animation* animation,
         }
         const std::size_t body = to.field.world().bodies.size() + to.added.size();
         if (body >= kWorldBodiesMax) {
-            return call.refuse("world has " + std::to_string(body) + " bodies, which is the maximum");
+            return call.reject("world has " + std::to_string(body) + " bodies, which is the maximum");
         }
         to.added.push_back(std::move(added));
         return static_cast<int64_t>(body);
@@ -151,7 +151,7 @@ int relief_textures_play(relief_textures* animated_textures, uint32_t body, cons
         RELIEF_TRY(call.number(seconds, kSeconds, {"seconds"}));
         const std::optional<std::size_t> found = findClip(mesh, clip);
         if (!found) {
-            return call.refuse("clip is '" + cleanUtf8(clip) + "'; the animation has no clip of that name");
+            return call.reject("clip is '" + cleanUtf8(clip) + "'; the animation has no clip of that name");
         }
         return setNext(of, poseAt(mesh, mesh.clips[*found], seconds));
     });
@@ -166,7 +166,7 @@ int relief_textures_set_joints(relief_textures* animated_textures, uint32_t body
         RELIEF_TRY(call.array(weights, "weights", weight_count, "weight_count"));
         const AnimatedMesh& mesh = of.collider.mesh();
         if (joint_count != mesh.joints.size() || weight_count != mesh.weights.size()) {
-            return call.refuse("joint_count is " + std::to_string(joint_count) + " and weight_count " +
+            return call.reject("joint_count is " + std::to_string(joint_count) + " and weight_count " +
                                std::to_string(weight_count) + "; the animation has " +
                                std::to_string(mesh.joints.size()) + " and " +
                                std::to_string(mesh.weights.size()));

@@ -109,7 +109,7 @@ std::string NumberName::text() const {
 
 Result<void> Call::notNull(const void* pointer, const char* argument) const {
     if (pointer == nullptr) {
-        return refuse(std::string(argument) + " is NULL");
+        return reject(std::string(argument) + " is NULL");
     }
     return {};
 }
@@ -118,23 +118,23 @@ Result<void> Call::context() const {
     if (checkContext()) {
         return {};
     }
-    return refuse("no OpenGL context is current; make yours current on this thread");
+    return reject("no OpenGL context is current; make yours current on this thread");
 }
 
 tl::unexpected<Error> Call::faulty(HandleKind kind, std::uintptr_t handle, const char* argument,
                                    const char* type) const {
     if (handle != 0) {
-        return refuse(std::string(argument) + " is not a live " + type +
+        return reject(std::string(argument) + " is not a live " + type +
                       " handle: it was freed, has another type, or was never created");
     }
     if (const std::string& cause = callErrors().unreadOf(kind); !cause.empty()) {
         return fail(ErrorCode::kUsage, cause);
     }
-    return refuse(std::string(argument) + " is NULL; pass a " + type + " that was created successfully");
+    return reject(std::string(argument) + " is NULL; pass a " + type + " that was created successfully");
 }
 
 tl::unexpected<Error> Call::wrongNumber(double value, const FieldRange& range, const NumberName& name) const {
-    return refuse(name.text() + " is " + numberText(value) + "; it must be " +
+    return reject(name.text() + " is " + numberText(value) + "; it must be " +
                   (range.low_included ? "from " : "above ") + numberText(range.low) +
                   (range.low_included ? " to " : " and at most ") + numberText(range.high));
 }

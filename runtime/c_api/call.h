@@ -109,7 +109,7 @@ class Call {
   public:
     explicit Call(const char* function) : function_(function) {}
 
-    [[nodiscard]] tl::unexpected<Error> refuse(const std::string& what) const {
+    [[nodiscard]] tl::unexpected<Error> reject(const std::string& what) const {
         return fail(ErrorCode::kUsage, std::string(function_) + "(): " + what);
     }
 
@@ -141,7 +141,7 @@ class Call {
     [[nodiscard]] Result<void> array(const T* items, const char* argument, std::size_t count,
                                      const char* count_argument) const {
         if (count >= static_cast<std::size_t>(PTRDIFF_MAX) / sizeof(T)) {
-            return refuse(std::string(count_argument) + " is " + std::to_string(count) +
+            return reject(std::string(count_argument) + " is " + std::to_string(count) +
                           "; an array of that size does not fit in memory");
         }
         return count == 0 ? Result<void>() : notNull(items, argument);
@@ -153,7 +153,7 @@ class Call {
         std::size_t size = 0;
         std::memcpy(&size, given, sizeof(size));
         if (size != sizeof(T)) {
-            return refuse(std::string(argument) + "->size is " + std::to_string(size) +
+            return reject(std::string(argument) + "->size is " + std::to_string(size) +
                           "; set it to sizeof(" + name + "), which is " + std::to_string(sizeof(T)));
         }
         return *given;

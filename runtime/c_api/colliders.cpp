@@ -98,7 +98,7 @@ const char* relief_collider_material_name(const relief_collider* collider, size_
     return answer(__func__, "", [&](const Call& call) -> Result<const char*> {
         const std::vector<Material>& list = RELIEF_TRY(call.object(collider, "collider"))->materials.list;
         if (material >= list.size()) {
-            return call.refuse("material is " + std::to_string(material) + ", and the collider has " +
+            return call.reject("material is " + std::to_string(material) + ", and the collider has " +
                                std::to_string(list.size()));
         }
         return list[material].name.c_str();
@@ -170,7 +170,7 @@ void relief_textures_attach(const relief_textures* textures, uint32_t program, i
             glGetProgramiv(program, GL_LINK_STATUS, &linked);
         }
         if (linked != GL_TRUE) {
-            return call.refuse("program is " + std::to_string(program) +
+            return call.reject("program is " + std::to_string(program) +
                                "; pass a linked program of the current context");
         }
         from.textures().attach(program, binding);

@@ -38,13 +38,13 @@ Result<EmitterSettings> settingsOf(const Call& call, const relief_emitter_option
     RELIEF_TRY(call.number(all.type, {0.0, kBirthTypeMax}, name("type")));
     RELIEF_TRY(call.number(all.seed, kSeed, name("seed")));
     if (all.speed_min > all.speed_max || all.lifetime_min > all.lifetime_max) {
-        return call.refuse(std::string("options->") +
+        return call.reject(std::string("options->") +
                            (all.speed_min > all.speed_max ? "speed_min is above speed_max"
                                                           : "lifetime_min is above lifetime_max") +
                            "; swap them");
     }
     if (all.rate == 0.0F && all.burst == 0) {
-        return call.refuse("options->rate and options->burst are both 0; set one above 0");
+        return call.reject("options->rate and options->burst are both 0; set one above 0");
     }
     EmitterSettings settings;
     settings.shape = EmitterShape::kSurface;
@@ -67,7 +67,7 @@ Result<EmitterSettings> settingsOf(const Call& call, const relief_emitter_option
 template <class T>
 Result<T> withArgument(const Call& call, const char* argument, Result<T> result) {
     return result ? std::move(result)
-                  : Result<T>(call.refuse(std::string(argument) + ": " + result.error().message));
+                  : Result<T>(call.reject(std::string(argument) + ": " + result.error().message));
 }
 
 Result<EmitterSurface> surfaceOf(const Call& call, const Collider& collider, const char* material) {
@@ -112,7 +112,7 @@ Result<void> deformSurface(const Call& call, EmitterObject& emitter, relief_text
     AnimatedBody& on = *RELIEF_TRY(animatedOf(call, textures, body));
     if (on.collider.shared() != emitter.mesh) {
         if (*on.collider.shared() != *emitter.mesh) {
-            return call.refuse("emitter has another animation than body " + std::to_string(body) +
+            return call.reject("emitter has another animation than body " + std::to_string(body) +
                                "; create it from the animation of the body");
         }
         emitter.mesh = on.collider.shared();  // equal; share it to skip the next comparison
@@ -167,7 +167,7 @@ int64_t relief_particles_emit(relief_particles* particles, relief_emitter* emitt
         if (from.mesh) {
             RELIEF_TRY(deformSurface(call, from, textures, body, dt));
         } else if (body >= std::max<std::size_t>(among.poses.size(), 1)) {
-            return call.refuse("body is " + std::to_string(body) + " of " +
+            return call.reject("body is " + std::to_string(body) + " of " +
                                std::to_string(std::max<std::size_t>(among.poses.size(), 1)) +
                                " bodies; the first is 0");
         }

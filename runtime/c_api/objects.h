@@ -202,7 +202,7 @@ void query(const char* function, const H* handle, const char* argument, const fl
             samples[i] = sampleAt(field, point);
         }
         if (wrong < count) {
-            return call.refuse("points[" + std::to_string(wrong) + "] is not finite");
+            return call.reject("points[" + std::to_string(wrong) + "] is not finite");
         }
         return true;
     });

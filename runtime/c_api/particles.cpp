@@ -82,10 +82,10 @@ Result<relief_view> viewOf(const Call& call, const relief_view* given) {
     RELIEF_TRY(call.number(all.height, kPixels, name("height")));
     RELIEF_TRY(call.number(all.srgb, kFraction, name("srgb")));
     if (all.projection[5] == 0.0F) {
-        return call.refuse("view->projection is not a perspective projection: element 5 is 0; set it");
+        return call.reject("view->projection is not a perspective projection: element 5 is 0; set it");
     }
     if (all.framebuffer != 0 && glIsFramebuffer(all.framebuffer) == GL_FALSE) {
-        return call.refuse("view->framebuffer is " + std::to_string(all.framebuffer) +
+        return call.reject("view->framebuffer is " + std::to_string(all.framebuffer) +
                            "; name a framebuffer of the current context");
     }
     return all;
@@ -181,10 +181,10 @@ relief_picture* relief_picture_create(const relief_textures* textures, const rel
         const auto field = RELIEF_TRY(call.optional(collider, "collider"));
         const bool world = among && among->world;
         if (world && field) {
-            return call.refuse("collider must be NULL for textures of a world");
+            return call.reject("collider must be NULL for textures of a world");
         }
         if (!world && (among == nullptr) != (field == nullptr)) {
-            return call.refuse(std::string(among ? "collider" : "textures") +
+            return call.reject(std::string(among ? "collider" : "textures") +
                                " is NULL; pass the textures and their collider, or NULL for both");
         }
         RELIEF_TRY(call.context());

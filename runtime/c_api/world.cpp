@@ -30,7 +30,7 @@ std::size_t bodyCount(const WorldObject& world) {
 Result<const WorldObject*> worldWithBody(const Call& call, const relief_world* world, std::size_t body) {
     const WorldObject* of = RELIEF_TRY(call.object(world, "world"));
     if (body >= bodyCount(*of)) {
-        return call.refuse("body is " + std::to_string(body) + ", and the world has " +
+        return call.reject("body is " + std::to_string(body) + ", and the world has " +
                            std::to_string(bodyCount(*of)) + " bodies");
     }
     return of;
@@ -91,7 +91,7 @@ Result<Pose> relief::poseOf(const Call& call, const relief_pose& given, NumberNa
     RELIEF_TRY(call.number(given.rotation, kRotation, name));
     const glm::quat turn(given.rotation[3], given.rotation[0], given.rotation[1], given.rotation[2]);
     if (!(std::abs(glm::length(turn) - 1.0F) <= kUnitTolerance)) {
-        return call.refuse(name.text() + " has a length of " + shortest(glm::length(turn)) +
+        return call.reject(name.text() + " has a length of " + shortest(glm::length(turn)) +
                            "; normalize the quaternion, or pass 0, 0, 0, 1");
     }
     return Pose{vec(given.position), glm::normalize(turn), rest.scale};
@@ -121,7 +121,7 @@ size_t relief_world_find(const relief_world* world, const char* node, uint32_t* 
         RELIEF_TRY(call.array(bodies, "bodies", count, "count"));
         const std::vector<std::size_t> found = findBodies(all, node);
         if (found.empty()) {
-            return call.refuse("node is '" + cleanUtf8(node) +
+            return call.reject("node is '" + cleanUtf8(node) +
                                "'; no body of the world has a node of that name");
         }
         std::transform(found.begin(),
@@ -143,7 +143,7 @@ void relief_world_bounds(const relief_world* world, float min[3], float max[3]) 
     writeBounds(__func__, min, max, [&](const Call& call) -> Result<Bounds> {
         const WorldObject& of = *RELIEF_TRY(call.object(world, "world"));
         if (bodyCount(of) == 0) {
-            return call.refuse("world has no bodies; add one with relief_world_add()");
+            return call.reject("world has no bodies; add one with relief_world_add()");
         }
         Bounds bounds = worldBounds(of.field.world());
         for (const AddedBody& added : of.added) {
@@ -185,7 +185,7 @@ relief_textures* relief_textures_create_world(const relief_world* world) {
         __func__, [&](const Call& call) -> Result<std::shared_ptr<TexturesObject>> {
             const WorldObject& from = *RELIEF_TRY(call.object(world, "world"));
             if (bodyCount(from) == 0) {
-                return call.refuse("world has no bodies; add one with relief_world_add()");
+                return call.reject("world has no bodies; add one with relief_world_add()");
             }
             RELIEF_TRY(call.context());
             return std::make_shared<TexturesObject>(RELIEF_TRY(upload(from)));
@@ -199,7 +199,7 @@ int relief_textures_set_poses(relief_textures* world_textures, const uint32_t* b
         RELIEF_TRY(call.array(bodies, "bodies", count, "count"));
         RELIEF_TRY(call.array(poses, "poses", count, "count"));
         if (!to.world) {
-            return call.refuse(
+            return call.reject(
                 "world_textures contains a single collider, which has no pose; create the textures from a "
                 "world");
         }

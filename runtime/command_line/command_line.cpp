@@ -86,13 +86,13 @@ class ExampleFormatter : public CLI::Formatter {
 };
 
 /// Returns the verb that was given, or the program.
-const CLI::App& calledOf(const CLI::App& app) {
+const CLI::App& activeApp(const CLI::App& app) {
     const std::vector<CLI::App*> called = app.get_subcommands();
     return called.empty() ? app : *called.front();
 }
 
 std::string helpText(const CLI::App& app) {
-    const CLI::App& called = calledOf(app);
+    const CLI::App& called = activeApp(app);
     return &called == &app ? app.help() : called.help(app.get_name());
 }
 
@@ -135,7 +135,7 @@ std::string noVerb(const CLI::App& app, const std::vector<std::string>& words, c
 
 /// Returns the message for a command line that CLI11 rejected.
 std::string parseErrorMessage(const CLI::App& app, const CLI::ParseError& error) {
-    const CLI::App& called = calledOf(app);
+    const CLI::App& called = activeApp(app);
     const std::string name = app.get_name() + (&called == &app ? "" : " " + called.get_name());
     const std::string help = "see " + name + " --help";
     if (error.get_name() == "ValidationError") {
@@ -162,7 +162,7 @@ std::string parseErrorMessage(const CLI::App& app, const CLI::ParseError& error)
 }
 
 /// Rejects empty values, which usually come from unset variables of scripts, unless the value is optional.
-Result<void> refuseEmptyValues(const CLI::App& app) {
+Result<void> rejectEmptyValues(const CLI::App& app) {
     for (const CLI::Option* option : app.get_options()) {
         const std::vector<std::string>& words = option->results();
         if (option->get_expected_min() > 0 && std::ranges::find(words, "") != words.end()) {
@@ -183,7 +183,7 @@ void startLog(const std::string& program) {
     spdlog::set_default_logger(std::move(logger));
 }
 
-Result<bool> answer(const std::string& text) {
+Result<bool> printAnswer(const std::string& text) {
     RELIEF_TRY(printOut(text));
     return false;
 }
@@ -228,18 +228,18 @@ Result<bool> parseCommandLine(CLI::App& app, std::vector<std::string> arguments)
     try {
         app.parse(std::move(arguments));
     } catch (const CLI::CallForHelp&) {
-        return answer(helpText(app));
+        return printAnswer(helpText(app));
     } catch (const CLI::CallForVersion& version) {
-        return answer(std::string(version.what()) + "\n");
+        return printAnswer(std::string(version.what()) + "\n");
     } catch (const CLI::ParseError& error) {
         // Print help even if other arguments are invalid.
-        const CLI::Option* help = calledOf(app).get_help_ptr();
+        const CLI::Option* help = activeApp(app).get_help_ptr();
         if (help != nullptr && help->count() > 0) {
-            return answer(helpText(app));
+            return printAnswer(helpText(app));
         }
         return fail(ErrorCode::kUsage, parseErrorMessage(app, error));
     }
-    RELIEF_TRY(refuseEmptyValues(calledOf(app)));
+    RELIEF_TRY(rejectEmptyValues(activeApp(app)));
     return true;
 }
 

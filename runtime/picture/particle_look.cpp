@@ -24,7 +24,7 @@ constexpr float kHuge = 1e30F;
 constexpr const char* kOutOfRange = "a value is out of range or not finite";
 
 template <class T>
-std::string trackProblem(const AgeTrack<T>& track, const char* name, float low, float high) {
+std::string trackFault(const AgeTrack<T>& track, const char* name, float low, float high) {
     if (track.size() > kLookKeysMax) {
         return std::string(name) + " has " + std::to_string(track.size()) + " keys; the maximum is " +
                std::to_string(kLookKeysMax);
@@ -42,11 +42,11 @@ std::string trackProblem(const AgeTrack<T>& track, const char* name, float low, 
     return {};
 }
 
-std::string lookProblem(const ParticleLook& look) {
+std::string lookFault(const ParticleLook& look) {
     for (const std::string& problem :
-         {trackProblem(look.size, "size", 0.0F, kHuge), trackProblem(look.color, "color", 0.0F, 1.0F),
-          trackProblem(look.opacity, "opacity", 0.0F, 1.0F),
-          trackProblem(look.rotation, "rotation", -kHuge, kHuge)}) {
+         {trackFault(look.size, "size", 0.0F, kHuge), trackFault(look.color, "color", 0.0F, 1.0F),
+          trackFault(look.opacity, "opacity", 0.0F, 1.0F),
+          trackFault(look.rotation, "rotation", -kHuge, kHuge)}) {
         if (!problem.empty()) {
             return problem;
         }
@@ -115,7 +115,7 @@ Result<PackedLooks> packLooks(std::span<const ParticleLook> looks, const LookDef
                                            std::to_string(kLooksMax) + " that Relief takes");
     }
     for (std::size_t i = 0; i < looks.size(); ++i) {
-        if (const std::string problem = lookProblem(looks[i]); !problem.empty()) {
+        if (const std::string problem = lookFault(looks[i]); !problem.empty()) {
             return fail(ErrorCode::kUsage, "the look of particle type " + std::to_string(i) + ": " + problem);
         }
     }

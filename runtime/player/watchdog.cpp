@@ -16,7 +16,7 @@ std::mutex mutex;
 std::string last_line;  // message if the timer expires; empty at rest
 
 /// Runs on a thread of the timer.
-void starved(sigval /*value*/) {
+void onExpired(sigval /*value*/) {
     const std::lock_guard lock(mutex);
     // Do not use streams: the stuck thread may hold their locks.
     if (!last_line.empty() && ::write(STDERR_FILENO, last_line.data(), last_line.size()) != 0) {
@@ -30,7 +30,7 @@ Watchdog::Watchdog(const std::string& program, std::chrono::milliseconds limit)
     : program_(program), limit_(limit) {
     sigevent event{};
     event.sigev_notify = SIGEV_THREAD;
-    event.sigev_notify_function = starved;
+    event.sigev_notify_function = onExpired;
     has_timer_ = ::timer_create(CLOCK_MONOTONIC, &event, &timer_) == 0;
     if (!has_timer_) {
         std::fprintf(stderr, "%s: warning: the system has no timer for --gpu-timeout; raise ulimit -i\n",

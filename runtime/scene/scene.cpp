@@ -12,7 +12,7 @@ namespace relief {
 namespace {
 
 /// Returns the fault of a camera at `eye`, or nullptr.
-const char* cameraProblem(const glm::vec3& eye, const glm::vec3& target) {
+const char* cameraFault(const glm::vec3& eye, const glm::vec3& target) {
     const glm::vec3 d = eye - target;
     if (!(glm::length(d) > 0.0F)) {
         return "is at camera.target; move one of them";
@@ -168,13 +168,13 @@ std::optional<FieldFault> check(SceneCamera& camera, const GivenFields& /*given*
         before = key.time;
         const glm::vec3 target =
             key.target.value_or(camera.target.value_or(key.eye + glm::vec3(0.0F, 0.0F, 1.0F)));
-        if (cameraProblem(key.eye, target) != nullptr) {
+        if (cameraFault(key.eye, target) != nullptr) {
             return FieldFault{nth("key", i, ".eye"),
                               "is at its target, or directly above or below it; move it sideways"};
         }
     }
     const char* const problem =
-        camera.eye && camera.target ? cameraProblem(*camera.eye, *camera.target) : nullptr;
+        camera.eye && camera.target ? cameraFault(*camera.eye, *camera.target) : nullptr;
     return problem != nullptr ? std::optional(FieldFault{"eye", problem}) : std::nullopt;
 }
 
@@ -345,7 +345,7 @@ Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
                 : levelEye(*scene.camera.target, bounds, scene.camera.fov, aspect);
     }
     const char* const problem =
-        scene.camera.eye ? cameraProblem(*scene.camera.eye, *scene.camera.target) : nullptr;
+        scene.camera.eye ? cameraFault(*scene.camera.eye, *scene.camera.target) : nullptr;
     if (problem != nullptr) {
         return fail(ErrorCode::kInvalidInput, std::string("camera.eye ") + problem);
     }

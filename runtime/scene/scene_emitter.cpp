@@ -22,7 +22,7 @@ double burstBirths(const SceneEmitter& emitter, double seconds) {
 }
 
 /// Distributes the remaining capacity over emitters without a rate, so that it is used up at the end of the run.
-Result<void> shareRates(std::span<SceneEmitter> emitters, double run, std::uint32_t capacity) {
+Result<void> distributeRates(std::span<SceneEmitter> emitters, double run, std::uint32_t capacity) {
     double room = capacity;
     double sharing = 0.0;
     for (const SceneEmitter& emitter : emitters) {
@@ -138,7 +138,7 @@ Result<void> completeEmitters(std::span<SceneEmitter> emitters, const Bounds& bo
             emitter.velocity_spread = glm::vec3(0.12F * scale, 0.1F * scale, 0.12F * scale);
         }
     }
-    return shareRates(emitters, seconds, capacity);
+    return distributeRates(emitters, seconds, capacity);
 }
 
 std::vector<Spawner> makeSpawners(std::span<const SceneSpawn> spawns,

@@ -41,7 +41,7 @@ namespace {
 
 std::string g_text;  // the last returned string
 
-const char* returned(std::string text) {
+const char* storeText(std::string text) {
     g_text = std::move(text);
     return g_text.c_str();
 }
@@ -206,7 +206,7 @@ bool sameMaps(const SceneCollider& a, const SceneCollider& b) {
 }
 
 /// Applies the wanted poses and clips; fails if anything else of a collider changes.
-Result<void> takePoses(std::vector<SceneCollider>& now, const std::vector<SceneCollider>& wanted) {
+Result<void> applyPoses(std::vector<SceneCollider>& now, const std::vector<SceneCollider>& wanted) {
     for (std::size_t i = 0; i < now.size(); ++i) {
         SceneCollider& body = now[i];
         const SceneCollider& to = wanted[i];
@@ -265,7 +265,7 @@ Result<int> changePlayer(Player& player, const char* text, const char* path, boo
         made = RELIEF_TRY(makeEmitters(wanted.emitters, player.loaded.meshes()));
     }
     std::vector<SceneCollider> colliders = now.colliders;
-    RELIEF_TRY(takePoses(colliders, wanted.colliders));
+    RELIEF_TRY(applyPoses(colliders, wanted.colliders));
     std::vector<std::optional<PlayedMesh>> played = player.loaded.played;
     for (std::size_t i = 0; i < colliders.size(); ++i) {
         RELIEF_TRY(played[i] ? changeClip(*played[i], colliders[i]) : Result<void>());
@@ -351,7 +351,7 @@ EMSCRIPTEN_KEEPALIVE relief_world* relief_world_load_coarse(const char* path) {
 /// Returns JSON.
 EMSCRIPTEN_KEEPALIVE const char* relief_collider_info(const relief_collider* collider) {
     return answer<const char*>(__func__, nullptr, [&](const Call& call) -> Result<const char*> {
-        return returned(colliderInfo(*RELIEF_TRY(call.object(collider, "collider"))).dump());
+        return storeText(colliderInfo(*RELIEF_TRY(call.object(collider, "collider"))).dump());
     });
 }
 
@@ -475,7 +475,7 @@ EMSCRIPTEN_KEEPALIVE int relief_player_step(Player* player, float dt) {
 /// Returns a JSON list of warnings since the last call: colliders of a streamed world that failed to load.
 EMSCRIPTEN_KEEPALIVE const char* relief_player_warnings(Player* player) {
     player->takeWarnings();
-    return returned(lineOf(Json(std::exchange(player->warnings, {}))));
+    return storeText(lineOf(Json(std::exchange(player->warnings, {}))));
 }
 
 /// Sets the points around which a streamed world has full detail: 4 floats each, position and radius. Returns 0, or -1
@@ -498,8 +498,8 @@ EMSCRIPTEN_KEEPALIVE int relief_player_near(Player* player, const float* balls, 
 /// there is none.
 EMSCRIPTEN_KEEPALIVE const char* relief_player_next(Player* player) {
     const auto next = player->source != nullptr ? player->source->next() : std::nullopt;
-    return returned(next ? lineOf({{"collider", *next}, {"file", player->loaded.world.colliders[*next].file}})
-                         : "null");
+    return storeText(
+        next ? lineOf({{"collider", *next}, {"file", player->loaded.world.colliders[*next].file}}) : "null");
 }
 
 /// Passes the bytes of a container that relief_player_next() returned.
@@ -576,7 +576,7 @@ EMSCRIPTEN_KEEPALIVE const char* relief_player_info(const Player* player) {
     const Bounds& bounds = player->loaded.bounds;
     const std::span<const std::string> materials = player->simulation->textures().materialNames();
     const Camera camera = sceneCamera(scene, bounds, particles.time());
-    return returned(
+    return storeText(
         Json{{"time", particles.time()},
              {"alive", counts.alive},
              {"born", counts.born},
@@ -636,7 +636,7 @@ EMSCRIPTEN_KEEPALIVE const char* relief_player_animation(const Player* player, i
     for (const MeshJoint& joint : mesh->joints) {
         joints.push_back(mesh->nodes[joint.node].name);
     }
-    return returned(Json{{"clips", clips}, {"joints", joints}, {"weights", mesh->weights.size()}}.dump());
+    return storeText(Json{{"clips", clips}, {"joints", joints}, {"weights", mesh->weights.size()}}.dump());
 }
 
 /// Sets the pose of an animated collider: matrices of 16 floats, column-major, and weights. Without matrices, its clip

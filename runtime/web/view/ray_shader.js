@@ -141,7 +141,7 @@ Stretch aheadOrthographic(int i, vec3 o, vec3 d, float t, float far) {
     return partAt(bothBelow(t, t1, votes, votes_then), false, t, t1, border);
 }
 
-// Returns coordinates on a cube face: s and t, both times the major axis, and the major axis.
+// Returns (s m, t m, m) on a cube face, where m is the coordinate along the major axis.
 vec3 onFace(int face, vec3 v) {
     float way = (face & 1) == 0 ? 1.0 : -1.0;
     return face < 2 ? vec3(-way * v.z, -v.y, way * v.x)
