@@ -9,7 +9,7 @@ export class ReliefError extends Error {
 }
 
 /** Fetches a source, or returns it if it already is a Response. */
-async function answerOf(source, signal) {
+async function responseOf(source, signal) {
     return source instanceof Response ? source : fetch(source, { signal }).catch((error) => {
         throw new ReliefError(`${source?.url ?? source}: the server does not respond (${error.message})`);
     });
@@ -26,7 +26,7 @@ export async function bytesOf(source, signal) {
     if (typeof source !== "string" && ![URL, Request, Response].some((kind) => source instanceof kind)) {
         throw new ReliefError("load() takes a URL, a Response, a Blob, an ArrayBuffer or a Uint8Array");
     }
-    const response = await answerOf(source, signal);
+    const response = await responseOf(source, signal);
     const name = response.url || source;
     if (!response.ok) {
         throw new ReliefError(`${name}: the server returned ${response.status} ${response.statusText}`.trim());
@@ -43,7 +43,7 @@ export async function bytesOf(source, signal) {
  */
 export async function worldFiles(source, coarse) {
     // The containers are relative to the final URL, after redirects.
-    const response = await answerOf(source);
+    const response = await responseOf(source);
     if (!response.url) {
         throw new ReliefError("this Response has no URL, so the containers of the world cannot be found; " +
                               "pass the files to new World()");

@@ -52,7 +52,7 @@ function lastError() {
 }
 
 /** Copies a string or a typed array to WebAssembly memory and returns its address. */
-function copied(value) {
+function copyToWasm(value) {
     const size = typeof value === "string" ? wasm.lengthBytesUTF8(value) + 1 : Math.max(value.byteLength, 1);
     const at = wasm._malloc(size);
     if (at === 0) {
@@ -80,7 +80,7 @@ function call(name, ...args) {
             if (typeof one === "number") {
                 return one;
             }
-            copies.set(one, copied(one));
+            copies.set(one, copyToWasm(one));
             return copies.get(one);
         });
         const result = functions[`_${name}`](...plain);
