@@ -13,8 +13,8 @@
  * handle of another type and an arbitrary value are errors. Free each handle once, with the free function of its type,
  * in any order: particles and pictures keep their textures alive. Freeing NULL does nothing. A NULL returned by a
  * failed call carries its error: relief_textures_create(relief_collider_load(path)) fails with the error of the load.
- * If NULL is also a valid argument, such as the textures of particles, it is treated as that failure until the thread
- * calls relief_error() or creates an object of that type. After that, it is valid again.
+ * Some functions accept NULL, such as for the textures of particles. After a failed creation, such a NULL still counts
+ * as that failure, until the thread calls relief_error() or creates an object of that type.
  *
  * OpenGL. Functions marked (GL) need a current OpenGL context on the calling thread: OpenGL 3.3, or OpenGL ES 3.0 with
  * renderable float textures. Use the same context for all objects that work together. The functions restore the GL

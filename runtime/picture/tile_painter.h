@@ -4,17 +4,17 @@
 //
 // The picture is divided into tiles of 16 × 16 pixels. Each sprite is computed once and gets an entry for each tile
 // that it overlaps. Entries are sorted by tile; each tile is painted front to back into a layer, which is then blended
-// over the target. The layer has 16 bits per channel. A pixel may differ from a drawn one by the rounding of the target
-// and, in targets of 8 bits, by the clipping of sprites brighter than white behind other sprites.
+// over the target. The layer has 16 bits per channel, so a pixel may differ from a drawn one by the rounding of the
+// target. In targets of 8 bits, it may also differ where sprites brighter than white are clipped behind other sprites.
 //
 //     bytes on the GPU = 96 · room + 8 · pixels + up to 3 MB; room: up to 1.5 times the sprites, at least 65,536
 //         sprites   48 bytes each
 //         entries   2 × 8 bytes (double-buffered), 3 per sprite
 //         layer     RGBA16F
 //
-// Nothing is read back. If the entries exceed the buffer (a thousand sprites as large as the picture), or a tile has
-// more than 65,536 of them (a distant cloud), the GPU leaves the layer empty, and an indirect draw draws the sprites
-// instead.
+// Nothing is read back. The buffer may be too small (for a thousand sprites as large as the picture), or a tile may
+// have more than 65,536 entries (a distant cloud). The GPU then leaves the layer empty, and an indirect draw draws the
+// sprites.
 #pragma once
 
 #include <cstdint>
