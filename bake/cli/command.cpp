@@ -20,17 +20,17 @@ CLI::App& addVerb(CLI::App& app, CommonOptions& common, const std::string& name,
                   const std::string& description, const std::string& example) {
     CLI::App* verb = app.add_subcommand(name, description);
     verb->footer(example);
-    verb->set_help_flag("-h,--help", "Print this help and exit");
-    CLI::Option* quiet = verb->add_flag("-q,--quiet", common.quiet, "Print errors only");
+    setUpVerbHelp(*verb);
+    CLI::Option* quiet = verb->add_flag("-q,--quiet", common.quiet, "Print only errors");
     CLI::Option* verbose =
-        verb->add_flag("-v,--verbose", common.verbose, "Print details too")->excludes(quiet);
+        verb->add_flag("-v,--verbose", common.verbose, "Also print details")->excludes(quiet);
     verb->add_flag_callback(
             "--warnings-only",
             [&common] {
                 common.quiet = true;
                 common.warnings = true;
             },
-            "Print warnings and errors only")
+            "Print only warnings and errors")
         ->excludes(quiet)
         ->excludes(verbose);
     verb->parse_complete_callback([&common] {
@@ -79,11 +79,19 @@ std::string inputName(const std::string& file) {
 }
 
 void defineRelief(CLI::App& app, Action& action) {
-    setUpHelp(app, "Print this help and exit; `relief VERB --help` explains a verb");
-    app.description("Bakes meshes into depth map colliders, and looks into them");
+    setUpHelp(app, "Print this help and exit; `relief VERB --help` describes a verb");
+    app.description(
+        "Bake meshes into depth-map colliders, and inspect them\n\n"
+        "A collider is a small file of depth maps that stores the outer shape of a mesh. Programs and "
+        "shaders look up the signed distance and normal of the surface near a point, so that particles can "
+        "collide with the mesh on the GPU.\n"
+        "After baking, `relief check` measures the collider against its mesh and suggests fixes, and `relief "
+        "slice` and `relief view` show it. `relief-sim` collides particles with it. To use it in your "
+        "engine, link the runtime library, or upload the files of `relief export --gpu`.");
     app.footer(
-        "relief bake bunny.obj -o bunny.relief\nrelief info bunny.relief\n"
-        "relief slice bunny.relief --axis z --at center -o slice.png");
+        "relief bake bunny.obj -o bunny.relief\n"
+        "relief check bunny.relief --mesh bunny.obj\n"
+        "relief view bunny.relief --mesh bunny.obj -o bunny.html");
     app.require_subcommand(1);
     for (const auto& add : {addBake, addCheck, addInfo, addQuery, addSlice, addView, addExport}) {
         add(app, action);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command line of `relief`, and what its verbs share. One file a verb defines its options and runs it.
+// The command line of `relief`, and code that its verbs share. Each verb has a file that defines its options and runs it.
 #pragma once
 
 #include <cstddef>
@@ -23,29 +23,30 @@ using Action = std::function<Result<void>(FileGuard& files)>;
 
 struct CommonOptions {
     bool quiet = false;     ///< errors only
-    bool verbose = false;   ///< details too
-    bool warnings = false;  ///< with quiet: warnings too
+    bool verbose = false;   ///< also details
+    bool warnings = false;  ///< with quiet: also warnings
 };
 
-/// Adds a verb with -q, -v and --warnings-only, which choose the messages that appear.
-/// \param example  complete command lines, one a line: the help begins with them.
+/// Adds a verb with --help, --manual, and the options that select messages: -q, -v and --warnings-only.
+/// \param description  a summary line, an empty line, and text for --help; withDetails() adds text for --manual
+/// \param example  complete command lines, one per line, with which the help begins
 CLI::App& addVerb(CLI::App& app, CommonOptions& common, const std::string& name,
                   const std::string& description, const std::string& example);
 
-/// Runs `each` for every file. Of several, errors are shown as they come, and the other files still get their turn.
-/// Errors: that of the only file; else the code of the first failure, with the number of failures.
+/// Runs `each` for every file. With several files, it logs errors immediately and continues with the next file.
+/// Errors: that of the only file; for several, the code of the first failure, and the number of failures.
 [[nodiscard]] Result<void> forEachFile(const std::vector<std::string>& files,
                                        const std::function<Result<void>(const std::string& file)>& each);
 
-/// "standard input" for "-", else the path in quotes: for messages.
+/// For messages: "standard input" for "-", otherwise the quoted path.
 [[nodiscard]] std::string shownInput(const std::string& file);
-/// "standard input", or the name without its folder: for reports.
+/// For reports: "standard input" for "-", otherwise the file's name without its folder.
 [[nodiscard]] std::string inputName(const std::string& file);
 
-/// Whether a file is taken for a world: by its extension, .json.
+/// Returns whether a file is a world, by its extension .json.
 [[nodiscard]] bool namesWorld(const std::string& file);
 
-// Each adds a verb. When it is called, `action` becomes what it does.
+// Each adds a verb, which sets `action` when it is called.
 void addBake(CLI::App& app, Action& action);
 void addCheck(CLI::App& app, Action& action);
 void addInfo(CLI::App& app, Action& action);
@@ -54,7 +55,7 @@ void addSlice(CLI::App& app, Action& action);
 void addView(CLI::App& app, Action& action);
 void addExport(CLI::App& app, Action& action);
 
-/// Gives an app named "relief" its verbs. `action` must outlive it.
+/// Adds the verbs to an app named "relief". `action` must outlive it.
 void defineRelief(CLI::App& app, Action& action);
 
 /// Parses the command line and runs the verb.
@@ -64,11 +65,11 @@ struct ColliderFile {
     std::vector<std::byte> bytes;
     Collider collider;
 };
-/// Errors: those of loadCollider, with the file in front.
+/// Errors: those of loadCollider, prefixed with the file.
 [[nodiscard]] Result<ColliderFile> readColliderFile(const std::string& file, const ContainerLimits& limits);
 
-/// Derived from the options of the verbs: the README's table, Python's arguments, the fuzz dictionary of recipes; and the
-/// JSON Schemas of what `relief` prints.
+/// Texts derived from the options of the verbs: the README's tables, Python's arguments, the fuzz dictionary of recipes, and
+/// the JSON Schemas of the reports.
 [[nodiscard]] GeneratedTexts bakeTexts();
 
 }  // namespace relief

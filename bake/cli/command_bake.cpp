@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief bake: a mesh becomes a collider.
+// relief bake: bakes a mesh into a collider.
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -10,6 +10,7 @@
 #include "bake/cli/command_ground.h"
 #include "bake/cli/command_recipe.h"
 #include "bake/cli/command_world.h"
+#include "bake/cli/option_details.h"
 #include "bake/pipeline/bake.h"
 #include "bake/report/bake_report.h"
 #include "bake/verdict/report_text.h"
@@ -30,10 +31,10 @@ struct BakeCommand {
     std::string output;
     BakeOutputs outputs;
     BakeRecipeOptions recipe;
-    std::string world;  // a folder
+    std::string world;  // folder
 };
 
-/// Shows the stages of a bake.
+/// Shows the stages of a bake on the terminal.
 BakeWatcher watcherOf(Progress& progress, FileGuard& files) {
     BakeWatcher watcher;
     watcher.begin = [&progress](const char* stage) { progress.begin(stage); };
@@ -57,7 +58,7 @@ BakeWatcher watcherOf(Progress& progress, FileGuard& files) {
     return watcher;
 }
 
-/// Notices and warnings. Not before the bake has succeeded: one that fails prints one line.
+/// Logs notices and warnings. Call it after the bake has succeeded, because a failed bake prints one line only.
 void showNotices(BakeResult& result, std::size_t file_size) {
     const std::uint64_t in_memory = result.baked.collider.texelBytes();
     std::vector<std::string>& warnings = result.baked.report.warnings;
@@ -74,7 +75,7 @@ void showNotices(BakeResult& result, std::size_t file_size) {
     }
 }
 
-/// The collider, and the files beside it.
+/// Writes the collider and its depfile.
 Result<void> writeOutputs(const BakeCommand& command, const BakeResult& result,
                           std::span<const std::byte> bytes) {
     RELIEF_TRY(writeFile(command.output, bytes));
@@ -99,10 +100,10 @@ Result<void> report(const BakeCommand& command, const BakeResult& result, std::s
     return {};
 }
 
-/// A mesh, also one that moves.
+/// Bakes a mesh, animated or not.
 Result<void> runMeshCommand(BakeCommand& command, FileGuard& files) {
     if (command.request.mesh.empty()) {
-        return fail(ErrorCode::kUsage, "MESH is required; see relief bake --help");
+        return fail(ErrorCode::kUsage, "MESH is required; name a mesh file, or see relief bake --help");
     }
     const Stopwatch total;
     Progress progress({quotedPath(command.request.mesh), !command.common.quiet, command.request.time_limit});
@@ -122,7 +123,7 @@ Result<void> runMeshCommand(BakeCommand& command, FileGuard& files) {
     return report(command, result, bytes);
 }
 
-/// A recipe, a height map, a level or a mesh.
+/// Bakes a recipe, a height map, a level or a mesh.
 Result<void> runBake(BakeCommand& command, const CLI::App& verb, FileGuard& files) {
     if (!command.recipe.recipe.empty()) {
         return runRecipeCommand(command.recipe,
@@ -130,7 +131,7 @@ Result<void> runBake(BakeCommand& command, const CLI::App& verb, FileGuard& file
                                  command.outputs.depfile, command.outputs.json, files});
     }
     if (command.output.empty() && command.world.empty()) {
-        // A folder by itself has no name: bakes refuse it.
+        // A folder has no file name: bakes reject it.
         const std::filesystem::path mesh(command.request.mesh);
         command.output = mesh.filename().replace_extension(kColliderExtension).string();
     }
@@ -146,29 +147,36 @@ void addBake(CLI::App& app, Action& action) {
     auto command = std::make_shared<BakeCommand>();
     CLI::App& verb = addVerb(
         app, command->common, "bake",
-        "Bakes a mesh into a collider\n\nWithout --map and --paper it makes patches, small depth maps in an "
-        "octree,\nfor --budget bytes, --texel or --max-error.",
+        withDetails(
+            "Bake a mesh into a collider\n\n"
+            "By default, the collider consists of patches: small depth maps in an octree, 1 MB in all. Set "
+            "their size with --budget, their resolution with --texel, or their accuracy with --max-error. "
+            "Each part of the mesh becomes a solid, a shell or terrain, as rays through it suggest; --as "
+            "overrides this. The bake ends with a check of the result.",
+            "--map and --paper bake depth maps of the whole mesh instead. --animated bakes a mesh that "
+            "moves, --world a level of many meshes, --heights ground from a height map, and --recipe all "
+            "assets that a file lists."),
         "relief bake bunny.obj\n"
         "relief bake bunny.obj -o bunny.relief --budget 256kB\n"
         "relief bake bunny.obj -o bunny.relief --max-error 1%\n"
-        "relief bake rock.glb -o rock.relief --map cube:size=256 --map fixed8:dir=-y,size=512x256\n"
-        "relief bake hall.fbx -o hall.relief --map cube:center=0/2/0,compare=less --json\n"
-        "relief bake --recipe colliders.toml -j 4\n"
         "relief bake level.glb --world level --budget 16MB\n"
         "relief bake hero.glb --animated --clips walk.glb -o hero.relief\n"
-        "relief bake heights.png --heights spacing=1,low=0,high=500 -o ground.relief");
-    addOption(
-        verb, "MESH", command->request.mesh,
-        "The mesh: OBJ, STL, PLY, OFF, glTF, FBX, COLLADA, 3DS and more; or a height map, see --heights")
+        "relief bake heights.png --heights spacing=1,low=0,high=500 -o ground.relief\n"
+        "relief bake rock.glb -o rock.relief --map cube:size=256 --map fixed8:dir=-y,size=512x256\n"
+        "relief bake --recipe colliders.toml -j 4");
+    addOption(verb, "MESH", command->request.mesh,
+              "Mesh file: OBJ, STL, PLY, OFF, glTF, FBX, COLLADA, 3DS and more; with --heights, a height map")
         ->typeName("");
     addOption(verb, "-o,--output", command->output,
-              "The collider to write; - for standard output; by default MESH with .relief in place of its\n"
-              "extension, in the current folder")
+              "Collider to write; - for standard output (default: MESH with the extension .relief, in the "
+              "current folder)")
         ->valueText("OUT.relief");
     addFields(verb, command->request);
     addFields(verb, command->outputs);
     addRecipeOptions(verb, command->recipe);
     addWorldOption(verb, command->world);
+    addBakeDetails(verb);
+    groupBakeOptions(verb);
     onVerb(verb, [command, &verb, &action] {
         action = [command, &verb](FileGuard& files) { return runBake(*command, verb, files); };
     });

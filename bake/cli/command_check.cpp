@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief check: whether a container is sound, and how well a collider keeps to its mesh.
+// relief check: validates containers, and measures colliders against their meshes.
 #include <span>
 #include <tuple>
 
@@ -7,6 +7,7 @@
 #include "bake/cli/command_ground.h"
 #include "bake/cli/command_view.h"
 #include "bake/cli/command_world.h"
+#include "bake/cli/option_details.h"
 #include "bake/report/bake_report.h"
 #include "bake/report/inspect_report.h"
 #include "bake/report/mesh_check_report.h"
@@ -37,7 +38,7 @@ struct CheckCommand {
     bool json = false;
 };
 
-/// The animation of a sound container, which the inspection does not look into.
+/// Checks the animation of a valid container, which the inspection does not read.
 Result<void> checkAnimation(const std::vector<std::byte>& bytes, const ContainerLimits& limits) {
     const Collider collider = RELIEF_TRY(readContainer(bytes, limits));
     if (!collider.animation.empty()) {
@@ -47,7 +48,7 @@ Result<void> checkAnimation(const std::vector<std::byte>& bytes, const Container
     return {};
 }
 
-/// Without --mesh: prints the report of inspectContainer, also of a damaged file.
+/// Prints the report of inspectContainer, also for a damaged file.
 /// Errors: kIo, kLimit; kInvalidInput or Inspection::errorCode() if the file is damaged.
 Result<void> checkFile(const std::string& file, bool json, const ContainerLimits& limits) {
     const std::vector<std::byte> bytes = RELIEF_TRY(readFile(file, containerSizeMax(limits)));
@@ -66,7 +67,7 @@ Result<void> checkFile(const std::string& file, bool json, const ContainerLimits
     for (const Issue& issue : inspection.issues) {
         if (issue.severity() != Severity::kWarning) {
             const std::string map = issue.map >= 0 ? "map " + std::to_string(issue.map) + ": " : "";
-            return fail(inspection.errorCode(), quoted + " cannot be used: " + issue.id() + ", " + map +
+            return fail(inspection.errorCode(), quoted + " is not usable: " + issue.id() + ", " + map +
                                                     issue.message + cureOf(issue.code, inspection.major));
         }
     }
@@ -74,7 +75,7 @@ Result<void> checkFile(const std::string& file, bool json, const ContainerLimits
 }
 
 void addAdvice(const CheckCommand& command, const std::string& file, MeshCheck& run) {
-    // Of one that moves, all maps are given.
+    // The maps of an animated collider are fixed.
     if (run.recorded.request.animated ||
         (run.passes(command.max_error) && (command.max_error || run.wrongPercent() <= kGoodPercent))) {
         return;
@@ -100,7 +101,7 @@ std::string checkText(const MeshCheckReport& report) {
     if (run.repaired) {
         const std::string repaired = "the mesh repaired by " + run.recorded.request.repair.method + ", " +
                                      std::to_string(run.baked->triangles.size()) + " triangles";
-        const std::string original = run.mesh->name + " as it came";
+        const std::string original = run.mesh->name + " before repair";
         const auto& [judged, other, wrong] =
             report.max_error ? std::tuple(original, repaired, run.wrongPercent())
                              : std::tuple(repaired, original, run.original.accuracy.field.near.total());
@@ -130,8 +131,7 @@ Result<void> runCheck(const CheckCommand& command, const std::string& file, File
         return runWorldCheck(file, world);
     }
     if (command.within) {
-        return fail(ErrorCode::kUsage,
-                    "--within is for worlds and ground; leave it out for a collider of a mesh");
+        return fail(ErrorCode::kUsage, "--within applies only to worlds and ground; remove it");
     }
     if (command.request.mesh.empty()) {
         return checkFile(file, command.json, command.limits);
@@ -140,7 +140,7 @@ Result<void> runCheck(const CheckCommand& command, const std::string& file, File
     auto [container, collider] = RELIEF_TRY(readColliderFile(file, command.limits));
     MeshCheck run = RELIEF_TRY(check(command.request, std::move(collider)));
     showCheckWarnings(run);
-    // The files that the mesh refers to are known only now.
+    // Only the import finds the files that the mesh refers to.
     for (const std::string& read : run.imported->dependencies) {
         RELIEF_TRY(files.reads(read));
     }
@@ -151,13 +151,13 @@ Result<void> runCheck(const CheckCommand& command, const std::string& file, File
     const bool passed = run.passes(command.max_error);
     if (!passed && run.original.accuracy.field.near.total() <= double{*command.max_error}) {
         return fail(ErrorCode::kDifference, *lostPartsWarning(run.part_accuracy, run.parts, run.collider) +
-                                                "; --detail LENGTH leaves smaller ones out");
+                                                "; --detail LENGTH ignores shorter parts");
     }
     if (!passed) {
         return fail(ErrorCode::kDifference,
                     shortNumber(run.original.accuracy.field.near.total()) +
                         " % of the points near the surface are on the wrong side" +
-                        (run.repaired ? " of the mesh as it came" : "") + ", more than --max-error " +
+                        (run.repaired ? " of the mesh before repair" : "") + ", more than --max-error " +
                         shortest(*command.max_error) + " %; " +
                         (floatsLimit(*run.mesh, run.wrongPercent()) ? "move the mesh to the origin"
                                                                     : "bake with larger or more maps"));
@@ -171,20 +171,23 @@ void addCheck(CLI::App& app, Action& action) {
     auto command = std::make_shared<CheckCommand>();
     CLI::App& verb = addVerb(
         app, command->common, "check",
-        "Checks a container, or measures a collider against its mesh\n\nWithout --mesh: every issue of the "
-        "file by its code (formats/README.md), and what of a damaged file can be trusted.\nWith --mesh: a "
-        "verdict, the three worst places and why they are wrong, commands that help, each tried in memory\n"
-        "before it is advised; and the share of points on the wrong side, near the surface and anywhere in "
-        "the box,\nthe errors of distance and normal, and the share of the surface that no map sees. Truth "
-        "is the parity of\nrays through the mesh, whatever the maps say; of a collider that was baked with "
-        "--repair, the repaired mesh too.\n"
-        "Of a world, a file .json that relief bake --world wrote: whether its containers are there and "
-        "right, and with "
-        "--mesh\nthe share of points on the wrong side near each body, the ten worst, and meshes that lose "
-        "parts.\n"
-        "Of ground, a collider or a world that relief bake --heights wrote, with the height map as --mesh: "
-        "the share of points on the wrong side,\nnear seams between tiles too, how far the surface is off "
-        "along y, and the ten worst places.",
+        withDetails(
+            "Check a container, or measure a collider against its mesh\n\n"
+            "Without --mesh, it lists the issues of each file, with their codes, and the parts of a damaged "
+            "file that are usable. With --mesh, it prints a verdict, the three worst places with their "
+            "causes, and commands that fix them.",
+            "formats/README.md lists the codes.\n"
+            "With --mesh, the report also contains the percentage of wrong points near the surface and in "
+            "the whole box, the errors of distance and normal, and the fraction of the surface that no map "
+            "sees. Each suggested command has been tried in memory. Truth is the parity of rays through the "
+            "mesh, independent of the maps; for a collider baked with --repair, also through the repaired "
+            "mesh.\n"
+            "For a world.json of relief bake --world, it checks that all containers are present and correct. "
+            "With --mesh, it prints the percentage of wrong points near each body, the ten worst places, and "
+            "the meshes that lose parts.\n"
+            "For ground of relief bake --heights, --mesh names the height map. It prints the percentage of "
+            "wrong points near the surface and near seams between tiles, the error along y, and the ten "
+            "worst places."),
         "relief check bunny.relief\n"
         "relief check *.relief\n"
         "relief check bunny.relief --mesh bunny.obj\n"
@@ -193,41 +196,46 @@ void addCheck(CLI::App& app, Action& action) {
         "relief check level/world.json --mesh level.glb\n"
         "relief check ground/world.json --mesh heights.png");
     addOption(verb, "FILE", command->files,
-              "The collider, or the world; - for standard input. Several without --mesh")
+              "Collider or world.json; - for standard input; several only without --mesh")
         ->typeName("")
         ->required();
     OptionRef mesh = addMeshOptions(verb, command->request);
     addOption(verb, "--max-error", command->max_error,
-              "Exit with 7 if more than this share of the points near the surface, in percent, is on "
-              "the wrong side, or a part is lost")
+              "Exit with code 7 if more than this percentage of points near the surface is wrong, or a part "
+              "is lost")
         ->valueText("PCT")
         ->transform(percent())
         ->needs(mesh);
-    addOption(verb, "--heights", command->heights,
-              "--mesh is a height map, and the collider or world its ground. key=value,... as relief bake "
-              "has them, by default those that it was baked with")
+    addOption(
+        verb, "--heights", command->heights,
+        "Settings of the height map --mesh: KEY=VALUE,... as in relief bake (default: those of the bake)")
         ->valueText("SPEC")
         ->needs(mesh);
-    addOption(verb, "--within", command->within,
-              "Of a world or ground: measure at points up to this far from the surface, in world units "
-              "(default: of a body nearly all within 1.5 % of its longest side, of ground the distance "
-              "between samples)")
+    addOption(
+        verb, "--within", command->within,
+        withDetails(
+            "Greatest distance of sample points from the surface of a world or ground, in world units",
+            "By default, nearly all points of a body lie within 1.5 % of its longest side, and those of "
+            "ground within the distance between samples."))
         ->valueText("LENGTH")
         ->range(1e-6, 1e15)
         ->needs(mesh);
     addOption(verb, "--html", command->html,
-              "Also write the page of relief view, with the findings in it: verdict, places to fly to, "
-              "what to do")
+              "Also write the page of relief view with the verdict, the worst places and the remedies")
         ->valueText("OUT")
         ->needs(mesh);
     addFields(verb, command->request.import);
     addFields(verb, command->request.import_limits);
     addMemoryOption(verb, command->limits);
-    addFlag(verb, "--json", command->json, "Print JSON");
+    addFlag(verb, "--json", command->json, "Print the report as JSON");
+    groupVerbOptions(verb,
+                     {{"Comparison with the mesh",
+                       {"--mesh", "--max-error", "--samples", "--seed", "--detail", "--heights", "--within"}},
+                      {"Output", {"--html", "--json"}}});
     onVerb(verb, [command, &action] {
         action = [command](FileGuard& files) -> Result<void> {
             if (command->files.size() > 1 && !command->request.mesh.empty()) {
-                return fail(ErrorCode::kUsage, "--mesh is for one FILE; check each collider by itself");
+                return fail(ErrorCode::kUsage, "--mesh needs a single FILE; check each collider separately");
             }
             return forEachFile(command->files,
                                [&](const std::string& file) { return runCheck(*command, file, files); });

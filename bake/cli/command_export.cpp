@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief export: maps and views of patches as OpenEXR; or what a program of one's own uploads.
+// relief export: writes maps and views as OpenEXR, data for other renderers, level sets and meshes.
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "bake/cli/command.h"
+#include "bake/cli/option_details.h"
 #include "bake/images/map_image.h"
 #include "bake/images/view_image.h"
 #include "bake/volume/level_set.h"
@@ -64,7 +65,7 @@ Json describe(const Collider& collider, const GpuImage& image, TexelKind kind) {
             {"type", format.type}};
 }
 
-/// gpu.json, block.bin, collider.glsl and a file for each texture that holds something: what exportForGpu() writes.
+/// The files that exportForGpu() writes: gpu.json, block.bin, collider.glsl, and one per texture in use.
 std::vector<std::string> gpuFileNames(const Collider& collider) {
     std::vector<std::string> names{kBlock, kGlsl, kSizes};
     for (const TexelKind kind : kKinds) {
@@ -75,7 +76,7 @@ std::vector<std::string> gpuFileNames(const Collider& collider) {
     return names;
 }
 
-/// Writes the files that a program of one's own uploads: runtime/layout/LAYOUT.md.
+/// Writes the files for other renderers: runtime/layout/LAYOUT.md.
 Result<void> exportForGpu(const Collider& collider, const std::filesystem::path& folder) {
     const GpuImage image = RELIEF_TRY(gpuImage(collider));
     const std::string core = RELIEF_TRY(shaderText("collider/collider.glsl"));
@@ -109,7 +110,7 @@ struct NamedImage {
     std::function<Result<ExrImage>()> draw;
 };
 
-/// One for each face of a map, and the six views if any map is of patches. \param collider  must outlive them.
+/// One image per face of a map, and six views if any map consists of patches. \param collider  must outlive the images
 std::vector<NamedImage> imagesOf(const Collider& collider, std::uint32_t resolution) {
     std::vector<NamedImage> images;
     for (std::size_t i = 0; i < collider.maps.size(); ++i) {
@@ -138,7 +139,7 @@ Result<void> exportImages(const std::vector<NamedImage>& images, const std::file
     return {};
 }
 
-/// Makes a folder for these files, which must replace no other file of the run.
+/// Creates a folder for these files. Fails if they would overwrite another file of the run.
 Result<void> prepareFolder(const std::filesystem::path& folder, const std::vector<std::string>& names,
                            const char* option, FileGuard& files) {
     for (const std::string& name : names) {
@@ -150,22 +151,21 @@ Result<void> prepareFolder(const std::filesystem::path& folder, const std::vecto
 Result<void> checkTogether(const ExportCommand& command) {
     const bool grids = !command.vdb.empty() || !command.mesh.empty();
     if (command.output.empty() && command.gpu.empty() && !grids) {
-        return fail(ErrorCode::kUsage,
-                    "nothing to write; give a folder with -o or --gpu, or a file with --vdb or --mesh");
+        return fail(ErrorCode::kUsage, "no output; add -o DIR, --gpu DIR, --vdb FILE or --mesh FILE");
     }
     if (command.voxels && !grids) {
-        return fail(ErrorCode::kUsage, "--voxels does nothing without --vdb or --mesh; add one of them");
+        return fail(ErrorCode::kUsage, "--voxels has no effect without --vdb or --mesh; add one of them");
     }
     if (command.resolution && command.output.empty()) {
-        return fail(ErrorCode::kUsage, "--resolution does nothing without -o; add it");
+        return fail(ErrorCode::kUsage, "--resolution has no effect without -o; add -o DIR");
     }
     return {};
 }
 
-/// Below that share, what is missing is a texel here and there.
+/// Smaller missing fractions are single texels, and not reported.
 constexpr double kMissingShown = 1e-3;
 
-/// The field on a grid, and its surface.
+/// Samples the field on a grid, and writes the level set and its surface.
 Result<void> exportGrids(const Collider& collider, const ExportCommand& command) {
     FieldGridOptions options;
     options.voxels = command.voxels.value_or(options.voxels);
@@ -177,8 +177,8 @@ Result<void> exportGrids(const Collider& collider, const ExportCommand& command)
     const FieldGrids grids = RELIEF_TRY(withPrefix(shownInput(command.file), encodeGrids(collider, options)));
     if (grids.missing >= kMissingShown) {
         spdlog::warn(
-            "{}: some {:.2g} % of its surface is missing: parts thinner than a voxel, {:.3g} wide; "
-            "ask for more voxels than --voxels {}",
+            "{}: about {:.2g} % of the surface is missing, where parts are thinner than a voxel of {:.3g}; "
+            "raise --voxels above {}",
             shownInput(command.file), 100.0 * grids.missing, grids.voxel, options.voxels);
     }
     if (options.level_set) {
@@ -202,8 +202,7 @@ Result<void> runExport(const ExportCommand& command, FileGuard& files) {
     if (command.resolution && !collider.hasPatches()) {
         return fail(
             ErrorCode::kUsage,
-            shownInput(command.file) +
-                " has no patches, and the images of its maps have their sizes; leave out --resolution");
+            shownInput(command.file) + " has no patches, and its maps have fixed sizes; remove --resolution");
     }
     const std::vector<NamedImage> images = imagesOf(collider, command.resolution.value_or(kResolution));
     const std::vector<std::string> gpu = gpuFileNames(collider);
@@ -233,37 +232,46 @@ void addExport(CLI::App& app, Action& action) {
     auto command = std::make_shared<ExportCommand>();
     CLI::App& verb = addVerb(
         app, command->common, "export",
-        "Writes the maps as pictures, the field as a level set, the surface as a mesh\n\n"
-        "-o writes OpenEXR images. Maps: map0_front-back.exr, and map3_cube_+x.exr to map3_cube_-z.exr for\n"
-        "the faces of a cube, with the channels Z and N.X N.Y N.Z, and ZBack and NBack.X NBack.Y NBack.Z\n"
-        "of front-back maps. Z is in object units from the near plane or the cube's centre.\n"
-        "Patches: six orthographic views of the collider, view_+x.exr to view_-z.exr, named by their\n"
-        "direction, with the channels depth.front and depth.back of the first and the last surface, in\n"
-        "object units from the near face of the bounds, and normal.X normal.Y normal.Z of the first one.\n"
-        "Z and depth are +inf where there is no surface.\n"
-        "--gpu writes what a program without Relief uploads: raw textures, the uniform block, GLSL, and the\n"
-        "sizes of all as JSON (runtime/layout/LAYOUT.md).\n"
-        "--vdb writes signed distances as a level set of OpenVDB, and --mesh the surface of that as PLY",
+        withDetails(
+            "Write maps as images, data for your renderer, a level set or a mesh\n\n"
+            "Choose at least one of -o (OpenEXR images), --gpu (textures and GLSL for your engine), --vdb "
+            "(OpenVDB level set) and --mesh (PLY).",
+            "-o writes one image per map, such as map0_front-back.exr, and per face of a cube, "
+            "map3_cube_+x.exr to map3_cube_-z.exr. Channels are Z and N.X, N.Y, N.Z; front-back maps also "
+            "have ZBack and NBack.X, NBack.Y, NBack.Z. Z is the distance from the near plane or the cube's "
+            "centre, in object units.\n"
+            "For patches, -o writes six orthographic views, view_+x.exr to view_-z.exr, named by their "
+            "direction. depth.front and depth.back are the distances of the first and last surface from the "
+            "near face of the bounds, in object units; normal.X, normal.Y and normal.Z are the normal of the "
+            "first surface. Z and depth are +inf without a surface.\n"
+            "--gpu writes raw textures, the uniform block, GLSL, and their sizes as JSON "
+            "(runtime/layout/LAYOUT.md)."),
         "relief export bunny.relief -o maps/ --resolution 1024\n"
         "relief export bunny.relief --gpu engine/bunny/\n"
         "relief export bunny.relief --vdb bunny.vdb --voxels 256\n"
         "relief export bunny.relief --mesh bunny.ply");
-    addOption(verb, "FILE", command->file, "The collider; - for standard input")->typeName("")->required();
-    addOption(verb, "-o,--output", command->output, "The folder; made if it is missing")->valueText("DIR");
+    addOption(verb, "FILE", command->file, "Collider; - for standard input")->typeName("")->required();
+    addOption(verb, "-o,--output", command->output, "Folder for OpenEXR images; created if missing")
+        ->valueText("DIR");
     addOption(verb, "--resolution", command->resolution,
-              "Texels along the longer side of each view of -o; default 512")
+              "Texels along the longer side of each view of patches (default: 512)")
         ->valueText("N")
         ->transform(wholeNumber(kViewSizeMin, kViewSizeMax));
-    addOption(verb, "--gpu", command->gpu, "The folder for textures, block and GLSL; made if it is missing")
+    addOption(verb, "--gpu", command->gpu,
+              "Folder for the data that your own renderer uploads; created if missing")
         ->valueText("DIR");
-    addOption(verb, "--vdb", command->vdb, "The level set, \"surface\"; - for standard output")
+    addOption(verb, "--vdb", command->vdb,
+              "Level set of signed distances, named \"surface\"; - for standard output")
         ->valueText("OUT.vdb");
-    addOption(verb, "--mesh", command->mesh, "The surface as PLY; - for standard output")
+    addOption(verb, "--mesh", command->mesh, "Surface of that level set, as PLY; - for standard output")
         ->valueText("OUT.ply");
-    addOption(verb, "--voxels", command->voxels, "Of --vdb and --mesh, along the longest side; default 128")
+    addOption(verb, "--voxels", command->voxels,
+              "Voxels of --vdb and --mesh along the longest side (default: 128)")
         ->valueText("N")
         ->transform(wholeNumber(kVoxelsMin, kVoxelsMax));
     addMemoryOption(verb, command->limits);
+    groupVerbOptions(verb, {{"Output", {"--output", "--gpu", "--vdb", "--mesh"}},
+                            {"Quality", {"--resolution", "--voxels"}}});
     onVerb(verb, [command, &action] {
         action = [command](FileGuard& files) { return runExport(*command, files); };
     });

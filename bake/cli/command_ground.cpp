@@ -24,7 +24,7 @@ Result<void> preflightGround(const std::string& folder, const WorldCall& call) {
         return preflightWorld(folder, call);
     }
     if (call.request.mesh.empty()) {
-        return fail(ErrorCode::kUsage, "MESH, the height map, is required; see relief bake --help");
+        return fail(ErrorCode::kUsage, "MESH is required; name a height map, or see relief bake --help");
     }
     return preflightBake(call.request, call.output, call.outputs, call.files);
 }
@@ -38,7 +38,7 @@ Result<void> writeOutputs(const std::string& written, const std::string& folder,
                                         : writeDepfile(call.outputs.depfile, {written}, {call.request.mesh});
 }
 
-/// The world's, or the collider as the only body of one.
+/// The field of a world, or of a collider as the only body of a world.
 Result<WorldField> fieldOf(const std::string& file, const ContainerLimits& limits) {
     if (namesWorld(file)) {
         return WorldField(RELIEF_TRY(loadWorld(file, limits)));
@@ -56,12 +56,11 @@ Result<void> checkOptions(const std::string& file, const WorldCheckCall& call) {
     const std::string of_import = importOptionOf(call.request.import, of_mesh);
     const std::string option = !call.html.empty() ? "--html" : call.request.detail ? "--detail" : of_import;
     if (!option.empty()) {
-        return fail(ErrorCode::kUsage,
-                    option + " is for meshes, and does nothing with a height map; leave it out");
+        return fail(ErrorCode::kUsage, option + " has no effect with a height map; remove it");
     }
     if (file == "-" && call.request.mesh == "-") {
         return fail(ErrorCode::kUsage,
-                    "the collider and the height map cannot both be standard input; name a file");
+                    "the collider and the height map cannot both be standard input; name a file for one");
     }
     return {};
 }
@@ -71,7 +70,7 @@ bool isHeightMapExtension(const std::string& extension) {
     return std::ranges::find(kExtensions, lowerCase(extension)) != kExtensions.end();
 }
 
-/// \param mesh  of --mesh.
+/// Returns the settings that the ground records. \param mesh  the value of --mesh
 Result<HeightsSpec> recorded(const WorldField& field, const std::string& name, const std::string& mesh) {
     Result<HeightsSpec> heights = recordedHeights(field, name);
     const std::string extension = std::filesystem::path(mesh).extension().string();
@@ -121,9 +120,8 @@ Result<void> runGroundCheck(const std::string& file, const GroundCheckCall& call
     if (world.max_error && accuracy.near.wrong.total() > double{*world.max_error}) {
         return fail(ErrorCode::kDifference,
                     shortNumber(accuracy.near.wrong.total()) +
-                        " % of the points near the surface are on the wrong side, more than "
-                        "--max-error " +
-                        shortest(*world.max_error) + " %; bake it again from this height map");
+                        " % of the points near the surface are on the wrong side, more than --max-error " +
+                        shortest(*world.max_error) + " %; bake this height map again");
     }
     return {};
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `relief bake --heights`: a height map becomes a collider, or with --world a folder of tiles and the file that places them.
-// `relief check` of either against the height map.
+// `relief bake --heights` bakes a height map into a collider, or with --world into a folder of tiles and a file that places them.
+// `relief check` measures either against the height map.
 #pragma once
 
 #include <string>
@@ -10,23 +10,23 @@
 
 namespace relief {
 
-/// \param folder  of --world; empty without it.
+/// \param folder  the value of --world, or empty
 /// Errors: those of settingsOf, HeightMap::open and bakeGroundOf; kUsage, kIo.
 [[nodiscard]] Result<void> runGroundCommand(const std::string& folder, const WorldCall& call);
 
-/// Whether `relief check` takes the file of --mesh for a height map without --heights: a file, or standard input, whose extension
-/// is that of no mesh format.
+/// Returns whether `relief check` reads the file of --mesh as a height map without --heights: standard input or a file whose
+/// extension is not that of a mesh format.
 [[nodiscard]] bool namesHeightMap(const std::string& file);
 
 struct GroundCheckCall {
-    const WorldCheckCall& world;  ///< what a check of a world takes, of a collider too
-    const std::string& heights;   ///< HeightsSpec; empty: those that the ground was baked with
+    const WorldCheckCall& world;  ///< options of a check of a world or a collider
+    const std::string& heights;   ///< HeightsSpec; empty: the settings of the bake
     bool quiet;
 };
 
-/// \param file  the container or the world.
-/// Errors: those of readColliderFile, loadWorld, recordedHeights and checkGround; kUsage; kUnsupported: neither a height map by its
-/// extension nor by what the ground records; kDifference: more than max_error.
+/// \param file  the container or the world
+/// Errors: those of readColliderFile, loadWorld, recordedHeights and checkGround; kUsage; kUnsupported if neither the
+/// extension of --mesh nor the record of the ground names a height map; kDifference if max_error is exceeded.
 [[nodiscard]] Result<void> runGroundCheck(const std::string& file, const GroundCheckCall& call);
 
 }  // namespace relief

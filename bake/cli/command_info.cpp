@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief info: what is in a container, or in a world.
+// relief info: shows the contents of containers and worlds.
 
 #include "bake/cli/command.h"
 #include "bake/cli/command_world.h"
+#include "bake/cli/option_details.h"
 #include "bake/cli/world_info.h"
 #include "bake/report/collider_report.h"
 #include "formats/base/result.h"
@@ -14,7 +15,7 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t kLineMost = 80;  // characters of options on one line
+constexpr std::size_t kLineMost = 80;  // longest line of options, in characters
 
 struct InfoCommand {
     CommonOptions common;
@@ -31,7 +32,7 @@ std::string vectorText(const glm::vec3& v) {
     return "(" + shortest(v.x) + ", " + shortest(v.y) + ", " + shortest(v.z) + ")";
 }
 
-/// A line, or one for each option where that would be long.
+/// One line, or one per option if that line is too long.
 std::string bakedText(const Provenance& from) {
     const std::string by = "baked    by " + from.tool_version + " with";
     const std::string options = from.optionsText();
@@ -91,7 +92,7 @@ Result<void> runInfo(const InfoCommand& command, const std::string& file) {
         const WorldInfo info = RELIEF_TRY(readWorldInfo(file, command.limits));
         return printOut(command.json ? jsonTextOf(info) : worldInfoText(info));
     }
-    // Checked as a whole, payloads included.
+    // Validates the whole file, including payloads.
     const ColliderFile shown = RELIEF_TRY(readColliderFile(file, command.limits));
     const ContainerInfo info =
         RELIEF_TRY(withPrefix(shownInput(file), readContainerInfo(shown.bytes, command.limits)));
@@ -109,18 +110,22 @@ Result<void> runInfo(const InfoCommand& command, const std::string& file) {
 
 void addInfo(CLI::App& app, Action& action) {
     auto command = std::make_shared<InfoCommand>();
-    CLI::App& verb = addVerb(app, command->common, "info",
-                             "Shows what is in a collider, and where it comes from; or what is in a world",
-                             "relief info bunny.relief\n"
-                             "relief info *.relief\n"
-                             "relief info level/world.json\n"
-                             "relief info bunny.relief --json | jq .maps[0].object_to_map");
+    CLI::App& verb = addVerb(
+        app, command->common, "info",
+        "Show the contents and origin of colliders and worlds\n\n"
+        "It lists the maps with their formats and sizes, the bounds, the source mesh, and the options of the "
+        "bake.",
+        "relief info bunny.relief\n"
+        "relief info *.relief\n"
+        "relief info level/world.json\n"
+        "relief info bunny.relief --json | jq .maps[0].object_to_map");
     addOption(verb, "FILE", command->files,
-              "The colliders, or files world.json; - for a collider on standard input")
+              "Colliders or world.json files; - for a collider on standard input")
         ->typeName("")
         ->required();
     addMemoryOption(verb, command->limits);
-    addFlag(verb, "--json", command->json, "Print JSON");
+    addFlag(verb, "--json", command->json, "Print the report as JSON");
+    groupVerbOptions(verb, {{"Output", {"--json"}}});
     onVerb(verb, [command, &action] {
         action = [command](FileGuard&) {
             return forEachFile(command->files,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief query: the field at points.
+// relief query: evaluates the field at points.
 #include <spdlog/spdlog.h>
 #include <tbb/parallel_for.h>
 
@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "bake/cli/command.h"
+#include "bake/cli/option_details.h"
 #include "bake/report/points_csv.h"
 #include "formats/base/file_io.h"
 #include "formats/container.h"
@@ -29,7 +30,7 @@ struct QueryCommand {
     std::optional<DistanceTo> distance;
 };
 
-/// What is printed of the nearest surface: its distance, normal and map.
+/// The printed values of the nearest surface: its distance, normal and map.
 FieldSample toSample(const SurfaceSample& nearest) {
     return {nearest.distance, nearest.normal, nearest.map};
 }
@@ -46,10 +47,11 @@ std::vector<FieldSample> sampled(const Collider& collider, std::span<const glm::
 Result<std::vector<FieldSample>> sampledWorld(const QueryCommand& command, std::span<const glm::vec3> points,
                                               FileGuard& files) {
     if (command.distance == DistanceTo::kNearest) {
-        return fail(ErrorCode::kUsage,
-                    quotedPath(command.file) +
-                        " is a world, whose distances are those to planes; give --distance "
-                        "plane, or query one of its colliders");
+        return fail(
+            ErrorCode::kUsage,
+            quotedPath(command.file) +
+                " is a world, which only has distances to planes; use --distance plane, or query one of its "
+                "colliders");
     }
     const WorldField field(RELIEF_TRY(loadWorld(command.file, command.limits)));
     const std::filesystem::path folder = std::filesystem::path(command.file).parent_path();
@@ -68,7 +70,7 @@ Result<std::vector<FieldSample>> sampledWorld(const QueryCommand& command, std::
 Result<void> runQuery(const QueryCommand& command, FileGuard& files) {
     if (command.file == "-" && command.points == "-") {
         return fail(ErrorCode::kUsage,
-                    "FILE and --points cannot both be standard input; give one of them a file");
+                    "FILE and --points cannot both be standard input; name a file for one");
     }
     RELIEF_TRY(files.reads(command.file));
     RELIEF_TRY(files.reads(command.points));
@@ -92,27 +94,32 @@ void addQuery(CLI::App& app, Action& action) {
     auto command = std::make_shared<QueryCommand>();
     CLI::App& verb = addVerb(
         app, command->common, "query",
-        "Evaluates the field at points\n\nA line of the output is x,y,z,f,nx,ny,nz,map: signed "
-        "distance to the nearest surface, its normal, its map.\nf is negative inside, inf where a point "
-        "is outside and no more is known, and empty where no map votes.\nWith --distance plane they are "
-        "those of the plane that decides the side; the side is the same.\n"
-        "Of a world they are always those of planes, and the last number is the body",
+        withDetails(
+            "Evaluate a collider's field at points\n\n"
+            "Each output line is x,y,z,f,nx,ny,nz,map: the signed distance f to the nearest surface, its "
+            "normal, and its map. f is negative inside, inf outside at an unknown distance, and empty if no "
+            "map votes.",
+            "With --distance plane, f and the normal are those of the plane that decides the side; the side "
+            "is the same.\n"
+            "For a world, they are always those of planes, and the last number is the body."),
         "relief query bunny.relief --points in.csv -o out.csv\n"
         "echo 0,0.1,0 | relief query bunny.relief --points - -o - --distance plane");
-    addOption(verb, "FILE", command->file, "The collider, or the world; - for standard input")
+    addOption(verb, "FILE", command->file, "Collider or world.json; - for a collider on standard input")
         ->typeName("")
         ->required();
-    addOption(verb, "--points", command->points, "Lines x,y,z in object space; - for standard input")
+    addOption(verb, "--points", command->points,
+              "Points to evaluate, one x,y,z per line, in object space; - for standard input (required)")
         ->valueText("IN.csv")
         ->required();
-    addOption(verb, "-o,--output", command->output, "The samples; - for standard output")
+    addOption(verb, "-o,--output", command->output, "Output file; - for standard output (required)")
         ->valueText("OUT.csv")
         ->required();
-    addWords(verb, "--distance", command->distance,
-             WordsFor<DistanceTo>{{"nearest", DistanceTo::kNearest}, {"plane", DistanceTo::kPlane}},
-             "To the nearest surface, which is searched for (default), or to the plane that decides\n"
-             "the side, which is what particles collide with");
+    addWords(
+        verb, "--distance", command->distance,
+        WordsFor<DistanceTo>{{"nearest", DistanceTo::kNearest}, {"plane", DistanceTo::kPlane}},
+        "Distance to the nearest surface, or to the plane with which particles collide (default: nearest)");
     addMemoryOption(verb, command->limits);
+    groupVerbOptions(verb, {{"Input and output", {"--points", "--output", "--distance"}}});
     onVerb(verb, [command, &action] {
         action = [command](FileGuard& files) { return runQuery(*command, files); };
     });

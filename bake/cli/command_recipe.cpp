@@ -36,7 +36,7 @@ constexpr std::uint64_t kShardsMax = 1'000'000;
 constexpr std::string_view kClips = "--clips=";
 constexpr std::string_view kHeights = "--heights=";
 
-/// Options of a bake that a run of a recipe has its own place for: they are no keys.
+/// Options that apply to the whole run, and are therefore not keys of recipes.
 constexpr std::array<std::string_view, 3> kRunOptions = {"threads", "json", "depfile"};
 
 std::string keyOf(const FieldWords& field) {
@@ -52,24 +52,23 @@ std::vector<FieldWords> fieldsOfAsset() {
     return all;
 }
 
-/// Options that a recipe has its own place for.
+/// Returns an error if an option is set that belongs in the recipe.
 Result<void> checkOptions(const RecipeCall& call) {
     const std::vector<RecipeKey> keys = recipeKeys();
     for (const GivenOption& option : givenOptions(call.verb)) {
         const std::vector<std::string>& names = option.long_names;
         if (names.empty()) {
-            return fail(ErrorCode::kUsage,
-                        option.name + " and --recipe are two ways to name meshes; leave one out");
+            return fail(ErrorCode::kUsage, option.name + " and --recipe both name meshes; remove one");
         }
         if (std::ranges::find(keys, names[0], &RecipeKey::name) != keys.end()) {
-            return fail(ErrorCode::kUsage, "--" + names[0] + " does nothing beside --recipe; write " +
+            return fail(ErrorCode::kUsage, "--" + names[0] + " has no effect with --recipe; write " +
                                                names[0] + " = … under [defaults] in the recipe");
         }
     }
     return {};
 }
 
-/// Whether a bake takes these options.
+/// Checks that a bake accepts these options.
 Result<void> checkAsset(const RecipeOptions& options, bool is_world) {
     BakeRequest request;
     BakeOutputs outputs;
@@ -85,7 +84,7 @@ Result<void> checkAsset(const RecipeOptions& options, bool is_world) {
     return is_world ? checkWorldRequest(request) : Result<void>();
 }
 
-/// Every different set of options is tried before anything is baked.
+/// Checks every distinct set of options before the first bake.
 Result<void> checkAssets(const std::vector<RecipeAsset>& assets) {
     std::set<std::pair<bool, std::vector<std::string>>> known;
     for (const RecipeAsset& asset : assets) {
@@ -125,17 +124,18 @@ Result<RecipeRun> runOf(const BakeRecipeOptions& options, const RecipeCall& call
     run.dry_run = options.dry_run;
     run.at_once = call.threads.value_or(std::max(1U, std::thread::hardware_concurrency()));
     if (call.output == "-") {
-        return fail(ErrorCode::kUsage, "--output is a folder beside --recipe, and not standard output");
+        return fail(ErrorCode::kUsage,
+                    "--output is a folder with --recipe, and cannot be standard output; name a folder");
     }
     return run;
 }
 
-/// Files that are written beside the outputs.
+/// Checks the files that are written in addition to the outputs.
 Result<void> preflight(const BakeRecipeOptions& options, const RecipeCall& call, const RecipeRun& run,
                        FileGuard& files) {
     for (const std::string& file : {options.stamp, call.depfile}) {
         if (file == "-") {
-            return fail(ErrorCode::kUsage, "--stamp and --depfile cannot be standard output; name files");
+            return fail(ErrorCode::kUsage, "--stamp and --depfile cannot be standard output; name a file");
         }
     }
     const fs::path made = run.dry_run ? fs::path() : run.output_folder;
@@ -165,21 +165,21 @@ Result<void> verdict(const std::vector<AssetResult>& assets, const RecipeCounts&
             return fail(asset.error.code, std::to_string(counts.of(AssetState::kFailed)) + " of " +
                                               std::to_string(counts.all()) + " assets failed, first " +
                                               quotedPath(asset.job.output) +
-                                              "; mend what is said above and run the recipe again");
+                                              "; fix the errors above and run the recipe again");
         }
     }
     return {};
 }
 
-/// What a run of a recipe works on.
+/// The work of a run of a recipe.
 struct RecipeWork {
     RecipeRun run;
-    std::vector<RecipeJob> jobs;    ///< of the shard
-    std::vector<fs::path> folders;  ///< that patterns looked through
-    FileGuard files;                ///< knows all that is read and written, of other shards too
+    std::vector<RecipeJob> jobs;    ///< jobs of the shard
+    std::vector<fs::path> folders;  ///< folders that patterns searched
+    FileGuard files;                ///< all files that are read and written, also by other shards
 };
 
-/// Reads the recipe and plans the run; bakes and writes nothing.
+/// Reads the recipe and plans the run, without writing anything.
 Result<RecipeWork> plan(const BakeRecipeOptions& options, const RecipeCall& call) {
     RecipeWork work;
     RELIEF_TRY(checkOptions(call));
@@ -199,7 +199,7 @@ Result<RecipeWork> plan(const BakeRecipeOptions& options, const RecipeCall& call
     return work;
 }
 
-/// Bakes what is not up to date, and shows progress: a line for each asset that was baked.
+/// Bakes the assets that are not up to date, and prints a line for each.
 Result<RecipeResult> bakeAll(RecipeWork& work, bool shown, RecipeEvents& events) {
     RecipeRun run = work.run;
     std::size_t done = 0;
@@ -225,15 +225,15 @@ Result<RecipeResult> bakeAll(RecipeWork& work, bool shown, RecipeEvents& events)
     return result;
 }
 
-/// Adds the file that it was read from, and those that this refers to.
-/// \param from  with dependencies and their hashes.
+/// Adds the file that `from` was read from, and the files that it refers to.
+/// \param from  an import with dependencies and their hashes
 void addFiles(const auto& from, const fs::path& folder, std::vector<InputFile>& files) {
     for (std::size_t i = 0; i < from.dependencies.size(); ++i) {
         files.push_back({nameInRecipe(from.dependencies[i], folder), from.dependency_hashes[i]});
     }
 }
 
-/// Whether a bake reads the file alone: a height map, or a mesh that refers to no other.
+/// Returns whether a bake reads only this file: a height map, or a mesh that refers to no other file.
 bool isWhole(const RecipeJob& job) {
     if (std::ranges::any_of(job.options, [](const auto& word) { return word.starts_with(kHeights); })) {
         return true;
@@ -243,7 +243,7 @@ bool isWhole(const RecipeJob& job) {
     return !job.mesh_is_folder && format != nullptr && format->whole;
 }
 
-/// The mesh and all that it refers to; nullopt if that cannot be read.
+/// The mesh and all files that it refers to; nullopt if they cannot be read.
 std::optional<std::vector<InputFile>> filesOfMesh(const RecipeJob& job, const fs::path& folder) {
     std::vector<InputFile> files;
     if (isWhole(job) || job.mesh_is_folder) {
@@ -287,8 +287,8 @@ std::optional<std::string> assetKeyOf(const RecipeJob& job, const std::string& t
     return files ? std::optional(assetKey(tool, job.options, std::move(*files))) : std::nullopt;
 }
 
-/// Gives keys to the assets of a dry run. Reads their meshes as far as other files belong to them; an asset whose mesh
-/// cannot be read gets none.
+/// Computes the keys of the assets of a dry run. It reads meshes that may refer to other files. An asset has no key if its mesh
+/// cannot be read.
 Result<void> addKeys(std::vector<AssetResult>& assets, const RecipeRun& run) {
     const std::string tool = RELIEF_TRY(toolIdentity());
     const fs::path folder = recipeFolder(run.recipe);
@@ -300,7 +300,7 @@ Result<void> addKeys(std::vector<AssetResult>& assets, const RecipeRun& run) {
     return {};
 }
 
-/// Chooses what standard output carries.
+/// Prints the report or list of the run to standard output.
 Result<void> printResult(const BakeRecipeOptions& options, const RecipeCall& call, const RecipeRun& run,
                          const RecipeResult& result, double ms) {
     if (!call.json) {
@@ -312,13 +312,13 @@ Result<void> printResult(const BakeRecipeOptions& options, const RecipeCall& cal
     return printOut(jsonTextOf(report));
 }
 
-/// The files for build systems, once everything is up to date.
+/// Writes the files for build systems, after everything is up to date.
 Result<void> writeFiles(const BakeRecipeOptions& options, const RecipeCall& call, RecipeWork& work,
                         const std::vector<AssetResult>& assets) {
     if (call.depfile.empty() && options.stamp.empty()) {
         return {};
     }
-    // The files that the meshes refer to are known only now.
+    // Only the bakes find the files that the meshes refer to.
     for (const AssetResult& asset : assets) {
         for (const InputFile& input : asset.inputs) {
             RELIEF_TRY(work.files.reads(recipeFolder(options.recipe) / input.path));
@@ -336,7 +336,8 @@ Result<void> writeFiles(const BakeRecipeOptions& options, const RecipeCall& call
 Result<void> preflightBake(const BakeRequest& request, const std::string& output, const BakeOutputs& outputs,
                            FileGuard& files) {
     if (!outputs.depfile.empty() && (outputs.depfile == "-" || output == "-")) {
-        return fail(ErrorCode::kUsage, "--depfile needs files, and not standard output; name them");
+        return fail(ErrorCode::kUsage,
+                    "--depfile cannot be used with standard output; name files for --output and --depfile");
     }
     RELIEF_TRY(files.reads(request.mesh));
     for (const std::string& clips : request.clips) {
@@ -358,24 +359,21 @@ std::vector<RecipeKey> recipeKeys() {
 }
 
 void addRecipeOptions(CLI::App& verb, BakeRecipeOptions& options) {
-    OptionRef recipe = addOption(
-        verb, "--recipe", options.recipe,
-        "Bake what this TOML file lists instead of MESH: only what is not up to date, -j assets at\n"
-        "once, each by a process of its own; -o is a folder, the recipe's by default");
+    OptionRef recipe = addOption(verb, "--recipe", options.recipe,
+                                 "Bake the assets in this TOML file that are not up to date");
     recipe->valueText("FILE");
     addParsed(verb, "--shard", options.shard, parseShard, "K/N with 1 <= K <= N, such as 2/4",
-              "Of --recipe: only the K-th of N parts, which may run at the same time")
+              "Bake only part K of N of the recipe; the parts may run at the same time")
         ->valueText("K/N")
         ->needs(recipe);
     addOption(verb, "--events", options.events,
-              "Of --recipe: write what happens as lines of JSON; - for standard output")
+              "Write the events of the recipe's run as JSON lines; - for standard output")
         ->valueText("FILE")
         ->needs(recipe);
-    addOption(verb, "--stamp", options.stamp,
-              "Of --recipe: write this file when everything is up to date: the target for --depfile")
+    addOption(verb, "--stamp", options.stamp, "Write this file once all assets of the recipe are up to date")
         ->valueText("FILE")
         ->needs(recipe);
-    addFlag(verb, "--dry-run", options.dry_run, "Of --recipe: only print what would be baked, and why")
+    addFlag(verb, "--dry-run", options.dry_run, "Print what the recipe would bake and why, without baking")
         ->needs(recipe);
 }
 
@@ -411,13 +409,13 @@ Result<void> runRecipeCommand(const BakeRecipeOptions& options, const RecipeCall
 
 void fields(FieldVisitor& visit, BakeOutputs& outputs) {
     visit("compress", outputs.compress,
-          {.help = "zstd level of the texels, 0 (none) to 19",
+          {.help = "zstd compression level of the texels, from 0 (none) to 19",
            .range = {0.0, 19.0},
            .value = "LEVEL",
            .must = "0 (none) to 19 (smallest)"});
     visit("json", outputs.json, {.help = "Print a report as JSON to standard output"});
     visit("depfile", outputs.depfile,
-          {.help = "Also write which files were read, for Make and Ninja: every input of the output",
+          {.help = "Also write a dependency file for Make and Ninja, which lists every file read",
            .value = "FILE"});
 }
 

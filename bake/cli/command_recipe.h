@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The options of `relief bake` about its output, and those of --recipe with what they do.
+// The output options of `relief bake`, and the options of --recipe with their implementation.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,8 @@ struct BakeOutputs {
 
 void fields(FieldVisitor& visit, BakeOutputs& outputs);
 
-/// The files that a bake of one mesh reads and writes.
-/// \param output  of -o. Errors: kUsage, kIo.
+/// Checks the files that a bake of one mesh reads and writes.
+/// \param output  the value of -o. Errors: kUsage, kIo.
 [[nodiscard]] Result<void> preflightBake(const BakeRequest& request, const std::string& output,
                                          const BakeOutputs& outputs, FileGuard& files);
 
@@ -39,20 +39,20 @@ struct BakeRecipeOptions {
 struct RecipeCall {
     const CLI::App& verb;  ///< parsed
     const CommonOptions& common;
-    const std::string& output;        ///< a folder; empty: the recipe's
+    const std::string& output;        ///< folder; empty: the recipe's folder
     std::optional<unsigned> threads;  ///< -j
     const std::string& depfile;
     bool json;
     FileGuard& files;
 };
 
-/// The options of `relief bake` that a recipe may set.
+/// Returns the options of `relief bake` that a recipe may set.
 [[nodiscard]] std::vector<RecipeKey> recipeKeys();
 
 void addRecipeOptions(CLI::App& verb, BakeRecipeOptions& options);
 
-/// Bakes the recipe's assets. Ends the program by the signal that interrupted it.
-/// Errors: those of the first asset in the recipe's order that failed; kUsage, kIo.
+/// Bakes the recipe's assets. If a signal interrupts it, the program ends by that signal.
+/// Errors: those of the first failed asset in the recipe's order; kUsage, kIo.
 [[nodiscard]] Result<void> runRecipeCommand(const BakeRecipeOptions& options, const RecipeCall& call);
 
 }  // namespace relief

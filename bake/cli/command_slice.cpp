@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief slice: the field on a plane, as a figure or as its distances.
+// relief slice: draws the field on a plane, as a figure or as distances.
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
 
 #include "bake/cli/command.h"
+#include "bake/cli/option_details.h"
 #include "bake/images/slice.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
@@ -17,9 +18,9 @@ namespace {
 
 enum class Axis : std::uint8_t { kX, kY, kZ };
 
-/// Where on the axis.
+/// Position on the axis.
 struct Place {
-    std::optional<float> at;  // object units; none for "center"
+    std::optional<float> at;  // object units; nullopt: center
 };
 
 struct SliceCommand {
@@ -45,7 +46,7 @@ SliceOptions optionsOf(const SliceCommand& command) {
     return options;
 }
 
-/// The picture is drawn all the same: it shows the field there.
+/// Warns about a plane outside the bounds. The picture still shows the field there.
 void warnOutside(const SliceCommand& command, const Collider& collider) {
     const std::optional<float> at = optionsOf(command).at;
     const int axis = static_cast<int>(command.axis);
@@ -53,8 +54,8 @@ void warnOutside(const SliceCommand& command, const Collider& collider) {
     const float high = collider.bounds.max[axis];
     if (at && !(*at >= low && *at <= high)) {
         spdlog::warn(
-            "{}: --at {} lies outside of the collider's box, which goes from {} = {} to {}{}; give a "
-            "number between them, or center",
+            "{}: --at {} is outside the collider's bounds, {} = {} to {}{}; use a number between them, or "
+            "center",
             shownInput(command.file), shortest(*at), axisName(axis), shortest(low), shortest(high),
             collider.unit.empty() ? "" : " " + collider.unit);
     }
@@ -64,7 +65,7 @@ Result<void> runSlice(const SliceCommand& command, FileGuard& files) {
     const std::string extension = lowerCase(std::filesystem::path(command.output).extension().string());
     if (extension != ".png" && extension != ".exr" && command.output != "-") {
         return fail(ErrorCode::kUsage,
-                    "--output " + quotedPath(command.output) + " must end in .png or .exr");
+                    "--output " + quotedPath(command.output) + " must end in .png or .exr; rename it");
     }
     RELIEF_TRY(files.reads(command.file));
     RELIEF_TRY(files.writes(command.output, "-o"));
@@ -81,27 +82,32 @@ Result<void> runSlice(const SliceCommand& command, FileGuard& files) {
 
 void addSlice(CLI::App& app, Action& action) {
     auto command = std::make_shared<SliceCommand>();
-    CLI::App& verb = addVerb(
-        app, command->common, "slice",
-        "Draws the field on a plane: the distance in false colours, or as numbers\n\n"
-        "OUT.png is a figure. OUT.exr holds the same signed distances, in object units, as 32-bit floats in\n"
-        "the channel distance: negative inside, +inf outside if no distance is known, NaN if no map votes.\n"
-        "The axes to the right and upwards are z and y across x, x and z across y, x and y across z",
-        "relief slice bunny.relief --axis z --at center -o slice.png\n"
-        "relief slice bunny.relief --axis y --at 0.1 --size 1024 -o slice.exr");
-    addOption(verb, "FILE", command->file, "The collider; - for standard input")->typeName("")->required();
+    CLI::App& verb = addVerb(app, command->common, "slice",
+                             withDetails("Draw the signed distance on a plane through a collider\n\n"
+                                         "OUT.png is a figure in false colours. OUT.exr stores the distances "
+                                         "in object units: negative inside, +inf outside at an unknown "
+                                         "distance, NaN if no map votes.",
+                                         "The EXR channel is distance, of 32-bit floats. The axes to the "
+                                         "right and upwards are z and y for --axis x, x and z for --axis y, "
+                                         "and x and y for --axis z."),
+                             "relief slice bunny.relief --axis z --at center -o slice.png\n"
+                             "relief slice bunny.relief --axis y --at 0.1 --size 1024 -o slice.exr");
+    addOption(verb, "FILE", command->file, "Collider; - for standard input")->typeName("")->required();
     addWords(verb, "--axis", command->axis, WordsFor<Axis>{{"x", Axis::kX}, {"y", Axis::kY}, {"z", Axis::kZ}},
-             "The plane is across this axis; default z");
-    addParsed(verb, "--at", command->place, parsePlace, "a number or center",
-              "Where on the axis, object units; default center, the middle of the bounds")
+             "Axis perpendicular to the plane (default: z)");
+    addParsed(
+        verb, "--at", command->place, parsePlace, "a number or center",
+        "Position of the plane along the axis, in object units, or center (default: center of the bounds)")
         ->valueText("V");
-    addOption(verb, "--size", command->size, "Samples along the longer side; default 512")
+    addOption(verb, "--size", command->size, "Samples along the longer side (default: 512)")
         ->valueText("N")
         ->transform(wholeNumber());
-    addOption(verb, "-o,--output", command->output, "The image: .png or .exr; - for standard output, as PNG")
+    addOption(verb, "-o,--output", command->output,
+              "Image to write, .png or .exr; - for standard output, as PNG (required)")
         ->valueText("OUT")
         ->required();
     addMemoryOption(verb, command->limits);
+    groupVerbOptions(verb, {{"Output", {"--output", "--size"}}, {"Plane", {"--axis", "--at"}}});
     onVerb(verb, [command, &action] {
         action = [command](FileGuard& files) { return runSlice(*command, files); };
     });

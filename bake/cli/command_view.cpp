@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief view: a page to turn a collider round in and see where it is wrong, or to fly through a world in.
+// relief view: makes a page that shows a collider and its errors, or a world.
 #include "bake/cli/command_view.h"
 
 #include <spdlog/spdlog.h>
@@ -8,6 +8,7 @@
 #include <span>
 
 #include "bake/cli/command.h"
+#include "bake/cli/option_details.h"
 #include "bake/report/mesh_check_report.h"
 #include "bake/verdict/parts_report.h"
 #include "formats/base/file_io.h"
@@ -25,16 +26,16 @@ namespace fs = std::filesystem;
 
 struct ViewCommand {
     CommonOptions common;
-    std::string file;        ///< a container, "-" for standard input, or a world (.json)
-    CheckRequest check;      ///< mesh empty: none
-    ContainerLimits limits;  ///< of the container, or of those of a world
+    std::string file;        ///< container, world (.json), or "-" for a container on standard input
+    CheckRequest check;      ///< empty mesh: no check
+    ContainerLimits limits;  ///< for the container, or each container of a world
     std::string output;
 };
 
-/// The report, and what the page needs to show it.
+/// The report, and the data with which the page shows it.
 Result<std::string> checkPage(Page page, const MeshCheck& check, std::optional<float> max_error) {
     Json report = jsonOf(MeshCheckReport{check, page.name, max_error});
-    report.erase("times_ms");  // no two runs have the same
+    report.erase("times_ms");  // differs in each run
     report["parts"]["text"] = partsText(check.part_accuracy, check.parts, check.collider);
     for (std::size_t i = 0; i < check.places.size(); ++i) {
         const ClosestPoint closest = check.query->closest(check.places[i].position);
@@ -66,11 +67,11 @@ Result<std::string> colliderPage(const ViewCommand& command, FileGuard& files) {
     return checkPage(std::move(page), check, {});
 }
 
-/// \param check  null: none.
+/// \param check  null: no check
 Result<std::string> worldPage(const std::string& name, const World& world, const Json& check,
                               const std::string& player, FileGuard& files) {
     const fs::path file = name;
-    // The default scene of a world: a string of JSON is one of TOML.
+    // The default scene of a world. A JSON string is also a TOML string.
     Page page{
         .name = inputName(name), .check = check, .scene = "world = " + jsonOf(file.filename()).dump() + "\n"};
     const auto hold = [&](const fs::path& held) -> Result<void> {
@@ -88,11 +89,11 @@ Result<std::string> worldPage(const std::string& name, const World& world, const
     return page.make(player);
 }
 
-/// The report, and what the page needs to show it.
+/// The report, and the data with which the page shows it.
 Result<Json> worldCheckJson(const WorldCheckJson& check) {
     Json report = jsonOf(check);
     Json& accuracy = report["accuracy"];
-    accuracy.erase("seconds");  // no two runs have the same
+    accuracy.erase("seconds");  // differs in each run
     for (std::size_t i = 0; i < check.accuracy->places.size(); ++i) {
         const std::vector<std::byte> picture =
             RELIEF_TRY(drawVerdicts(*check.accuracy->places[i].slice, check.field->world().unit));
@@ -114,29 +115,28 @@ Result<std::string> worldPage(const ViewCommand& command, FileGuard& files) {
     return makeWorldPage(command.file, {inputName(command.file), &field, &accuracy, {}}, player, files);
 }
 
-/// Beside FILE unless -o names another place.
+/// The file of -o, by default beside FILE.
 Result<std::string> outputOf(const ViewCommand& command) {
     if (!command.output.empty()) {
         return command.output;
     }
     if (command.file == "-") {
-        return fail(ErrorCode::kUsage,
-                    "a page of standard input has no name of its own; give it one with -o");
+        return fail(ErrorCode::kUsage, "a page of standard input has no default name; add -o OUT.html");
     }
     return fs::path(command.file).replace_extension(".html").string();
 }
 
-/// The same input gives the same bytes. Files are checked as `relief check` does.
+/// Equal inputs give equal bytes. Files are checked as `relief check` does.
 Result<void> runView(const ViewCommand& command, FileGuard& files) {
     const bool world = namesWorld(command.file);
     if (lowerCase(fs::path(command.file).extension().native()) == ".toml") {
         return fail(ErrorCode::kUsage,
-                    quotedPath(command.file) + " is a scene, whose page relief-sim writes: relief-sim " +
+                    quotedPath(command.file) + " is a scene; make its page with relief-sim " +
                         shellQuoted(command.file) + " --page " +
                         shellQuoted(fs::path(command.file).replace_extension(".html").string()));
     }
     if (world && !command.check.mesh.empty() && command.check.detail) {
-        return fail(ErrorCode::kUsage, "--detail is for one collider; leave it out for a world");
+        return fail(ErrorCode::kUsage, "--detail has no effect on worlds; remove it");
     }
     const std::string output = RELIEF_TRY(outputOf(command));
     RELIEF_TRY(files.reads(command.file));
@@ -174,8 +174,9 @@ Result<std::string> makeWorldPage(const std::string& file, const WorldCheckJson&
 }
 
 OptionRef addMeshOptions(CLI::App& verb, CheckRequest& request) {
-    OptionRef mesh = addOption(verb, "--mesh", request.mesh, "The mesh or the level that it was baked from")
-                         ->valueText("MESH");
+    OptionRef mesh =
+        addOption(verb, "--mesh", request.mesh, "Mesh, level or height map that FILE was baked from")
+            ->valueText("MESH");
     const auto measurement = [&](FieldVisitor& visit) { measurementFields(visit, request); };
     for (const OptionRef option : addFields(verb, group(measurement))) {
         option->needs(mesh);
@@ -195,18 +196,19 @@ void addView(CLI::App& app, Action& action) {
     auto command = std::make_shared<ViewCommand>();
     CLI::App& verb = addVerb(
         app, command->common, "view",
-        "Makes a page to look at a collider or a world\n\nOne HTML file that holds everything and "
-        "opens from disk in any browser with WebGL2: the surface as the maps see it,\nevery map, and slices. "
-        "With --mesh also the mesh, the errors on it and the worst places of `relief check`.\n"
-        "Of a world: snow on it, each body's name, and with --mesh, the level, the bodies coloured by what "
-        "is "
-        "wrong near\nthem, and pictures of the ten worst. Such a page needs the player that "
-        "`scripts/build.sh web` builds once.\n"
-        "The page of a scene is written by relief-sim SCENE.toml --page OUT.html.",
+        withDetails(
+            "Make a web page that shows a collider or a world\n\n"
+            "The page is a single HTML file that any browser with WebGL2 opens from disk. It shows the "
+            "surface that the maps represent, each map, and slices. --mesh adds the mesh and the worst "
+            "places of relief check.",
+            "The page of a world shows snow on it and the name of each body. With --mesh, it also shows the "
+            "level, bodies coloured by the errors near them, and slices through the ten worst places. It "
+            "needs the player page that `scripts/build.sh web` builds.\n"
+            "`relief-sim SCENE.toml --page OUT.html` writes the page of a scene."),
         "relief view bunny.relief\n"
         "relief view bunny.relief --mesh bunny.obj -o page.html\n"
         "relief view level/world.json --mesh level.glb");
-    addOption(verb, "FILE", command->file, "The collider or a world.json; - for a collider on standard input")
+    addOption(verb, "FILE", command->file, "Collider or world.json; - for a collider on standard input")
         ->typeName("")
         ->required();
     addMeshOptions(verb, command->check);
@@ -214,8 +216,10 @@ void addView(CLI::App& app, Action& action) {
     addFields(verb, command->check.import_limits);
     addMemoryOption(verb, command->limits);
     addOption(verb, "-o,--output", command->output,
-              "The page; - for standard output; default FILE with .html in place of its extension")
+              "Page to write; - for standard output (default: FILE with the extension .html)")
         ->valueText("OUT");
+    groupVerbOptions(verb, {{"Output", {"--output"}},
+                            {"Comparison with the mesh", {"--mesh", "--samples", "--seed", "--detail"}}});
     onVerb(verb,
            [command, &action] { action = [command](FileGuard& files) { return runView(*command, files); }; });
 }

@@ -54,15 +54,15 @@ Result<void> verdict(const fs::path& folder, const WorldBakeResult& result) {
             const std::size_t failed = result.countOf(WorldColliderState::kFailed);
             return fail(collider.error.code, std::to_string(failed) + " of " +
                                                  std::to_string(result.colliders.size()) +
-                                                 " colliders failed, first that of the mesh '" +
-                                                 collider.mesh + "': " + collider.error.message + "; " +
-                                                 quotedPath(folder / kWorldFileName) + " is left as it was");
+                                                 " colliders failed, first that of mesh '" + collider.mesh +
+                                                 "': " + collider.error.message + "; " +
+                                                 quotedPath(folder / kWorldFileName) + " is unchanged");
         }
     }
     return {};
 }
 
-/// Reads the containers that a world's readers take for a while.
+/// Reads the coarse containers, which loadWorld() skips.
 Result<void> checkCoarse(const World& world, const std::string& file, const ContainerLimits& limits) {
     for (std::size_t i = 0; i < world.colliders.size(); ++i) {
         if (world.colliders[i].coarse) {
@@ -78,15 +78,14 @@ Result<void> checkCoarse(const World& world, const std::string& file, const Cont
 
 Result<void> preflightWorld(const fs::path& folder, const WorldCall& call) {
     if (!call.output.empty()) {
-        return fail(ErrorCode::kUsage,
-                    "--output and --world are two ways to name what is written; leave one out");
+        return fail(ErrorCode::kUsage, "--output and --world both name the output; remove one");
     }
     if (call.request.mesh.empty()) {
-        return fail(ErrorCode::kUsage, "MESH is required; see relief bake --help");
+        return fail(ErrorCode::kUsage, "MESH is required; name a level, or see relief bake --help");
     }
     if (folder == "-" || call.outputs.depfile == "-") {
         return fail(ErrorCode::kUsage,
-                    "--world is a folder, and --depfile a file; neither is standard output");
+                    "--world needs a folder and --depfile a file, not standard output; name them");
     }
     RELIEF_TRY(call.files.reads(call.request.mesh));
     if (call.outputs.json) {
@@ -95,16 +94,13 @@ Result<void> preflightWorld(const fs::path& folder, const WorldCall& call) {
     RELIEF_TRY(call.files.writes(folder / kWorldFileName, "--world", folder));
     RELIEF_TRY(ownWorldFolder(folder, "--world", call.files));
     RELIEF_TRY(call.files.writes(call.outputs.depfile, "--depfile", folder));
-    return call.files.makes(folder, "--world");  // made once all is checked
+    return call.files.makes(folder, "--world");  // created only if all checks pass
 }
 
 void addWorldOption(CLI::App& verb, std::string& folder) {
     addOption(
         verb, "--world", folder,
-        "Bake a level: each different mesh of MESH once, however many nodes place it, into this folder, "
-        "and world.json, which places them. --budget is for all together, 16 MB by default. Only what "
-        "has "
-        "changed is baked again")
+        "Bake a level into this folder: a collider for each distinct mesh, and world.json, which places them")
         ->valueText("DIR")
         ->excludes("--recipe");
 }
@@ -150,7 +146,7 @@ Result<void> writePage(const std::string& file, const WorldCheckCall& call, cons
 
 Result<void> runWorldCheck(const std::string& file, const WorldCheckCall& call) {
     if (call.request.detail) {
-        return fail(ErrorCode::kUsage, "--detail is for one collider; leave it out for a world");
+        return fail(ErrorCode::kUsage, "--detail has no effect on worlds; remove it");
     }
     const std::string player = RELIEF_TRY(preflightPage(file, call.request.mesh, call.html, call.files));
     const WorldField field(RELIEF_TRY(loadWorld(file, call.limits)));
@@ -174,7 +170,7 @@ Result<void> runWorldCheck(const std::string& file, const WorldCheckCall& call) 
             const LostParts& first = accuracy->lost.front();
             return fail(ErrorCode::kDifference, "mesh '" + first.mesh + "': " + first.text);
         }
-        const bool floats = accuracy->places.front().cause == WorldCause::kFloats;  // of the worst body
+        const bool floats = accuracy->places.front().cause == WorldCause::kFloats;  // at the worst body
         return fail(ErrorCode::kDifference,
                     shortNumber(accuracy->all.total()) +
                         " % of the points near the surface are on the wrong side, more than "

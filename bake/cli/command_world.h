@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `relief bake --world`: a level becomes a folder of colliders and the file that places them. `relief check` of such a file.
+// `relief bake --world` bakes a level into a folder of colliders and a file that places them. `relief check` measures it.
 #pragma once
 
 #include <filesystem>
@@ -22,25 +22,25 @@ struct WorldCall {
     FileGuard& files;
 };
 
-/// Files that a bake with --world reads and writes. Errors: kUsage, kIo.
+/// Checks the files that a bake with --world reads and writes. Errors: kUsage, kIo.
 [[nodiscard]] Result<void> preflightWorld(const std::filesystem::path& folder, const WorldCall& call);
 
 void addWorldOption(CLI::App& verb, std::string& folder);
 
-/// Errors: those of bakeWorld, and of the first collider that failed; kUsage, kIo.
+/// Errors: those of bakeWorld and of the first collider that failed; kUsage, kIo.
 [[nodiscard]] Result<void> runWorldCommand(const std::string& folder, const WorldCall& call);
 
 struct WorldCheckCall {
-    const CheckRequest& request;  ///< without a mesh: the files alone are checked
+    const CheckRequest& request;  ///< without a mesh, only the files are checked
     std::optional<float> within;
     const ContainerLimits& limits;
     std::optional<float> max_error;  ///< percent
-    const std::string& html;         ///< --html; empty: no page
+    const std::string& html;         ///< the value of --html; empty: no page
     bool json;
     FileGuard& files;
 };
 
-/// Errors: those of loadWorld, checkWorld and makeWorldPage; kUsage; kDifference: more than max_error.
+/// Errors: those of loadWorld, checkWorld and makeWorldPage; kUsage; kDifference if max_error is exceeded.
 [[nodiscard]] Result<void> runWorldCheck(const std::string& file, const WorldCheckCall& call);
 
 }  // namespace relief

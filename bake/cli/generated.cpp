@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <iterator>
+#include <list>
+
 #include "bake/cli/command.h"
 #include "bake/cli/command_recipe.h"
+#include "bake/cli/option_details.h"
 #include "bake/cli/world_info.h"
 #include "bake/report/bake_report.h"
 #include "bake/report/collider_report.h"
@@ -48,12 +53,19 @@ GeneratedTexts bakeTexts() {
     const std::vector<FieldWords> bake = fieldsOf(BakeRequest());
     const std::vector<FieldWords> check = fieldsOf(CheckRequest());
     std::vector<FieldWords> options = bake;
-    for (FieldWords& field : fieldsOf(BakeOutputs())) {
-        options.push_back(std::move(field));
+    std::ranges::move(fieldsOf(BakeOutputs()), std::back_inserter(options));
+    std::list<std::string> meanings;  // the fields refer to them
+    for (FieldWords& field : options) {
+        if (const std::string_view details = bakeDetails(field.name); !details.empty()) {
+            field.info.help =
+                meanings.emplace_back(std::string(field.info.help) + ". " + std::string(details));
+        }
     }
     const std::string init = "bake/python/relief/__init__.py";
     return {
         {"bake/cli/README.md", "bake-options", optionTable(options)},
+        {"bake/cli/README.md", "map-keys", mapKeyTable()},
+        {"bake/cli/README.md", "heights-keys", heightsKeyTable()},
         {"bake/cli/README.md", "check-options", optionTable(check)},
         {init, "bake-arguments", pythonArguments(bake, "         ")},
         {init, "check-arguments", pythonArguments(check, "          ")},
@@ -61,10 +73,9 @@ GeneratedTexts bakeTexts() {
         schemaFile("bake", "relief bake --json", "A bake.", BakeJson{}),
         schemaFile("check", "relief check --mesh --json", "A collider measured against its mesh.",
                    MeshCheckReport{}),
-        schemaFile(
-            "check-file", "relief check FILE --json",
-            "Faults of a container, and the parts that can be trusted. formats/README.md lists the codes.",
-            InspectionReport{}),
+        schemaFile("check-file", "relief check FILE --json",
+                   "Issues of a container, and its usable parts. formats/README.md lists the codes.",
+                   InspectionReport{}),
         schemaFile("info", "relief info --json", "The contents of a collider.",
                    ColliderReport<ColliderMapReport>{}),
         schemaFile("world", "world.json of relief bake --world", "Placed colliders.", World{}),
@@ -73,7 +84,7 @@ GeneratedTexts bakeTexts() {
         schemaFile("ground-bake", "relief bake --heights --json", "A bake of a height map.", GroundJson{}),
         schemaFile("ground-check", "relief check --heights --json", "Ground measured against its height map.",
                    GroundCheckJson{}),
-        schemaFile("world-check", "relief check world.json --json", "A world, and how wrong it is.",
+        schemaFile("world-check", "relief check world.json --json", "A world, and its accuracy.",
                    WorldCheckJson{}),
         schemaFile("recipe", "relief bake --recipe --json", "A run of a recipe.", RecipeJson{}),
         schemaFile("recipe-events", "relief bake --recipe --events",

@@ -25,7 +25,7 @@ Result<WorldInfo> readWorldInfo(const std::string& file, const ContainerLimits& 
     WorldInfo info{
         .file = file, .unit = world.unit, .bounds = worldBounds(world), .bodies = world.bodies.size()};
     for (std::size_t i = 0; i < world.colliders.size(); ++i) {
-        std::error_code error;  // read a moment ago
+        std::error_code error;  // the file was just read
         const std::uintmax_t bytes =
             fs::file_size(fs::path(file).parent_path() / world.colliders[i].file, error);
         const Collider& collider = loaded.colliders[i];
@@ -58,20 +58,20 @@ std::string worldInfoText(const WorldInfo& info) {
 
 void fields(FieldVisitor& visit, const WorldColliderInfo& collider) {
     FieldRef(collider.named).visit(visit);
-    visit("bodies", collider.bodies, {"Bodies that place it"});
-    visit("maps", collider.maps, {"Its maps"});
+    visit("bodies", collider.bodies, {"Number of bodies that place it"});
+    visit("maps", collider.maps, {"Number of its maps"});
     visit("bytes", collider.bytes, {"Size of its file", "bytes"});
 }
 
 void fields(FieldVisitor& visit, const WorldInfo& info) {
     visit("file", info.file, {"File of the world"});
     visit("unit", info.unit, {"Unit of lengths: m, or empty"});
-    visit("min", info.bounds.min, {"Lower corner of the box that holds all bodies", "world units"});
-    visit("max", info.bounds.max, {"Upper corner of the box that holds all bodies", "world units"});
-    visit("bodies", info.bodies, {"Bodies"});
-    visit("bytes", info.bytes, {"Size of the colliders' files together", "bytes"});
-    visit("gpu_bytes", info.gpu_bytes, {"Bytes that the colliders take on the GPU", "bytes"});
-    visit("colliders", info.colliders, {"Each different shape once"});
+    visit("min", info.bounds.min, {"Lower corner of the bounds of all bodies", "world units"});
+    visit("max", info.bounds.max, {"Upper corner of the bounds of all bodies", "world units"});
+    visit("bodies", info.bodies, {"Number of bodies"});
+    visit("bytes", info.bytes, {"Total size of the collider files", "bytes"});
+    visit("gpu_bytes", info.gpu_bytes, {"Total size of the colliders on the GPU", "bytes"});
+    visit("colliders", info.colliders, {"The distinct colliders"});
 }
 
 }  // namespace relief

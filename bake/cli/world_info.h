@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The report of relief info of a world.
+// The report of `relief info` on a world.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,9 @@ namespace relief {
 /// A collider of the world.
 struct WorldColliderInfo {
     WorldCollider named;
-    std::size_t bodies = 0;  ///< that place it
+    std::size_t bodies = 0;  ///< bodies that place it
     std::size_t maps = 0;
-    std::uint64_t bytes = 0;  ///< of its file
+    std::uint64_t bytes = 0;  ///< size of its file
 };
 
 void fields(FieldVisitor& visit, const WorldColliderInfo& collider);
@@ -37,7 +37,7 @@ void fields(FieldVisitor& visit, const WorldInfo& info);
 /// Reads the world and all its colliders. Errors: those of loadWorld.
 [[nodiscard]] Result<WorldInfo> readWorldInfo(const std::string& file, const ContainerLimits& limits);
 
-/// A line for all, their box, and a table of the colliders.
+/// A summary, the bounds, and a table of the colliders.
 [[nodiscard]] std::string worldInfoText(const WorldInfo& info);
 
 }  // namespace relief

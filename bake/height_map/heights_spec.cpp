@@ -132,21 +132,31 @@ void fields(FieldVisitor& visit, HeightsSpec& spec) {
         return FieldInfo{.help = help, .range = within(kHeightMax), .must = "a number from -1e9 to 1e9"};
     };
     visit("spacing", spec.spacing,
-          {.help = "Distance between samples, metres",
+          {.help = "Distance between samples, in metres",
            .range = {1e-6, 1e6},
            .must = "a length from 0.000001 to 1000000"});
-    visit("low", spec.low, number("Height of sample 0, for unsigned samples"));
-    visit("high", spec.high, number("Height of the largest sample, 65535 or 255"));
+    visit("low", spec.low, number("Height of sample 0 in metres; only for unsigned samples"));
+    visit("high", spec.high,
+          number("Height of the largest sample, 65535 or 255, in metres; only for unsigned samples"));
     visit("hole", spec.hole,
-          {.help = "Sample value that marks a hole", .range = within(kHoleMax), .must = "a finite number"});
+          {.help = "Value that marks a hole, as stored in the file",
+           .range = within(kHoleMax),
+           .fallback = "NaN of floats, -32768 of .hgt, the transparent colour of PNG, otherwise none",
+           .must = "a finite number"});
     visit("width", spec.width,
-          {.help = "Samples per row of a raw file", .range = {2.0, double{kHeightsSideMax}}});
-    visit("type", spec.type, {.help = "Sample type of a raw file; int16 and float32 are metres"});
-    visit("order", spec.order, {.help = "Byte order of a raw file"});
-    visit(
-        "offset", spec.offset,
-        {.help = "Position of the first sample at height 0", .must = "three numbers x/y/z from -1e9 to 1e9"});
-    visit("tile", spec.tile, {.help = "Squares along a tile's side, with --world", .range = {64.0, 8192.0}});
+          {.help = "Samples in each row of a raw file",
+           .range = {2.0, double{kHeightsSideMax}},
+           .fallback = "the side of a square"});
+    visit("type", spec.type,
+          {.help = "Type of raw samples; int16 and float32 are metres", .fallback = "uint16; int16 of .hgt"});
+    visit("order", spec.order, {.help = "Byte order of raw samples", .fallback = "little; big of .hgt"});
+    visit("offset", spec.offset,
+          {.help = "Position of the first sample at height 0, in metres",
+           .value = "X/Y/Z",
+           .must = "three numbers x/y/z from -1e9 to 1e9"});
+    visit("tile", spec.tile,
+          {.help = "Squares along each side of a tile, a multiple of 4; only for --world",
+           .range = {64.0, 8192.0}});
 }
 
 }  // namespace relief

@@ -12,13 +12,13 @@
 namespace relief {
 namespace {
 
-/// The maps of --holes keep and of --animated. The runtime draws those of a moving mesh in the same directions
+/// The maps of --holes keep and --animated. The runtime draws the maps of a moving mesh in the same directions
 /// (runtime/live/live_collider.h).
 constexpr std::array<const char*, 3> kAxisMaps = {"front-back:dir=+x,up=+y", "front-back:dir=-y,up=-z",
                                                   "front-back:dir=-z,up=+y"};
 constexpr std::uint32_t kAxisResolution = 256;
 
-/// \return the option that chooses the maps. Errors: kUsage: there are two.
+/// Returns the option that chooses the maps. Errors: kUsage if there are several.
 Result<MapSource> sourceOf(const BakeRequest& request) {
     struct Chooser {
         const char* name;
@@ -39,39 +39,39 @@ Result<MapSource> sourceOf(const BakeRequest& request) {
         }
         if (chosen != nullptr) {
             return fail(ErrorCode::kUsage, std::string(chosen->name) + " and " + chooser.name +
-                                               " are two ways to choose the maps; leave one out");
+                                               " both choose the maps; remove one");
         }
         chosen = &chooser;
     }
     return chosen == nullptr ? MapSource::kPatches : chosen->source;
 }
 
-/// Options of a mesh beside those of a height map.
+/// Returns an error if an option for meshes is set.
 std::string otherThanHeights(const BakeRequest& request) {
-    constexpr std::array<std::string_view, 5> kOfBoth = {"heights", "threads", "time_limit", "import_memory",
-                                                         "import_time"};
+    constexpr std::array<std::string_view, 5> kAllowed = {"heights", "threads", "time_limit", "import_memory",
+                                                          "import_time"};
     for (const FieldWords& field : changedFields(request)) {
-        if (std::ranges::find(kOfBoth, field.name) == kOfBoth.end()) {
-            return optionName(field.name) + " is for meshes, and does nothing with --heights; leave it out";
+        if (std::ranges::find(kAllowed, field.name) == kAllowed.end()) {
+            return optionName(field.name) + " has no effect with --heights; remove it";
         }
     }
     return {};
 }
 
-/// Options that have no place beside --animated.
+/// Returns an error if an option is set that --animated does not support.
 std::string otherThanAnimated(const BakeRequest& request) {
-    constexpr std::array<std::string_view, 12> kOfBoth = {
+    constexpr std::array<std::string_view, 12> kAllowed = {
         "animated", "clips", "resolution",    "quality",     "prefer",        "threads",
         "unit",     "up",    "import_memory", "import_time", "max_triangles", "time_limit"};
     for (const FieldWords& field : changedFields(request)) {
-        if (std::ranges::find(kOfBoth, field.name) == kOfBoth.end()) {
-            return optionName(field.name) + " does nothing with --animated; leave one out";
+        if (std::ranges::find(kAllowed, field.name) == kAllowed.end()) {
+            return optionName(field.name) + " has no effect with --animated; remove one of them";
         }
     }
     return {};
 }
 
-/// The fault of options that do nothing together; empty: there is none.
+/// Returns an error if options have no effect together; empty: there is none.
 std::string conflictOf(const BakeRequest& request, const BakeSettings& settings) {
     if (!request.heights.empty()) {
         return otherThanHeights(request);
@@ -80,33 +80,33 @@ std::string conflictOf(const BakeRequest& request, const BakeSettings& settings)
         return otherThanAnimated(request);
     }
     if (!request.clips.empty()) {
-        return "--clips does nothing without --animated; add it";
+        return "--clips has no effect without --animated; add --animated";
     }
     if (request.map.empty() && (request.decode || request.depth)) {
         return std::string(request.decode ? "--decode" : "--depth") +
-               " does nothing without --map; leave it out";
+               " has no effect without --map; remove it";
     }
     const bool axis_maps = settings.source == MapSource::kPatches && request.holes == Holes::kKeep;
     if (request.resolution && settings.source == MapSource::kPatches && !axis_maps) {
-        return "--resolution does nothing for patches; leave it out, set --budget, or choose --map, --paper "
-               "or --holes keep";
+        return "--resolution has no effect on patches; set --budget instead, or add --map, --paper or "
+               "--holes keep";
     }
     if (axis_maps && (request.budget || request.texel || request.max_error)) {
         return std::string(request.budget  ? "--budget"
                            : request.texel ? "--texel"
                                            : "--max-error") +
-               " does nothing with --holes keep, whose surfaces have no inside for patches; set --resolution";
+               " has no effect with --holes keep, because an open surface has no inside for patches; set "
+               "--resolution";
     }
     if (request.texel && request.max_error) {
-        return "--texel and --max-error are two ways to choose the bytes; leave one out";
+        return "--texel and --max-error both choose the size; remove one";
     }
     // Names need the file's own triangles and separate parts.
-    const char* const against = !request.repair.method.empty() ? "--repair, which makes another surface"
-                                : request.holes == Holes::kKeep
-                                    ? "--holes keep, which takes nothing for a solid"
-                                    : nullptr;
+    const char* const against = !request.repair.method.empty()  ? "--repair, which makes another surface"
+                                : request.holes == Holes::kKeep ? "--holes keep, which makes no solids"
+                                                                : nullptr;
     if (!settings.shape.named.empty() && against != nullptr) {
-        return "--as NAME=KIND does nothing with " + std::string(against) + "; leave one out";
+        return "--as NAME=KIND has no effect with " + std::string(against) + "; remove one of them";
     }
     return {};
 }
@@ -144,8 +144,8 @@ bool isRecorded(std::string_view name) {
         kFields, [&](const FieldWords& field) { return field.name == name && field.info.recorded; });
 }
 
-/// Takes one option of a record. \return whether it is one that a bake records, with a value that makes sense.
-bool take(std::string_view name, std::string_view value, BakeRequest& request) {
+/// Reads one recorded option into the request. \return false if bakes do not record it, or its value is invalid
+bool readRecorded(std::string_view name, std::string_view value, BakeRequest& request) {
     BakeRequest changed = request;
     if (!isRecorded(name) || !setField(changed, name, value) || !parseShapeOptions(changed.as) ||
         !wrapAlpha(changed.repair.method) || (name == "map" && !parseMapSpec(value)) ||
@@ -182,7 +182,7 @@ Result<BakeSettings> settingsOf(const BakeRequest& request) {
 RecordedBake recordedBake(const std::vector<RecordedOption>& options) {
     RecordedBake bake;
     for (const RecordedOption& option : options) {
-        bake.understood = take(option.name, option.value, bake.request) && bake.understood;
+        bake.understood = readRecorded(option.name, option.value, bake.request) && bake.understood;
     }
     if (bake.request.quality == Quality::kNormal) {
         bake.request.quality.reset();
@@ -211,156 +211,106 @@ std::string importOptionOf(const ImportOptions& options, const ImportLimits& lim
 }
 
 std::string shellWord(const std::string& path) {
-    return shellQuoted(path.starts_with("-") ? "./" + path : path);  // else it is taken for an option
+    return shellQuoted(path.starts_with("-") ? "./" + path : path);  // otherwise it reads as an option
 }
 
 void fields(FieldVisitor& visit, BakeRequest& request) {
-    visit(
-        "map", request.map,
-        {.help = "A map to bake instead of patches for a budget, once for each: FORMAT[:key=value,...] with\n"
-                 "FORMAT   float, fixed8, front-back, cube or patches\n"
-                 "bytes    of patches, such as 1MB\n"
-                 "texel    of patches, wanted everywhere, as --texel; they have no other keys\n"
-                 "dir      direction the view looks in: +x -x +y -y +z -z or a/b/c\n"
-                 "up       direction that points upwards in the image: as dir\n"
-                 "size     texels, N or WxH (cube: N)\n"
-                 "compare  less or greater: keep the nearest or the farthest surface; not of front-back, "
-                 "which keeps both\n"
-                 "center   a/b/c, where a cube looks from\n"
-                 "depth    of front-back maps: unorm16, or half (the paper's)\n"
-                 "decode   plane: fitted to the whole texel, or projected (the paper's)\n"
-                 "box      tight, or x0/y0/z0/x1/y1/z1: the part of space to cover",
-         .value = "SPEC",
-         .recorded = true});
+    visit("map", request.map,
+          {.help = "Bake this map instead of patches: FORMAT[:KEY=VALUE,...] with FORMAT float, fixed8, "
+                   "front-back, cube or patches; repeatable",
+           .value = "SPEC",
+           .recorded = true});
     visit("decode", request.decode,
-          {.help = "For each --map that does not set it: plane, or projected, the paper's",
-           .fallback = "plane"});
-    visit("depth", request.depth,
-          {.help = "For each --map front-back that does not set it: unorm16, or half, the paper's",
-           .fallback = "unorm16"});
+          {.help = "Default of the key decode in --map; the paper uses projected", .fallback = "plane"});
+    visit(
+        "depth", request.depth,
+        {.help = "Default of the key depth in --map front-back; the paper uses half", .fallback = "unorm16"});
     visit("paper", request.paper,
-          {.help = "Bake the paper's maps: front-back along -x, -y and -z and a cube, "
-                   "depth=half, decode=projected"});
+          {.help = "Bake the maps of the original paper: front-back along -x, -y and -z, and a cube"});
     visit("resolution", request.resolution,
-          {.help = "Texels along a side of --map without size, of --paper, --holes keep and --animated",
-           .fallback = "512; with --holes keep and --animated, 256",
+          {.help = "Texels along each side of a map whose size is not set",
+           .fallback = "512; 256 with --holes keep or --animated",
            .recorded = true});
     visit("budget", request.budget,
-          {.help = "The bytes that patches may take on the GPU. The file has some hundred "
-                   "bytes more, or fewer with --compress. With --max-error: use no more",
+          {.help = "Size limit of the patches on the GPU, such as 256kB or 4MB",
            .unit = "bytes",
            .range = {1.0},
            .fallback = "1MB",
            .recorded = true});
     visit(
         "texel", request.texel,
-        {.help = "Patches of this texel everywhere, whatever bytes that takes: a cell is split as long "
-                 "as its patch is off by more than a quarter of it and its side is longer than two of it. "
-                 "With --world in the units of the level, at the largest scale of each mesh. With --budget "
-                 "that is the most, and what does not fit gets a larger texel, with a warning",
+        {.help = "Bake patches of this texel length, in object units or as 1cm, in as many bytes as needed",
          .unit = "object units",
          .range = {0.0, 1e15, false},
          .value = "LENGTH",
-         .must = "a length above 0, in the collider's units, with --world of the level; of metres also with "
-                 "mm, cm or m "
-                 "behind it",
+         .must = "a length above 0 in object units (with --world, units of the level); if these are metres, "
+                 "mm, cm or m may follow the number",
          .recorded = true});
-    visit(
-        "max_error", request.max_error,
-        {.help = "Patches of the least bytes (32kB to 64MB) that leave at most this share of the points near "
-                 "the surface, in percent, on the wrong side; measured as by relief check, on 50000 points. "
-                 "Exit with 7, and write nothing, if none do",
-         .unit = "%",
-         .range = {0.0}});
+    visit("max_error", request.max_error,
+          {.help = "Bake the smallest patches that put at most this percentage of points near the surface on "
+                   "its wrong side",
+           .unit = "%",
+           .range = {0.0}});
     visit("quality", request.quality,
-          {.help = "The work on planes (one ray a texel, 16 or 36) and on patches: fast, normal or best",
+          {.help = "Effort spent on fitting maps to the surface; best is the slowest",
            .fallback = "normal",
            .recorded = true});
-    visit(
-        "prefer", request.prefer,
-        {.help = "Where planes and patches must err: inside keeps particles out of walls, outside keeps free "
-                 "space free, neither errs least",
-         .fallback = "neither",
-         .recorded = true});
+    visit("prefer", request.prefer,
+          {.help = "Treat doubtful space as inside or outside, or minimise errors",
+           .fallback = "neither",
+           .recorded = true});
     visit("threads", request.threads,
-          {.help = "Threads to use. The result is the same. With --recipe: assets at once",
+          {.help = "Number of worker threads; with --recipe, of simultaneous bakes",
            .range = {1.0, 1024.0},
            .fallback = "all cores",
            .letter = 'j'});
     visit("holes", request.holes,
-          {.help = "close: make solids of what --as says; keep: bake the surface as it is, in three "
-                   "front-back maps "
-                   "along the axes, or in those of --map or --paper",
+          {.help = "Close the mesh's parts into solids (see --as), or bake the open surface as it is",
            .recorded = true});
-    visit("no_check", request.no_check, {.help = "Do not measure the result (a few percent of the time)"});
+    visit("no_check", request.no_check,
+          {.help = "Skip the check of the result, which takes a few percent of the time"});
     fields(visit, request.import);
     fields(visit, request.import_limits);
     fields(visit, request.repair);
     visit("as", request.as,
-          {.help = "What the parts of the mesh are: auto (each is judged by what rays see), "
-                   "solid (holes are closed), shell (a wall with two sides) or terrain (solid below). "
-                   "With NAME=, what has that name in the file: a node with all below it, a mesh, an "
-                   "OBJ group or a material; once for each, and of several that fit the last counts",
+          {.help = "Kind of the mesh's parts, or of those named NAME in the file; repeatable",
            .fallback = "auto",
            .value = "[NAME=]auto|solid|shell|terrain",
            .recorded = true});
     visit("thickness", request.thickness,
-          {.help = "Of shells, in the collider's units",
+          {.help = "Thickness of shells, in object units",
            .unit = "object units",
-           .fallback = "a texel and a half",
+           .fallback = "1.5 texels",
            .value = "LENGTH",
-           .must = "a length above 0, in the collider's units",
+           .must = "a length above 0 in object units",
            .recorded = true});
-    visit(
-        "voids", request.voids,
-        {.help = "What sheets and solids seal off from the outside together, as a pot and its lid do: full, "
-                 "or hollow",
-         .fallback = "full",
-         .recorded = true});
+    visit("voids", request.voids,
+          {.help = "Fill cavities that several parts seal off together, such as a pot and its lid, or leave "
+                   "them hollow",
+           .fallback = "full",
+           .recorded = true});
     visit("materials", request.materials,
-          {.help =
-               "Materials of the mesh, by their names: keep, or none. The collider knows which surface is of "
-               "which, for responses and events; that takes at most 6 % of its bytes, or "
-               "4 KiB",
-           .fallback = "keep, of a mesh or level with several",
+          {.help = "Keep or drop the mesh's named materials, which responses and events use",
+           .fallback = "keep if there are several",
            .recorded = true});
-    visit(
-        "animated", request.animated,
-        {.help = "Bake a glTF file that moves: the collider also has its skins, morph targets, moving nodes "
-                 "and clips, by which the runtime poses it. Its maps, three of front-back along the axes, "
-                 "are of the rest pose, and of --resolution, 256 by default",
-         .recorded = true});
-    visit(
-        "clips", request.clips,
-        {.help = "With --animated: add the animations of this glTF file, once for each, by nodes of the same "
-                 "name",
-         .value = "FILE"});
+    visit("animated", request.animated,
+          {.help = "Bake an animated glTF file with its skins, morph targets, moving nodes and clips",
+           .recorded = true});
+    visit("clips", request.clips,
+          {.help = "With --animated: add the animations of this glTF file, matched by node name; repeatable",
+           .value = "FILE"});
     visit("heights", request.heights,
-          {.help =
-               "Bake the ground below a height map, in place of a mesh: a grey PNG of 16 or 8 bits, an EXR\n"
-               "image of one channel in metres, whose NaN are holes, or raw samples (.raw, .r16, .hgt).\n"
-               "Heights go along +y, columns along +x, rows along +z. key=value,... with\n"
-               "spacing  metres between samples, 1 by default\n"
-               "low      height of sample 0, of unsigned samples\n"
-               "high     height of sample 65535, or 255 of 8 bits\n"
-               "hole     sample that is none; squares at holes have no ground\n"
-               "width    samples in a row of a raw file, which else is square\n"
-               "type     of raw samples: uint16, or int16 or float32 in metres\n"
-               "order    byte order of raw samples: little or big\n"
-               "offset   x/y/z: place of the first sample at height 0\n"
-               "tile     with --world, squares along a tile's side, 1024 by default",
+          {.help = "Bake ground from a height map (PNG, EXR or raw samples) instead of a mesh: KEY=VALUE,... "
+                   "such as spacing=1,low=0,high=500",
            .value = "SPEC",
            .recorded = true});
-    visit(
-        "time_limit", request.time_limit,
-        {.help =
-             "Seconds that the whole bake may take, the import included. Beyond them exit with 6, and write "
-             "nothing",
-         .unit = "s",
-         .range = {double{0.001F}, 1e7},
-         .fallback = "any",
-         .value = "SECONDS",
-         .must = "a number of seconds from 0.001 to 10000000"});
+    visit("time_limit", request.time_limit,
+          {.help = "Time limit of the whole bake, in seconds; beyond it, exit with code 6 and write nothing",
+           .unit = "s",
+           .range = {double{0.001F}, 1e7},
+           .fallback = "none",
+           .value = "SECONDS",
+           .must = "a number of seconds from 0.001 to 10000000"});
 }
 
 }  // namespace relief

@@ -191,16 +191,18 @@ Result<MeshCheck> check(const CheckRequest& request, Collider collider, std::opt
 
 void measurementFields(FieldVisitor& visit, CheckRequest& request) {
     visit("samples", request.samples,
-          {.help = "Points of each kind", .range = {1.0}, .must = "a whole number of at least 1"});
-    visit("seed", request.seed, {.help = "Seed of the points", .value = "S"});
+          {.help = "Number of sample points near the surface, and as many in the whole box",
+           .range = {1.0},
+           .must = "a whole number of at least 1"});
+    visit("seed", request.seed, {.help = "Seed of the sample points", .value = "S"});
     visit("detail", request.detail,
-          {.help = "Minimum length of a lost part that lowers the grade",
+          {.help = "Shortest lost part of the mesh that lowers the grade, in object units",
            .unit = "object units",
            .range = {0.0, double{1e15F}},
-           .fallback = "a hundredth of the mesh's diagonal; at most 0.1 if the unit is metres",
+           .fallback = "1/100 of the mesh's diagonal, at most 0.1 m",
            .value = "LENGTH",
-           .must = "a length of at least 0, in the collider's units; if these are metres, also with the "
-                   "suffix mm, cm or m"});
+           .must = "a length of at least 0 in object units; if these are metres, mm, cm or m may follow the "
+                   "number"});
 }
 
 void fields(FieldVisitor& visit, CheckRequest& request) {

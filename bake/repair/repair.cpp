@@ -68,14 +68,12 @@ Result<RepairedMesh> repairMesh(PreparedMesh mesh, const RepairOptions& options)
 }
 
 void fields(FieldVisitor& visit, RepairOptions& options) {
-    visit(
-        "strict", options.strict,
-        {.help = "Reject a mesh that is not a closed solid wound outwards, with exit code 3; with --repair, "
-                 "reject a repaired mesh that is still open"});
+    visit("strict", options.strict,
+          {.help = "Reject a mesh that is not a closed solid with outward winding (exit code 3)"});
     visit("repair", options.method,
-          {.help = "Repair the mesh: wrap[=ALPHA] shrinks a closed surface around it that spans gaps of "
-                   "ALPHA longest sides (default: 0.01)",
-           .value = "WORD",
+          {.help = "Bake a closed surface wrapped around the mesh, which spans gaps up to ALPHA times its "
+                   "longest side (default: 0.01)",
+           .value = "wrap[=ALPHA]",
            .recorded = true});
 }
 

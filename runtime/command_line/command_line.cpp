@@ -9,6 +9,8 @@
 #include <cstdlib>
 #include <exception>
 #include <new>
+#include <optional>
+#include <set>
 #include <span>
 #include <sstream>
 
@@ -28,17 +30,32 @@ std::string exitCodes() {
 }
 
 constexpr std::size_t kHelpColumns = 120;
+constexpr const char* kManualOption = "--manual";
+constexpr const char* kNoGroup = "Options";  // CLI11's default
 
-/// Wraps long lines at spaces. Continuation lines of an option are aligned with its description.
-/// \param column  column where descriptions of options start.
+/// In a description, precedes the text that only --manual shows.
+constexpr char kManualMark = '\f';
+
+/// The indentation of a line's continuation. \param column  where descriptions of options begin
+std::size_t indentOf(std::string_view line, std::size_t column) {
+    const std::size_t start = line.find_first_not_of(' ');
+    const std::size_t end = line.find(' ', start);
+    const std::size_t text = line.find_first_not_of(' ', end);
+    const bool is_key = start != std::string_view::npos && start >= column &&
+                        text != std::string_view::npos && text > end + 1;
+    return !line.starts_with("  ") ? 0 : is_key ? text : column;
+}
+
+/// Breaks lines at spaces. The description of an option continues in its column, and that of a key, "key      text", in its own.
+/// \param column  where descriptions of options begin
 std::string folded(const std::string& text, std::size_t column) {
     std::string out;
     for (std::string_view line : split(text, '\n')) {
-        const std::string indent(line.starts_with("  ") ? column : 0, ' ');
+        const std::string indent(indentOf(line, column), ' ');
         std::string before;
         while (before.size() + line.size() > kHelpColumns) {
             const std::size_t space = line.rfind(' ', kHelpColumns - before.size());
-            // Do not break inside the indentation or the names.
+            // Never breaks within the indentation or the names.
             if (space == std::string_view::npos || before.size() + space <= column) {
                 break;
             }
@@ -48,13 +65,28 @@ std::string folded(const std::string& text, std::size_t column) {
         }
         out.append(before).append(line).append("\n");
     }
-    out.pop_back();  // the last line had no newline
+    out.pop_back();  // the text had no newline after its last line
     return out;
 }
 
-/// Help that starts with the examples: moves the footer of CLI11 to the top.
-class ExampleFormatter : public CLI::Formatter {
+std::string namesOf(const std::set<CLI::Option*>& options) {
+    std::string text;
+    for (const CLI::Option* option : options) {
+        text += (text.empty() ? "" : ", ") + option->get_name();
+    }
+    return text;
+}
+
+/// Help that begins with examples: CLI11's footer, moved to the top.
+class HelpFormatter : public CLI::Formatter {
   public:
+    /// \param groups  headings, in their order; others follow.
+    explicit HelpFormatter(std::vector<std::string> groups = {}) : groups_(std::move(groups)) {
+        label("Positionals", "Arguments");
+        label("SUBCOMMAND", "VERB");
+    }
+    void showManual() { manual_ = true; }
+
     std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
         if (mode == CLI::AppFormatMode::Sub) {
             return Formatter::make_help(app, name, mode);
@@ -66,16 +98,15 @@ class ExampleFormatter : public CLI::Formatter {
         }
         return text + "\n" +
                folded(make_description(app) + make_usage(app, name) + make_positionals(app) +
-                          make_groups(app, mode) + make_subcommands(app, mode) +
-                          (app->get_parent() == nullptr ? exitCodes() : ""),
+                          groupsText(*app) + make_subcommands(app, mode) +
+                          (app->get_parent() == nullptr ? exitCodes() : manualNote(name)),
                       column_width_);
     }
-    /// Leaves out "Needs" and "Excludes"; the parser reports them.
-    std::string make_option_opts(const CLI::Option* option) const override {
-        const std::string text = Formatter::make_option_opts(option);
-        return text.substr(0, std::min(text.find(" Needs:"), text.find(" Excludes:")));
+    std::string make_description(const CLI::App* app) const override {
+        const std::string text = shownPart(app->get_description(), "\n\n");
+        return text.empty() ? text : text + "\n\n";
     }
-    /// Lists verbs with the first line of their descriptions.
+    /// In the list of verbs: the first line of the description.
     std::string make_subcommand(const CLI::App* sub) const override {
         const std::string description = sub->get_description();
         std::stringstream out;
@@ -83,9 +114,66 @@ class ExampleFormatter : public CLI::Formatter {
                                  column_width_);
         return out.str();
     }
+    std::string make_option(const CLI::Option* option, bool is_positional) const override {
+        return Formatter::make_option(option, is_positional) + (manual_ ? "\n" : "");
+    }
+    std::string make_option_opts(const CLI::Option* option) const override {
+        if (!option->get_option_text().empty()) {
+            return " " + option->get_option_text();
+        }
+        const bool has_type = option->get_type_size() != 0 && !option->get_type_name().empty();
+        const bool several = option->get_expected_max() == CLI::detail::expected_max_vector_size;
+        return (has_type ? " " + option->get_type_name() : "") + (several ? " ..." : "");
+    }
+    std::string make_option_desc(const CLI::Option* option) const override {
+        std::string text = shownPart(option->get_description(), "\n");
+        if (manual_ && !option->get_needs().empty()) {
+            text += "\nNeeds " + namesOf(option->get_needs()) + ".";
+        }
+        if (manual_ && !option->get_excludes().empty()) {
+            text += "\nExcludes " + namesOf(option->get_excludes()) + ".";
+        }
+        return text;
+    }
+
+  private:
+    [[nodiscard]] std::string shownPart(const std::string& description, const char* gap) const {
+        const std::size_t mark = description.find(kManualMark);
+        const std::string help = description.substr(0, mark);
+        return mark == std::string::npos || !manual_ ? help : help + gap + description.substr(mark + 1);
+    }
+
+    [[nodiscard]] std::string groupsText(const CLI::App& app) const {
+        std::vector<std::string> groups = groups_;
+        for (std::string& group : app.get_groups()) {
+            if (std::ranges::find(groups, group) == groups.end()) {
+                groups.push_back(std::move(group));
+            }
+        }
+        std::string text;
+        for (const std::string& group : groups) {
+            const std::vector<const CLI::Option*> options = app.get_options([&](const CLI::Option* option) {
+                return option->get_group() == group && option->nonpositional();
+            });
+            text += group.empty() || options.empty() ? "" : make_group(group, false, options);
+        }
+        return text;
+    }
+
+    /// \param verb  "relief bake"
+    [[nodiscard]] std::string manualNote(const std::string& verb) const {
+        std::string page = verb;
+        std::ranges::replace(page, ' ', '-');
+        return manual_
+                   ? ""
+                   : "\n`" + verb + " --manual` or `man " + page + "` describes every option in detail.\n";
+    }
+
+    std::vector<std::string> groups_;
+    bool manual_ = false;
 };
 
-/// Returns the verb that was given, or the program.
+/// The verb on the command line, or the program if there is none.
 const CLI::App& activeApp(const CLI::App& app) {
     const std::vector<CLI::App*> called = app.get_subcommands();
     return called.empty() ? app : *called.front();
@@ -94,6 +182,22 @@ const CLI::App& activeApp(const CLI::App& app) {
 std::string helpText(const CLI::App& app) {
     const CLI::App& called = activeApp(app);
     return &called == &app ? app.help() : called.help(app.get_name());
+}
+
+/// The text that the command line requests by --help or --manual, even if other arguments are wrong.
+std::optional<std::string> requestedText(const CLI::App& app) {
+    const CLI::App& called = activeApp(app);
+    const CLI::Option* const help = called.get_help_ptr();
+    if (help != nullptr && help->count() > 0) {
+        return helpText(app);
+    }
+    const CLI::Option* const manual = called.get_option_no_throw(kManualOption);
+    const auto formatter = std::dynamic_pointer_cast<HelpFormatter>(called.get_formatter());
+    if (manual == nullptr || manual->count() == 0 || formatter == nullptr) {
+        return std::nullopt;
+    }
+    formatter->showManual();
+    return helpText(app);
 }
 
 std::vector<std::string> optionNames(const CLI::App& app) {
@@ -126,20 +230,20 @@ std::string noVerb(const CLI::App& app, const std::vector<std::string>& words, c
     const std::vector<std::string> names = verbNames(app);
     const std::vector<std::string_view> known(names.begin(), names.end());
     if (words.empty()) {
-        return "no verb; use one of " + listed(known) + ", or " + help;
+        return "no verb given; use one of " + listed(known) + ", or " + help;
     }
     const std::string guess = didYouMean(words.front(), known);
     return "unknown verb '" + cleanUtf8(words.front()) + "'" +
            (guess.empty() ? "; use one of " + listed(known) : guess);
 }
 
-/// Returns the message for a command line that CLI11 rejected.
+/// The message for a command line that CLI11 rejected.
 std::string parseErrorMessage(const CLI::App& app, const CLI::ParseError& error) {
     const CLI::App& called = activeApp(app);
     const std::string name = app.get_name() + (&called == &app ? "" : " " + called.get_name());
     const std::string help = "see " + name + " --help";
     if (error.get_name() == "ValidationError") {
-        // CLI11 writes "--option: message"; our messages are sentences that start with the option.
+        // CLI11 writes "--option: message". Our messages continue the option's name as a sentence.
         std::string text = error.what();
         if (const std::size_t colon = text.find(": "); colon != std::string::npos) {
             text.replace(colon, 2, " ");
@@ -161,7 +265,7 @@ std::string parseErrorMessage(const CLI::App& app, const CLI::ParseError& error)
     return cleanUtf8(error.what()) + "; " + help;
 }
 
-/// Rejects empty values, which usually come from unset variables of scripts, unless the value is optional.
+/// Rejects empty values, which usually come from unset variables in scripts. Options with an optional value are not checked.
 Result<void> rejectEmptyValues(const CLI::App& app) {
     for (const CLI::Option* option : app.get_options()) {
         const std::vector<std::string>& words = option->results();
@@ -191,9 +295,38 @@ Result<bool> printAnswer(const std::string& text) {
 }  // namespace
 
 void setUpHelp(CLI::App& app, const std::string& help) {
-    app.formatter(std::make_shared<ExampleFormatter>());
+    app.formatter(std::make_shared<HelpFormatter>());
     app.set_help_flag("-h,--help", help);
     app.set_version_flag("--version", app.get_name() + " " RELIEF_VERSION, "Print the version and exit");
+}
+
+void setUpVerbHelp(CLI::App& verb) {
+    verb.set_help_flag("-h,--help", "Print this help and exit");
+    verb.add_flag(kManualOption, "Print this help with every detail and exit");
+}
+
+std::string withDetails(const std::string& help, const std::string& details) {
+    return details.empty() ? help : help + kManualMark + details;
+}
+
+void groupOptions(CLI::App& app, const std::vector<OptionGroup>& groups) {
+    std::vector<std::string> titles;
+    for (const OptionGroup& group : groups) {
+        titles.push_back(group.title);
+        for (const std::string& name : group.options) {
+            CLI::Option* const option = app.get_option_no_throw(name);
+            if (option != nullptr && option->get_group() == kNoGroup) {
+                option->group(group.title);
+            }
+        }
+    }
+    app.formatter(std::make_shared<HelpFormatter>(std::move(titles)));
+}
+
+void addDetails(CLI::App& app, const std::string& name, const std::string& details) {
+    if (CLI::Option* const option = app.get_option_no_throw(name)) {
+        option->description(withDetails(option->get_description(), details));
+    }
 }
 
 void AppDeleter::operator()(CLI::App* app) const {
@@ -224,7 +357,7 @@ std::vector<GivenOption> givenOptions(const CLI::App& parsed) {
 }
 
 Result<bool> parseCommandLine(CLI::App& app, std::vector<std::string> arguments) {
-    std::reverse(arguments.begin(), arguments.end());  // CLI11 expects reverse order
+    std::reverse(arguments.begin(), arguments.end());  // CLI11 expects the reverse order
     try {
         app.parse(std::move(arguments));
     } catch (const CLI::CallForHelp&) {
@@ -232,12 +365,13 @@ Result<bool> parseCommandLine(CLI::App& app, std::vector<std::string> arguments)
     } catch (const CLI::CallForVersion& version) {
         return printAnswer(std::string(version.what()) + "\n");
     } catch (const CLI::ParseError& error) {
-        // Print help even if other arguments are invalid.
-        const CLI::Option* help = activeApp(app).get_help_ptr();
-        if (help != nullptr && help->count() > 0) {
-            return printAnswer(helpText(app));
+        if (const std::optional<std::string> text = requestedText(app)) {
+            return printAnswer(*text);
         }
         return fail(ErrorCode::kUsage, parseErrorMessage(app, error));
+    }
+    if (const std::optional<std::string> text = requestedText(app)) {
+        return printAnswer(*text);
     }
     RELIEF_TRY(rejectEmptyValues(activeApp(app)));
     return true;

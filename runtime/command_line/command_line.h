@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shared by the command lines of both executables: help, version and usage errors.
+// Shared by the command lines of both executables: help, version, and usage errors.
 #pragma once
 
 #include <functional>
@@ -15,47 +15,62 @@ class App;
 
 namespace relief {
 
-/// Adds --help and --version. Call it before adding options and verbs. Help starts with the examples, which are the
-/// footer.
-/// \param help  help text of --help itself.
+/// Adds --help and --version. Call it before options and verbs are added. Help begins with the examples, which are the lines
+/// of the footer. \param help  the help text of --help.
 void setUpHelp(CLI::App& app, const std::string& help = "Print this help and exit");
+/// Adds --help and --manual to a verb. --manual prints the help with all details; the manual page is made from it.
+void setUpVerbHelp(CLI::App& verb);
+
+/// The description of an option or verb. Only --manual shows the details.
+[[nodiscard]] std::string withDetails(const std::string& help, const std::string& details);
+/// Adds details to an option. Does nothing if the app has no such option.
+void addDetails(CLI::App& app, const std::string& name, const std::string& details);
+
+/// A heading in the help, and its options: "--budget". Names that an app lacks have no effect.
+struct OptionGroup {
+    std::string title;
+    std::vector<std::string> options;
+};
+/// Lists the options under headings, in this order; an option named twice, under the first. Call it once all options are
+/// added. Options without a heading follow under "Options".
+void groupOptions(CLI::App& app, const std::vector<OptionGroup>& groups);
 
 struct AppDeleter {
     void operator()(CLI::App* app) const;
 };
-/// Creates a command line without options. \param name  of the program.
+/// A command line without options. \param name  name of the program
 [[nodiscard]] std::unique_ptr<CLI::App, AppDeleter> makeApp(const std::string& name);
-/// \param examples  complete command lines, one per line.
+/// \param examples  complete command lines, one per line
 void describeApp(CLI::App& app, const std::string& description, const std::string& examples);
-/// Sets a callback for when the verb was parsed.
+/// Sets the function to call after the verb is parsed.
 void onVerb(CLI::App& verb, std::function<void()> parsed);
 
 struct GivenOption {
     std::string name;
     std::vector<std::string> long_names;  ///< without their dashes
 };
-/// Returns the options that were given on the command line.
+/// Returns the options that the command line contains.
 [[nodiscard]] std::vector<GivenOption> givenOptions(const CLI::App& parsed);
 
-/// Parses the command line. Prints the output of --help and --version.
-/// \param arguments  without the program name.
-/// \return false after --help or --version, otherwise true.
-/// Errors: kUsage, one line that names the option and the cure; kIo if the output cannot be printed.
+/// Parses the command line. Prints the texts of --help, --manual and --version.
+/// \param arguments  arguments without the program's name
+/// \return false if such a text was printed and the program is done
+/// Errors: kUsage with a one-line message that names the option and the cure; kIo if the text cannot be printed.
 [[nodiscard]] Result<bool> parseCommandLine(CLI::App& app, std::vector<std::string> arguments);
 
-/// Returns all arguments except the program name.
+/// Returns all arguments except the program's name.
 [[nodiscard]] std::vector<std::string> argumentsOf(int argc, char** argv);
 
 /// Writes to standard output. Errors: kIo.
 [[nodiscard]] Result<void> printOut(const std::string& text);
 
-/// The body of main(). Reports errors and exceptions; removes temporary files on signals. Directs spdlog to standard
-/// error as "PROGRAM: warning: …", coloured on a terminal unless NO_COLOR is set.
+/// The body of main(). Exceptions become errors; signals remove temporary files. spdlog writes lines such as
+/// "PROGRAM: warning: …" to standard error, coloured on a terminal unless NO_COLOR is set.
 /// \return the exit code.
 int runProgram(const std::string& program, const std::function<Result<void>()>& run,
                const Error& out_of_memory);
 
-/// Prints "PROGRAM: error: …" to standard error.
+/// Logs "PROGRAM: error: …".
 void reportError(const Error& error);
 
 }  // namespace relief

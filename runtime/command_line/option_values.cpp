@@ -8,7 +8,7 @@
 namespace relief {
 namespace {
 
-/// Validates a word by readWord() for a T, and converts it to a word that CLI11 parses.
+/// Validates a word by readWord() for type T, and converts it to one that CLI11 parses.
 template <class T>
 WordReader fieldValue(const FieldInfo& info, const std::string& must = {}) {
     return [info, must](std::string& word) {
@@ -21,17 +21,15 @@ WordReader fieldValue(const FieldInfo& info, const std::string& must = {}) {
     };
 }
 
-/// The help of a field, with its default and the maximum of a count: "Number of … (default: 5; at most 9)".
+/// The help, the default and the largest value of a count.
 std::string helpOf(const FieldWords& field) {
-    std::string remarks;
-    if (const std::string value = defaultText(field); !value.empty()) {
-        remarks = "default: " + value;
-    }
+    const std::string value = defaultText(field);
+    std::string limits = value.empty() ? "" : "default: " + value;
     const FieldRange& range = field.info.range;
     if (field.number && field.info.must.empty() && range.high < 1e9) {
-        remarks += (remarks.empty() ? "at most " : "; at most ") + numberWord(range.high);
+        limits += (limits.empty() ? "at most " : "; at most ") + numberWord(range.high);
     }
-    return std::string(field.info.help) + (remarks.empty() ? "" : " (" + remarks + ")");
+    return std::string(field.info.help) + (limits.empty() ? "" : " (" + limits + ")");
 }
 
 }  // namespace
@@ -112,10 +110,9 @@ WordReader oneOf(std::span<const std::string_view> words) {
 
 OptionRef addMemoryOption(CLI::App& app, ContainerLimits& limits) {
     limits.memory = kToolMemory;
-    return addOption(app, "--max-memory", limits.memory,
-                     "Maximum size of the unpacked texels of a collider (default: 160MB, or 16 times its "
-                     "file size if "
-                     "that is larger)")
+    return addOption(
+               app, "--max-memory", limits.memory,
+               "Memory limit for a collider's unpacked texels (default: 160MB, or 16 times the file size if larger)")
         ->valueText("BYTES")
         ->transform(fieldValue<std::uint64_t>({.unit = "bytes", .range = kFromOne}));
 }

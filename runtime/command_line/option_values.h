@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Validators and converters of option values, in place of those of CLI11, which accept 0x10, -1 for an unsigned number,
-// and nan, and whose messages name no cure.
-//
-// parseCommandLine() prefixes messages with the name of the option.
+// Validators and transformers of option values. Those of CLI11 accept 0x10, nan, and -1 as a large number, and their messages
+// name no cure. parseCommandLine() prefixes the messages with the option's name.
 #pragma once
 
 #include <cstddef>
@@ -26,18 +24,18 @@ class Option;
 
 namespace relief {
 
-/// Converts a word to one that CLI11 parses. \return empty, or the error: "is 'x' but must be …".
+/// Converts a word to one that CLI11 parses. \return empty, or the error: "is 'x' but must be …"
 using WordReader = std::function<std::string(std::string& word)>;
 
-/// Wraps an option, so that sources need not include CLI11, which takes seconds to compile.
+/// An option of a command line, for sources that do not include the CLI11 header, which takes seconds to compile.
 class OptionRef {
   public:
     OptionRef(CLI::Option* option) : option_(option) {}  // NOLINT: implicit
     const OptionRef* operator->() const { return this; }
 
-    OptionRef valueText(const std::string& text) const;  ///< name of the value in --help: "OUT.png"
+    OptionRef valueText(const std::string& text) const;  ///< the value's name in --help: "OUT.png"
     OptionRef typeName(const std::string& name) const;   ///< the same for a positional argument
-    OptionRef required() const;
+    OptionRef required() const;                          ///< state it in the help of an option
     OptionRef needs(OptionRef other) const;
     OptionRef needs(const std::string& name) const;
     OptionRef excludes(OptionRef other) const;
@@ -50,25 +48,25 @@ class OptionRef {
     CLI::Option* option_;
 };
 
-/// Adds an option that CLI11 converts. T: string, path, number or an optional; option_values.cpp lists the types.
+/// Adds an option of a type that CLI11 parses; option_values.cpp lists the types.
 template <class T>
 OptionRef addOption(CLI::App& app, const std::string& names, T& field, const std::string& help);
 OptionRef addFlag(CLI::App& app, const std::string& names, bool& field, const std::string& help);
 
-/// Accepts only decimal digits, from `least` to `most`.
+/// Only decimal digits, from `least` to `most`.
 [[nodiscard]] WordReader wholeNumber(std::uint64_t least = 0,
                                      std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
 /// Accepts a finite float from `least` to `most`. \param must  "a number of degrees, 0 or more".
 [[nodiscard]] WordReader number(float least, float most, const std::string& must);
 /// Accepts "1.5" or "1.5%", 0 or more; for a float field.
 [[nodiscard]] WordReader percent();
-/// Accepts one of the words, for a text field.
+/// One of some words (kWords), for a text field.
 [[nodiscard]] WordReader oneOf(std::span<const std::string_view> words);
 
 template <class Enum>
 using WordsFor = std::vector<std::pair<std::string_view, Enum>>;
 
-/// Adds an option with a choice of words, shown as a|b|c in --help. \param set  called with the index of the word.
+/// Adds an option whose value is one of `words`; the help shows them as a|b|c. \param set  gets the index of the word
 OptionRef addWordOption(CLI::App& app, const std::string& names, std::vector<std::string_view> words,
                         std::function<void(std::size_t)> set, const std::string& help);
 template <class Field, class Enum>
@@ -85,10 +83,10 @@ OptionRef addWords(CLI::App& app, const std::string& names, Field& field, const 
         [&field, values = std::move(values)](std::size_t i) { field = values[i]; }, help);
 }
 
-/// Adds an option with its own syntax. \param read  parses the word; returns false if it is invalid.
+/// Adds an option with a format of its own. \param read  returns false if the word is invalid
 OptionRef addFormOption(CLI::App& app, const std::string& names, std::function<bool(const std::string&)> read,
                         const std::string& must, const std::string& help);
-/// \param parse  std::string to std::optional<T>; nullopt if the word is invalid.
+/// \param parse  converts std::string to std::optional<T>; nullopt: invalid
 template <class T, class Parse>
 OptionRef addParsed(CLI::App& app, const std::string& names, std::optional<T>& field, const Parse& parse,
                     const std::string& must, const std::string& help) {
@@ -101,15 +99,15 @@ OptionRef addParsed(CLI::App& app, const std::string& names, std::optional<T>& f
         must, help);
 }
 
-/// Maximum size of the unpacked texels of a file, in bytes, unless 16 times the file size is larger: a map of 4096x4096
-/// texels of eight bytes, with a margin.
+/// Default limit on unpacked texels for files smaller than a sixteenth of it, in bytes. It admits one map of 4096 x 4096
+/// texels of eight bytes.
 inline constexpr std::uint64_t kToolMemory = 160'000'000;
 
-/// Lowers limits.memory to kToolMemory, and adds --max-memory, which sets it. `limits` must outlive the app.
+/// Sets limits.memory to kToolMemory, and adds --max-memory, which changes it. `limits` must outlive the app.
 OptionRef addMemoryOption(CLI::App& app, ContainerLimits& limits);
 
-/// Adds an option for each field of a struct or group, which must outlive the app: "max_error" becomes --max-error.
-/// \return the options, in the order of the fields.
+/// Adds an option for each field of a struct or group, which must outlive the app: "max_error" becomes --max-error. Messages
+/// are those of readWord(), prefixed with the option's name (parseCommandLine). \return the options, in that order
 std::vector<OptionRef> addFields(CLI::App& app, FieldRef target);
 
 }  // namespace relief

@@ -1,18 +1,18 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes manual pages from the --help of executables, as man(7) macros without a date: pages.py FOLDER TOOL…"""
+"""Writes manual pages from --help of the tools and --manual of their verbs, without a date: pages.py FOLDER TOOL…"""
 import pathlib
 import re
 import subprocess
 import sys
 
 
-def help_of(*command):
-    return subprocess.run([*command, "--help"], stdout=subprocess.PIPE, text=True, check=True).stdout.rstrip("\n")
+def help_of(*command, option="--help"):
+    return subprocess.run([*command, option], stdout=subprocess.PIPE, text=True, check=True).stdout.rstrip("\n")
 
 
 def escaped(text):
-    """Escapes text for roff: backslashes, hyphens (so that they can be copied), and lines that look like requests."""
+    """Escapes text for roff: backslashes, hyphens that stay hyphens when copied, and lines that look like requests."""
     return re.sub(r"^([.'])", r"\\&\1", text.replace("\\", "\\e").replace("-", "\\-"), flags=re.M)
 
 
@@ -35,7 +35,7 @@ def main(folder, *tools):
         listed = re.search(r"^Subcommands:\n(.*?)(?:\n\n|\Z)", text, flags=re.M | re.S)
         for verb in re.findall(r"^  (\w+) ", listed[1], flags=re.M) if listed else []:
             name = f"{tool.name}-{verb}"
-            (folder / f"{name}.1").write_text(page(name, version, help_of(tool, verb), codes))
+            (folder / f"{name}.1").write_text(page(name, version, help_of(tool, verb, option="--manual"), codes))
 
 
 main(*sys.argv[1:])

@@ -92,7 +92,7 @@ expect 0 "$relief" info one.relief box.relief --json
 [ "$(python3 -c 'import json; text = open("stdout").read(); print([json.loads(d + "\n}")["file"] for d in text.split("\n}\n") if d])')" = "['one.relief', 'box.relief']" ] || die "info: $(cat stdout)"
 expect 3 "$relief" check one.relief bad.relief box.relief
 grep -q '^one.relief: sound' stdout && grep -q '^box.relief: sound' stdout && grep -q "1 of 3 files failed" stderr || die "check: $(cat stdout stderr)"
-expect_error 1 'mesh is for one FILE' "$relief" check one.relief box.relief --mesh box.obj
+expect_error 1 'mesh needs a single FILE' "$relief" check one.relief box.relief --mesh box.obj
 
 # A level in one collider.
 for i in $(seq 0 3 297); do

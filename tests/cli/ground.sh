@@ -102,7 +102,7 @@ bad 6 "large.raw" large.raw low=0,high=1
 rm large.raw
 expect_error 5 "hills.png.*--heights" "$relief" bake hills.png -o bad.relief
 expect_error 1 "--budget" "$relief" bake hills.png --heights $settings -o bad.relief --budget 1MB
-expect_error 1 "two ways" "$relief" bake hills.png --heights $settings -o bad.relief --world v
+expect_error 1 "both name the output" "$relief" bake hills.png --heights $settings -o bad.relief --world v
 expect 0 "$relief" bake hills.png --heights $settings -q
 [ -s hills.relief ] || die "without -o: $(ls)"
 expect_error 1 "is required" "$relief" bake --heights $settings

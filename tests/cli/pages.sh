@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Manual pages, made of --help: formatters accept them, and each has every option of its
-# --help. bash completes verbs, options and values.
+# Manual pages: formatters accept them, and each has every option of its --help. Help is short and grouped. bash completes
+# verbs, options and values.
 . "$(dirname "$0")/lib.sh"
 
 python3 "$RELIEF_SOURCE/scripts/install/pages.py" pages "$relief" "$relief_sim"
@@ -15,7 +15,7 @@ done
 mapfile -t verbs < <("$relief" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z]*\) .*/\1/p')
 [ ${#verbs[@]} -ge 6 ] || die "verbs: ${verbs[*]}"
 
-# Every option, as a person finds it in --help.
+# Every option of --help.
 for page in relief relief-sim "${verbs[@]/#/relief-}"; do
     case $page in
     relief | relief-sim) command=("$RELIEF_BIN/$page") ;;
@@ -28,6 +28,16 @@ for page in relief relief-sim "${verbs[@]/#/relief-}"; do
         grep -qE -- "^ .*$option([ ,]|\$)" text || die "$page(1) lacks $option"
     done
 done
+
+# Each option's help takes at most two lines of 120 columns, and each option of a verb has a heading. Details are in --manual.
+for verb in "${verbs[@]}"; do
+    "$relief" "$verb" --help >text
+    awk '/^  relief / { next } /^  (-|[A-Z])/ { lines = 0 } length > 120 || (/^  / && ++lines > 2)' text >long
+    [ ! -s long ] || die "$verb --help is too long: $(cat long)"
+    ! grep -n '^Options:' text || die "$verb --help has options without a heading"
+done
+"$relief" bake --manual | matches '^ *center .*(cube)$' || die "bake --manual has no keys of --map"
+expect 0 "$relief" check --manual # although FILE is missing
 
 for page in *.1; do
     for formatter in "groff -man -Tutf8 -ww -K utf8" "man --warnings -l"; do

@@ -27,7 +27,7 @@ done
 exrheader small/view_-y.exr | matches '(39 ' || die "40 texels along the longer side: $(exrheader small/view_-y.exr)"
 "$relief" export - -o again --resolution 40 <p.relief
 diff -r small again || die "two exports differ"
-expect_error 1 'resolution does nothing without -o' "$relief" export p.relief --gpu gpu --resolution 40
+expect_error 1 'resolution has no effect without -o' "$relief" export p.relief --gpu gpu --resolution 40
 expect_error 1 'no patches.*leave out --resolution' "$relief" export b.relief -o none --resolution 40
 expect_error 1 '--resolution' "$relief" export p.relief -o none --resolution 5000
 [ ! -e none ] || die "a refused export made a folder"

@@ -77,8 +77,8 @@ distances = sorted(abs(float(row[3])) for row in rows if row[3] and row[0] != 'x
 assert statistics.median(distances) < 0.1 * 2 / 96, statistics.median(distances)
 assert distances[int(0.99 * len(distances))] < 1.0 * 2 / 96, distances[int(0.99 * len(distances))]
 P
-expect_error 1 'nothing to write' "$relief" export b.relief
-expect_error 1 'does nothing without' "$relief" export b.relief -o maps --voxels 64
+expect_error 1 'no output; add' "$relief" export b.relief
+expect_error 1 'has no effect without' "$relief" export b.relief -o maps --voxels 64
 expect_error 1 'voxels' "$relief" export b.relief --vdb x.vdb --voxels 4
 expect_error 1 'output .* is the input' "$relief" export b.relief --vdb b.relief
 expect_error 2 'folder' "$relief" export b.relief --vdb nowhere/x.vdb

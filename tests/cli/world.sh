@@ -79,7 +79,7 @@ expect 0 "$relief" check of_parts/world.json --mesh parts --samples 1000 --max-e
 
 # Options that go with no level, and with none but a level.
 expect_error 1 "--max-error" "$relief" bake level.gltf --world v --max-error 1
-expect_error 1 "two ways" "$relief" bake level.gltf --world v -o x.relief
+expect_error 1 "both name the output" "$relief" bake level.gltf --world v -o x.relief
 expect_error 1 "recipe" "$relief" bake --recipe r.toml --world v
 expect_error 1 "24576" "$relief" bake level.gltf --world v --budget 10kB
 expect_error 1 "--detail" "$relief" check w/world.json --detail 1 --mesh other.gltf

@@ -42,4 +42,4 @@ grep -q '5 bodies of 3 colliders: 0 baked, 3 up to date' stderr || die "by texel
 expect 0 "$relief" bake level.gltf --world by_texel --texel 0.0005 --budget 60kB --json
 json stdout "d['gpu_bytes'] <= 60000"
 grep -q 'warning: box: the texel is ' stderr || die "not named: $(cat stderr)"
-expect_error 1 "two ways" "$relief" bake level.gltf -o v.relief --texel 0.1 --max-error 1
+expect_error 1 "both choose the size" "$relief" bake level.gltf -o v.relief --texel 0.1 --max-error 1

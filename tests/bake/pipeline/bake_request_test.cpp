@@ -108,19 +108,19 @@ TEST(BakeRequest, RulesAcrossFieldsAreOneFunction) {
         return settings ? std::string() : settings.error().message;
     };
     EXPECT_EQ(fault({{"budget", "1MB"}, {"max_error", "1"}}), "");
-    EXPECT_TRUE(fault({{"map", "cube"}, {"paper", "true"}}).starts_with("--map and --paper are two ways"));
-    EXPECT_TRUE(fault({{"paper", "true"}, {"max_error", "1"}}).starts_with("--paper and --max-error are"));
-    EXPECT_TRUE(fault({{"decode", "plane"}}).starts_with("--decode does nothing without --map"));
-    EXPECT_TRUE(fault({{"resolution", "64"}}).ends_with("or choose --map, --paper or --holes keep"));
+    EXPECT_TRUE(fault({{"map", "cube"}, {"paper", "true"}}).starts_with("--map and --paper both choose"));
+    EXPECT_TRUE(fault({{"paper", "true"}, {"max_error", "1"}}).starts_with("--paper and --max-error both"));
+    EXPECT_TRUE(fault({{"decode", "plane"}}).starts_with("--decode has no effect without --map"));
+    EXPECT_TRUE(fault({{"resolution", "64"}}).ends_with("or add --map, --paper or --holes keep"));
     EXPECT_EQ(fault({{"holes", "keep"}, {"resolution", "64"}}), "");
     EXPECT_TRUE(
-        fault({{"holes", "keep"}, {"budget", "1MB"}}).starts_with("--budget does nothing with --holes"));
-    EXPECT_TRUE(fault({{"as", "a=shell"}, {"holes", "keep"}}).starts_with("--as NAME=KIND does nothing"));
+        fault({{"holes", "keep"}, {"budget", "1MB"}}).starts_with("--budget has no effect with --holes"));
+    EXPECT_TRUE(fault({{"as", "a=shell"}, {"holes", "keep"}}).starts_with("--as NAME=KIND has no effect"));
     EXPECT_TRUE(fault({{"repair", "magic"}}).starts_with("--repair is 'magic'"));
     EXPECT_EQ(fault({{"animated", "true"}, {"clips", "walk.glb"}, {"resolution", "64"}, {"up", "+z"}}), "");
-    EXPECT_TRUE(fault({{"animated", "true"}, {"holes", "keep"}}).starts_with("--holes does nothing with"));
-    EXPECT_TRUE(fault({{"animated", "true"}, {"map", "cube"}}).starts_with("--map does nothing with"));
-    EXPECT_TRUE(fault({{"clips", "walk.glb"}}).starts_with("--clips does nothing without --animated"));
+    EXPECT_TRUE(fault({{"animated", "true"}, {"holes", "keep"}}).starts_with("--holes has no effect with"));
+    EXPECT_TRUE(fault({{"animated", "true"}, {"map", "cube"}}).starts_with("--map has no effect with"));
+    EXPECT_TRUE(fault({{"clips", "walk.glb"}}).starts_with("--clips has no effect without --animated"));
 }
 
 TEST(RecordedBake, ReadsWhatBakeWrites) {

@@ -89,9 +89,9 @@ def test_every_option_gives_the_bytes_and_warnings_of_the_tool(arguments, words,
 
 
 def test_no_option_of_the_tool_is_missing():
-    """Those left out are about the command's output, recipes and levels; compress is save()'s."""
+    """Only options of the command's output, recipes and levels are left out; compress belongs to save()."""
     said = set(re.findall(r"(?:^ +| -.,)--([a-z][a-z-]*)", tool("bake", "--help").stdout, re.MULTILINE))
-    others = {"help", "quiet", "verbose", "warnings-only", "output", "json", "depfile", "compress", "recipe",
+    others = {"help", "manual", "quiet", "verbose", "warnings-only", "output", "json", "depfile", "compress", "recipe",
               "events", "shard", "stamp", "dry-run", "world"}
     has = {name for name in inspect.signature(relief.bake).parameters if name not in ("mesh", "triangles", "name")}
     assert others < said
@@ -107,7 +107,7 @@ def test_height_maps_are_ground(mesh, tmp_path):
     assert tool("bake", path, "-q", "-o", tmp_path / "a.relief", "--heights", words).returncode == 0
     ground = relief.bake(path, heights=words, threads=1)
     assert ground.to_bytes() == (tmp_path / "a.relief").read_bytes()
-    with pytest.raises(relief.UsageError, match="^budget is for meshes"):
+    with pytest.raises(relief.UsageError, match="^budget has no effect with heights"):
         relief.bake(path, heights=words, budget="1MB")
     with pytest.raises(relief.InputError, match="scene.obj.*do not form rows of 7 samples"):
         relief.bake(mesh, heights=words + ",width=7")
