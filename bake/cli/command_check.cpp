@@ -105,7 +105,8 @@ std::string checkText(const MeshCheckReport& report) {
         const auto& [judged, other, wrong] =
             report.max_error ? std::tuple(original, repaired, run.wrongPercent())
                              : std::tuple(repaired, original, run.original.accuracy.field.near.total());
-        text += "That is against " + judged + "; against " + other + ": " + shortNumber(wrong) + " %\n";
+        text +=
+            "The verdict is for " + judged + "; for " + other + ", " + shortNumber(wrong) + " % are wrong\n";
     }
     for (const std::string& part :
          {partsText(run.part_accuracy, run.parts, run.collider), placesText(run.places, run.collider),

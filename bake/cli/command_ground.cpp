@@ -43,11 +43,11 @@ Result<WorldField> fieldOf(const std::string& file, const ContainerLimits& limit
     if (namesWorld(file)) {
         return WorldField(RELIEF_TRY(loadWorld(file, limits)));
     }
-    LoadedWorld alone;
-    alone.world.colliders.emplace_back();
-    alone.world.bodies.emplace_back();
-    alone.colliders.push_back(RELIEF_TRY(readColliderFile(file, limits)).collider);
-    return WorldField(std::move(alone));
+    LoadedWorld single;
+    single.world.colliders.emplace_back();
+    single.world.bodies.emplace_back();
+    single.colliders.push_back(RELIEF_TRY(readColliderFile(file, limits)).collider);
+    return WorldField(std::move(single));
 }
 
 Result<void> checkOptions(const std::string& file, const WorldCheckCall& call) {

@@ -52,6 +52,10 @@ std::string recipeDictionary() {
 GeneratedTexts bakeTexts() {
     const std::vector<FieldWords> bake = fieldsOf(BakeRequest());
     const std::vector<FieldWords> check = fieldsOf(CheckRequest());
+    std::vector<FieldWords> measurement = check;
+    std::erase_if(measurement, [&](const FieldWords& field) {
+        return std::ranges::find(bake, field.name, &FieldWords::name) != bake.end();
+    });
     std::vector<FieldWords> options = bake;
     std::ranges::move(fieldsOf(BakeOutputs()), std::back_inserter(options));
     std::list<std::string> meanings;  // the fields refer to them
@@ -66,7 +70,7 @@ GeneratedTexts bakeTexts() {
         {"bake/cli/README.md", "bake-options", optionTable(options)},
         {"bake/cli/README.md", "map-keys", mapKeyTable()},
         {"bake/cli/README.md", "heights-keys", heightsKeyTable()},
-        {"bake/cli/README.md", "check-options", optionTable(check)},
+        {"bake/cli/README.md", "check-options", optionTable(measurement)},
         {init, "bake-arguments", pythonArguments(bake, "         ")},
         {init, "check-arguments", pythonArguments(check, "          ")},
         {.path = "recipe.dict", .part = {}, .text = recipeDictionary(), .built = true},

@@ -255,7 +255,7 @@ py::list describeFields() {
         const std::string fallback = defaultText(field);
         described.append(py::make_tuple(
             field.name, kKinds.at(static_cast<std::size_t>(field.kind)),
-            std::string(field.info.help) + (fallback.empty() ? "" : "; default: " + fallback)));
+            std::string(field.info.help) + (fallback.empty() ? "" : " (default: " + fallback + ")")));
     }
     return described;
 }

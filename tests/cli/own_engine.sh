@@ -103,4 +103,4 @@ P
 
 # What it refuses.
 "$relief" export box.relief 2>message && die 'export wrote nothing, and said nothing'
-grep -q 'give a folder with -o or --gpu' message || die "$(cat message)"
+grep -q 'add -o DIR, --gpu DIR' message || die "$(cat message)"

@@ -28,7 +28,7 @@ exrheader small/view_-y.exr | matches '(39 ' || die "40 texels along the longer 
 "$relief" export - -o again --resolution 40 <p.relief
 diff -r small again || die "two exports differ"
 expect_error 1 'resolution has no effect without -o' "$relief" export p.relief --gpu gpu --resolution 40
-expect_error 1 'no patches.*leave out --resolution' "$relief" export b.relief -o none --resolution 40
+expect_error 1 'no patches.*remove --resolution' "$relief" export b.relief -o none --resolution 40
 expect_error 1 '--resolution' "$relief" export p.relief -o none --resolution 5000
 [ ! -e none ] || die "a refused export made a folder"
 ln -s ../p.relief small/view_+z.exr.link && mv small/view_+z.exr.link small/view_+z.exr

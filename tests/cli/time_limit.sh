@@ -35,7 +35,7 @@ is old || die "a bake whose time is up leaves $(ls -lA out)"
 # An import that would never end; the worker ends too.
 unfold unfold.dae
 limited 0.5 unfold.dae --import-time 600 --import-memory 100GB
-[ "$code" -eq 6 ] && grep -q "unfold\.dae.*within 0\.5 s; it was reading the mesh" stderr || die "exit code $code: $(cat stderr)"
+[ "$code" -eq 6 ] && grep -q "unfold\.dae.*within 0\.5 s; it had been reading the mesh" stderr || die "exit code $code: $(cat stderr)"
 is old || die "an import whose time is up leaves $(ls -lA out)"
 
 # At any time: all new or all old.
