@@ -183,8 +183,8 @@ void ContainerReader::readDescription() {
 /// \return whether the rest of the header can be interpreted.
 bool ContainerReader::readHeader() {
     if (bytes_.size() < sizeof(header)) {
-        add(IssueCode::kTooShort, std::to_string(bytes_.size()) + " bytes, but the header alone has " +
-                                      std::to_string(sizeof(header)));
+        add(IssueCode::kTooShort,
+            std::to_string(bytes_.size()) + " bytes, but a header has " + std::to_string(sizeof(header)));
         return false;
     }
     ContainerHeader read;

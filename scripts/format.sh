@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Formats every C++ file with clang-format. --check only reports unformatted files, and fails if there are any.
+# Formats every C++ file by .clang-format. With --check, changes nothing; lists files that are not formatted and lines that
+# break the rules of prose in CONTRIBUTING.md that a program can see, and fails if there are any.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -8,3 +9,23 @@ arguments=(-i)
 [ "${1:-}" != --check ] || arguments=(--dry-run --Werror)
 find bake formats runtime samples shaders tests \( -name '*.h' -o -name '*.cpp' \) -print0 |
     xargs -0 -r clang-format "${arguments[@]}"
+[ "${1:-}" = --check ] || exit 0
+
+sources='\.(h|hpp|cpp|c|glsl|vert|frag|comp|js|mjs|ts|py|sh|cmake)$|CMakeLists\.txt$'
+opening='^ *(//|#|\*)[/!<]* *(Of|What|Where|Whatever|Whoever|Who) |[;,{] +(//|/\*)[/!<]* *(Of|Where|Whatever|Whoever|Who) '
+words='\b(alone|heed(s|ed)?|mend(s|ed|ing)?|has (it|them))\b'
+quoted="((^|[^:])//|#|\"|^ *\*).*$words"
+found=0
+while IFS= read -r file; do
+    case $file in
+        scripts/format.sh | CONTRIBUTING.md | *node_modules*) continue ;;
+        *.md) pattern=$words ;;
+        *) pattern="$opening|$quoted" ;;
+    esac
+    ! grep -nHE "$pattern" "$file" || found=1
+done < <(find . -path ./build -prune -o -path ./out -prune -o -path ./.git -prune -o -type f -print |
+    sed 's|^\./||' | grep -E "$sources|\.md$" | sort)
+[ "$found" = 0 ] || {
+    echo "format.sh: rewrite the lines above: no comment opens with Of, What or Where; only, not alone; fix, not mend" >&2
+    exit 1
+}

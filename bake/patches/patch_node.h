@@ -51,7 +51,7 @@ struct PatchNode {
     bool walls = true;     ///< the inside lies between the surfaces of a pair
     bool in_void = false;  ///< a node without triangles lies in a void
     DepthPlanes planes = DepthPlanes::kNone;
-    /// Of each shape tried: weighted volume, object units cubed.
+    /// Weighted error of each shape that was tried: volume, object units cubed.
     std::array<double, kPatchShapes.size()> errors;
     double pair_least = 0.0;  ///< lower bound of the errors of any pair
     double passed_by = 0.0;   ///< volume missed between the lines; included in all errors

@@ -34,7 +34,7 @@ struct AssetResult {
     double ms = 0.0;          ///< duration of the bake
     std::string hash;         ///< XXH3-128 of the output, if baked or up to date
     std::uint64_t bytes = 0;  ///< of the output with its containers, if baked or up to date
-    /// Of a world, relative to the output folder, if baked or up to date.
+    /// The containers of a world, relative to the output folder, if baked or up to date.
     std::vector<std::string> containers;
     /// Misclassified points near the surface; for a world, those of its worst collider.
     std::optional<double> wrong_percent;

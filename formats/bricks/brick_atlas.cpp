@@ -14,7 +14,7 @@
 namespace relief {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "the file is written as memory has it");
+static_assert(std::endian::native == std::endian::little, "the file has the byte order of memory");
 
 constexpr std::array<char, 8> kMagic{'B', 'R', 'I', 'C', 'K', 'S', '0', '1'};
 constexpr std::uint32_t kSideMax = 65536;  // cubes along an axis, and voxels per brick

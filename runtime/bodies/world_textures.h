@@ -38,7 +38,7 @@ struct ColliderBody {
     std::optional<std::uint32_t> group = {};
 };
 
-/// Where the texels of a live map are rendered.
+/// The place in the textures where a live map is rendered.
 struct LiveSlot {
     const GlTexture* texels = nullptr;  ///< texture of its layout
     GLint x = 0;                        ///< position of its texel (0, 0)

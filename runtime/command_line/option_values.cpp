@@ -110,9 +110,9 @@ WordReader oneOf(std::span<const std::string_view> words) {
 
 OptionRef addMemoryOption(CLI::App& app, ContainerLimits& limits) {
     limits.memory = kToolMemory;
-    return addOption(
-               app, "--max-memory", limits.memory,
-               "Memory limit for a collider's unpacked texels (default: 160MB, or 16 times the file size if larger)")
+    return addOption(app, "--max-memory", limits.memory,
+                     "Memory limit for a collider's unpacked texels (default: 160MB, or 16 times the file "
+                     "size if larger)")
         ->valueText("BYTES")
         ->transform(fieldValue<std::uint64_t>({.unit = "bytes", .range = kFromOne}));
 }

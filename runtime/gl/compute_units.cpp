@@ -103,7 +103,7 @@ void StorageUnits::bind(GLuint unit, const GlBuffer& buffer) {
 }
 
 void StorageUnits::order() {
-    // Of the two bits, only the image bit also orders later stores after earlier loads.
+    // The image bit also orders later stores after earlier loads; the storage bit does not.
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 

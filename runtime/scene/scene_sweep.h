@@ -33,7 +33,7 @@ class SceneSweep {
     /// Accounts for births that do not come from emitters.
     void add(const Scene& scene, std::span<const Birth> births);
 
-    /// Returns the sweep of a step: collision.sweep if the scene has it.
+    /// Returns the sweep of a step: collision.sweep if the scene sets it.
     /// \param warnings  receives one line, once, if particles can still pass through thin colliders: their number, the
     ///                  thinnest, and the cure.
     [[nodiscard]] float lengthFor(float dt, const Scene& scene, std::vector<std::string>& warnings);
