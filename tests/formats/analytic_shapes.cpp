@@ -93,7 +93,7 @@ class Torus : public Shape {
         const double flat = std::hypot(direction.x, direction.y);
         std::vector<double> roots;
         if (glm::length(origin) < 1e-12) {
-            // In the plane of the ray and the axis: |(flat, z)·t − (ring, 0)| = tube.
+            // In the plane of ray and axis: |(flat, z)·t − (ring, 0)| = tube.
             const double middle = flat * ring_;
             const double squared = middle * middle - (ring_ * ring_ - tube_ * tube_);
             if (squared > 0.0) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shapes whose rays have closed-form hits, and depth maps made of them in double precision: the truth that
-// the code under test is held against. Nothing here calls vote(), cubeCoordinates() or cubeDirection().
+// Shapes with closed-form ray hits, and depth maps computed from them in double precision: the ground truth of these
+// tests. No code here calls vote(), cubeCoordinates() or cubeDirection().
 #pragma once
 
 #include <glm/mat3x3.hpp>
@@ -23,7 +23,7 @@ struct Hit {
 class Shape {
   public:
     virtual ~Shape() = default;
-    /// All hits, the nearest first.
+    /// All hits, nearest first.
     [[nodiscard]] virtual std::vector<Hit> hits(const glm::dvec3& origin,
                                                 const glm::dvec3& direction) const = 0;
     [[nodiscard]] virtual bool inside(const glm::dvec3& p) const = 0;
@@ -31,7 +31,7 @@ class Shape {
 
 [[nodiscard]] std::unique_ptr<Shape> makeSphere(const glm::dvec3& center, double radius);
 [[nodiscard]] std::unique_ptr<Shape> makeBox(const glm::dvec3& center, const glm::dvec3& half);
-/// Around the z axis of object space. Only for rays through its centre or parallel to its axis, whose hits
+/// A torus around the z axis of object space. Supports only rays through its centre or parallel to its axis, whose hits
 /// are roots of a quadratic.
 [[nodiscard]] std::unique_ptr<Shape> makeTorus(double ring_radius, double tube_radius);
 
@@ -54,23 +54,23 @@ struct CubeFrame {
     [[nodiscard]] glm::dvec3 toObject(const glm::dvec3& map) const { return center + axes * (half * map); }
 };
 
-inline const glm::dmat3 kTurned = rotation({1.0, 2.0, -0.5}, 37.0);  ///< along no axis
+inline const glm::dmat3 kTurned = rotation({1.0, 2.0, -0.5}, 37.0);  ///< not aligned with any axis
 
-/// The centred volume of the given sides.
+/// A centred volume with the given side lengths.
 [[nodiscard]] OrthographicFrame centeredFrame(const glm::dvec3& center, const glm::dmat3& axes,
                                               const glm::dvec3& sides);
 
-/// A map without surfaces; the frame alone.
+/// A map with this frame and no surfaces.
 [[nodiscard]] DepthMap emptyMap(const OrthographicFrame& frame, MapFormat format, Compare compare,
                                 std::uint32_t width, std::uint32_t height);
 [[nodiscard]] DepthMap emptyMap(const CubeFrame& frame, Compare compare, std::uint32_t size);
 
-/// Hits of the ray through a texel's centre that lie in the volume, the nearest first.
+/// Hits of the ray through the texel's centre that lie inside the volume, nearest first.
 [[nodiscard]] std::vector<Hit> texelHits(const Shape& shape, const OrthographicFrame& frame,
                                          const DepthMap& map, std::uint32_t x, std::uint32_t y);
 
-/// The direction in map space, not of unit length, through a texel's centre: OpenGL 3.3, table 3.21, solved
-/// for the direction.
+/// The direction in map space through the texel's centre, not of unit length. Solves OpenGL 3.3, table 3.21, for the
+/// direction.
 [[nodiscard]] glm::dvec3 cubeTexelDirection(std::uint32_t face, std::uint32_t x, std::uint32_t y,
                                             std::uint32_t size);
 
@@ -79,14 +79,14 @@ inline const glm::dmat3 kTurned = rotation({1.0, 2.0, -0.5}, 37.0);  ///< along 
 [[nodiscard]] DepthMap makeMap(const Shape& shape, const CubeFrame& frame, Compare compare,
                                std::uint32_t size);
 
-/// Front-back maps that look along the three axes in turn. Each leaves three texels around a box of this half side.
+/// Front-back maps along the three axes. Each has a margin of three texels around a box of this half side.
 [[nodiscard]] Collider threeMaps(const Shape& shape, const glm::dvec3& center, const glm::dmat3& axes,
                                  double half, std::uint32_t size, MapFormat format,
                                  Decode decode = Decode::kProjected);
 
 [[nodiscard]] double angleInDegrees(const glm::dvec3& a, const glm::dvec3& b);
 
-/// What an orthographic map may be.
+/// Settings of an orthographic map.
 struct Encoding {
     MapFormat format;
     Compare compare;
@@ -97,16 +97,16 @@ inline constexpr Encoding kOrthographic[] = {
     {MapFormat::kFrontBackHalf, Compare::kBoth}, {MapFormat::kFrontBackFixed, Compare::kBoth}};
 [[nodiscard]] std::string nameOf(const Encoding& encoding);
 
-/// A unit normal as a texel of this format holds it.
+/// A unit normal after rounding to this format.
 [[nodiscard]] glm::dvec3 storedNormal(MapFormat format, const glm::dvec3& normal);
 
-/// How far a stored depth may be from the given depth, in map units.
+/// The largest error of a stored depth, in map units.
 [[nodiscard]] double depthQuantum(MapFormat format, double depth);
 
-/// Rounding of a row of T·P in float, in map units: the row's entries, three products, three sums.
+/// Bound on the float rounding of a row of T·P, in map units: the row's entries, three products, three sums.
 [[nodiscard]] double transformSlack(const glm::vec4& row, const glm::vec3& p);
 
-/// Rounding of the distance of a plane in float, in object units: of T·P and of the products and sums behind it.
+/// Bound on the float rounding of a plane's distance, in object units: T·P and the products and sums after it.
 [[nodiscard]] double roundingSlack(const DepthMap& map, const glm::vec3& p, double from_surface);
 
 }  // namespace relief::test

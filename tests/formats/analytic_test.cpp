@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Votes against closed-form shapes: signs, scale, normals, and what a map says where it knows nothing.
+// Votes against closed-form shapes: signs, scale, normals, and votes without data.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ double combined(double a, double b) {
     return a >= 0.0 && b >= 0.0 ? std::min(a, b) : std::max(a, b);
 }
 
-/// A texel's ray: from depth 0 along a unit vector.
+/// A texel's ray: starts at depth 0, along a unit vector.
 struct TrueRay {
     glm::dvec3 from;
     glm::dvec3 direction;
@@ -32,10 +32,10 @@ struct TrueRay {
     [[nodiscard]] glm::dvec3 at(double t) const { return from + t * direction; }
 };
 
-/// What one end of a texel has to vote at P, and how far a reader may be off. Bounds are derived, not fitted: with n and S
-/// the shape's normal and hit on a texel's ray, n_q and S_q what the texel holds, the plane's
-/// f_q(P) − f(P) = (n_q − n)·(P − S) + n_q·(S − S_q), where S − S_q lies along the ray and is as long as the quantum of the
-/// depth; and float arithmetic adds a few roundings of T·P.
+/// The expected vote of one end of a texel at P, and its tolerance. Bounds are derived, not fitted. Let n and S be the
+/// shape's normal and hit on the texel's ray, and n_q and S_q the texel's values. The error of the plane is f_q(P) −
+/// f(P) = (n_q − n)·(P − S) + n_q·(S − S_q). S − S_q lies along the ray, and its length is the quantum of the depth.
+/// Float arithmetic adds a few roundings of T·P.
 struct Expected {
     double distance;
     double bound;
@@ -64,8 +64,8 @@ Expected expectedOf(const DepthMap& map, const TrueRay& ray, const Hit& hit, boo
 
 class Votes {
   public:
-    /// With planes, anywhere in a texel's column the map votes the distance to the plane that touches the shape on the ray
-    /// through the texel's centre. Projected, it votes the distance along that ray, whose sign is the shape's.
+    /// With planes, every point in a texel's column gets the distance to the shape's tangent plane at the hit of the
+    /// centre ray. Projected texels vote the distance along that ray, with the shape's sign.
     void expect(const Shape& shape, const OrthographicFrame& frame, const Encoding& encoding, Decode decode) {
         SCOPED_TRACE(nameOf(encoding) + " " + decodeName(decode));
         start(makeMap(shape, frame, encoding.format, encoding.compare, 21, 17), decode);
@@ -116,7 +116,7 @@ class Votes {
         EXPECT_TRUE(valid) << valid.error().message;
     }
 
-    /// The place of a point in its texel.
+    /// The position of a point within its texel.
     double across() { return map_.decode == Decode::kPlane ? within_(random_) : 0.5; }
 
     void expectVote(const Shape& shape, const TrueRay& ray, const std::vector<Hit>& hits,
@@ -140,11 +140,11 @@ class Votes {
                    double{kPlaneCosineMin};
         };
         if (map_.decode == Decode::kPlane && (stands(front) || stands(back))) {
-            return;  // its texel holds another number: see plane_test
+            return;  // the texel stores another value: see plane_test
         }
         if (both && map_.decode == Decode::kPlane &&
             std::min(std::abs(a.distance), std::abs(b.distance)) < bound) {
-            return;  // where an end changes sign the other takes over
+            return;  // at a sign change of one end the other decides
         }
         const double expected = combined(a.distance, b.distance);
         ASSERT_NEAR(got->distance, expected, bound);
@@ -153,7 +153,7 @@ class Votes {
                 angleInDegrees(glm::dvec3(got->normal), expected == a.distance ? front.normal : back.normal),
                 map_.format == MapFormat::kFloat32 ? 1e-4 : 0.65);
         }
-        // A single map is right of what it calls outside, and a map of both ends of a convex shape is right.
+        // A single map is right about points outside. A map of both ends of a convex shape is right everywhere.
         if (map_.decode == Decode::kProjected && std::abs(expected) > bound) {
             const bool inside = shape.inside(glm::dvec3(p));
             if (expected > 0.0 || both) {
@@ -187,7 +187,7 @@ TEST(Analytic, SphereBoxAndTorusInEveryFormatCompareAndDecode) {
             const glm::dmat3 other(-kTurned[0], kTurned[1], kTurned[2]);
             votes.expect(*box, centeredFrame(middle, kTurned, {2.5, 2.25, 2.5}), e, decode);
             votes.expect(*box, centeredFrame(middle, other, {2.5, 2.25, 2.5}), e, decode);
-            // Turned about the torus' own axis, and looking up as well as down.
+            // Rotated about the torus axis, looking up and down.
             for (const glm::dmat3& axes :
                  {rotation({0, 0, 1}, 25.0), rotation({0, 0, 1}, 70.0) * rotation({1, 0, 0}, 180.0)}) {
                 votes.expect(*torus, centeredFrame({0.01, 0.02, 0.0}, axes, {3.2, 3.3, 1.0}), e, decode);
@@ -215,7 +215,7 @@ TEST(Analytic, CubesFromWithinAConvexShapeFromBesideItAndFromTheHoleOfATorus) {
 }
 
 TEST(CubeCoordinates, TableOfOpenGL) {
-    // Table 3.21 of OpenGL 3.3: s = ½(sc/|ma| + 1), t = ½(tc/|ma| + 1), by hand for one direction a face.
+    // OpenGL 3.3, table 3.21: s = ½(sc/|ma| + 1), t = ½(tc/|ma| + 1), computed by hand for one direction per face.
     struct Row {
         glm::vec3 direction;
         CubeCoordinates expected;
@@ -244,7 +244,7 @@ TEST(CubeCoordinates, EqualComponentsGoToXThenY) {
     EXPECT_EQ(cubeCoordinates({0.5F, -1, -1}).face, 3U);
 }
 
-/// [−2, 2]² × [−1, 1], every inner texel full with its surface at z = 0.
+/// [−2, 2]² × [−1, 1], all inner texels filled, with the surface at z = 0.
 DepthMap plateMap(Compare compare) {
     const auto half_space = makeBox({0.0, 0.0, compare == Compare::kLess ? 50.0 : -50.0}, glm::dvec3(50.0));
     return makeMap(*half_space, centeredFrame({0, 0, 0}, glm::dmat3(1.0), {4.0, 4.0, 2.0}),
@@ -272,14 +272,13 @@ TEST(ViewVolume, OutsideTheWindowIsFarOutsideIfTheMapEnclosesAndSilentOtherwise)
 
 TEST(ViewVolume, TheBorderIsOutsideTheWindow) {
     DepthMap map = plateMap(Compare::kLess);
-    // A surface written into the border is never seen.
+    // A surface in the border is ignored.
     for (std::uint32_t i = 0; i < 8; ++i) {
         for (const auto& [x, y] : {std::pair(i, 0U), {i, 7U}, {0U, i}, {7U, i}}) {
             encodeTexel(map.format, {Surface{0.5F, {0, 0, -1}}, std::nullopt}, map.texelAt(0, x, y));
         }
     }
-    // A texel is half a unit wide: the border is [−2, −1.5] and [1.5, 2]. The lower edge belongs to the
-    // window.
+    // A texel is half a unit wide: the border is [−2, −1.5] and [1.5, 2]. The lower edge belongs to the window.
     for (int axis = 0; axis < 2; ++axis) {
         for (const auto& [at, seen] :
              {std::pair(-1.75F, false), {-1.5F, true}, {1.499F, true}, {1.5F, false}, {1.75F, false}}) {
@@ -295,8 +294,7 @@ TEST(ViewVolume, BeforeAndBehindTheVolume) {
     for (const Compare compare : {Compare::kLess, Compare::kGreater}) {
         DepthMap map = plateMap(compare);
         const float free_side = compare == Compare::kLess ? -1.0F : 1.0F;
-        // On the side of free space the distance still holds; on the other side nothing of the collider is
-        // left.
+        // The distance is valid on the free side. On the other side the collider has ended.
         EXPECT_FLOAT_EQ(vote(map, {0, 0, 5.0F * free_side})->distance, 5.0F);
         expectFarOutside(vote(map, {0, 0, -5.0F * free_side}), compareName(compare));
         EXPECT_FLOAT_EQ(vote(map, {0, 0, -0.75F * free_side})->distance, -0.75F);
@@ -329,7 +327,7 @@ TEST(ViewVolume, CubeAtItsCentreAndOutsideItsVolume) {
     map.encloses = false;
     EXPECT_FALSE(vote(map, {1.6F, 0, 0}));
     EXPECT_NEAR(vote(map, {1.4F, 0, 0})->distance, 0.4F, 1e-2F);
-    // A LESS cube behind its surface, and outside the volume: nothing of the collider is left there.
+    // A LESS cube, behind its surface and outside the volume: the collider has ended.
     map.compare = Compare::kLess;
     EXPECT_FALSE(vote(map, {1.6F, 0, 0}));
     map.encloses = true;
@@ -343,14 +341,14 @@ TEST(ViewVolume, NoFinitePointGivesNaNAndFarOnesAreOutside) {
         threeMaps(*ball, glm::dvec3(0.0), glm::dmat3(1.0), 1.0, 16, MapFormat::kFrontBackHalf);
     for (const Compare compare : {Compare::kLess, Compare::kGreater}) {
         collider.maps.push_back(plateMap(compare));
-        // A thin volume, in each direction: one coordinate overflows, alone, first or later.
+        // A thin volume in each direction: exactly one coordinate overflows.
         for (int axis = 0; axis < 3; ++axis) {
             glm::dvec3 half(2.0);
             half[axis] = 1e-3;
             collider.maps.push_back(makeMap(*ball, CubeFrame{{0, 0, 0}, kTurned, half}, compare, 4));
         }
     }
-    // Frames so small that T·P overflows.
+    // T·P overflows in frames this small.
     collider.maps.push_back(emptyMap(centeredFrame({1, 1, 1}, kTurned, {1e-6, 2e-6, 3e-6}),
                                      MapFormat::kFloat32, Compare::kGreater, 4, 4));
     const std::size_t small = collider.maps.size();

@@ -25,7 +25,7 @@ DepthMap voter(std::optional<float> distance) {
         map.empty_is_outside = false;
         return map;
     }
-    // The normal tells the voters apart.
+    // The normal identifies the voter.
     const glm::dvec3 normal = test::rotation({0, 0, 1}, *distance * 40.0)[0];
     encodeTexel(map.format, {Surface{*distance / 4.0F + 0.5F, glm::vec3(normal)}, std::nullopt},
                 map.texelAt(0, 1, 1));
@@ -72,7 +72,7 @@ TEST(InsideBox, IsWhereAllVolumesThatEncloseMeet) {
     ASSERT_TRUE(box);
     EXPECT_EQ(box->min, glm::vec3(-1, -2, -2));
     EXPECT_EQ(box->max, glm::vec3(2, 1, 2));
-    // The squares of such rows vanish in floats.
+    // The squares of these rows underflow in floats.
     for (DepthMap& map : collider.maps) {
         for (glm::vec4& row : map.object_to_map.row) {
             row = glm::vec4(1e-24F * glm::vec3(row), row.w);
@@ -134,7 +134,7 @@ TEST(Rule2, FarOutsideHasNoNormalAndTheDecidingMapGivesIt) {
     EXPECT_TRUE(evaluate(colliderOf({-0.5F}), kOrigin).inside());
 }
 
-/// Inside is evaluate's, and where it is true so are normal and map; outside, the first map that says so.
+/// `inside` agrees with evaluate(). Inside, so do normal and map. Outside, the map is the first that votes outside.
 void expectInsideAgrees(const Collider& collider, const glm::vec3& p) {
     const FieldSample full = evaluate(collider, p);
     const InsideSample early = evaluateInside(collider, p);
@@ -163,7 +163,7 @@ TEST(Inside, IsTheSignOfEvaluateForAnyOrderOfVotes) {
 }
 
 TEST(Inside, StopsAtTheFirstMapThatSeesThePointOutside) {
-    // What lies behind that map is not looked at: it has no texels to read.
+    // The second map has no texels, so it must not be read.
     Collider collider = colliderOf({-0.5F, 0.25F, -0.5F});
     collider.maps[2].texels.clear();
     EXPECT_FALSE(evaluateInside(collider, kOrigin).inside);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Containers made by hand, with correct checksums and one lie each: checksums guard against accidents, the
-// reader's own checks against people. Every issue code of formats/README.md has a file here that shows it.
+// Hand-made containers with correct checksums and one false value each: checksums detect accidents, the reader's
+// validation detects attacks. Every issue code of formats/README.md has a file here that triggers it.
 #include <flatbuffers/flatbuffers.h>
 #include <gtest/gtest.h>
 #include <zstd.h>
@@ -60,7 +60,7 @@ struct Recipe {
     std::uint64_t triangles = 12;
     std::string option = "fixed8";  // the value of "map"; empty: there are no options
     std::vector<MapRecipe> maps = std::vector<MapRecipe>(2);
-    bool later_fields = false;  // as a later minor version would append
+    bool later_fields = false;  // fields that a later minor version could append
     const char* identifier = "RLF2";
     std::function<void(ContainerHeader&)> header;  // before its checksum
     std::function<void(Bytes&)> bytes;             // after all checksums
@@ -153,7 +153,7 @@ Recipe with(F change) {
     return recipe;
 }
 
-/// A file in whose metadata one of the tables lacks a field.
+/// A file with one field missing from one of the metadata tables.
 Bytes without(const std::function<const void*(const fb::Collider&)>& table_of, voffset_t field) {
     Bytes bytes = fileOf({});
     const std::byte* metadata = bytes.data() + sizeof(ContainerHeader);
@@ -174,13 +174,13 @@ ErrorCode errorOf(IssueCode code) {
                                    : ErrorCode::kInvalidInput;
 }
 
-/// The codes that have been expected.
+/// Codes expected so far.
 std::set<IssueCode>& shownCodes() {
     static std::set<IssueCode> codes;
     return codes;
 }
 
-/// The inspection has an issue of this code, of this map, and readers agree with it.
+/// Expects an issue with this code and map, and the same error from the readers.
 void expectIssue(const Bytes& bytes, IssueCode code, int map = -1, const ContainerLimits& limits = {}) {
     const Issue expected{code, map, {}, {}};
     SCOPED_TRACE(expected.id());
@@ -206,7 +206,7 @@ void expectIssue(const Bytes& bytes, IssueCode code, int map = -1, const Contain
     EXPECT_EQ(read.error().message.find('\n'), std::string::npos);
 }
 
-/// The second map of two, changed.
+/// Applies the change to the second of two maps.
 void expectMapIssue(IssueCode code, const std::function<void(MapRecipe&)>& change) {
     expectIssue(fileOf(with([&](auto& r) { change(r.maps[1]); })), code, 1);
 }
@@ -219,7 +219,7 @@ Bytes compress(const Bytes& raw) {
     return bytes;
 }
 
-/// The second map of two, compressed, its frame as given.
+/// The second of two maps is compressed, with the given frame.
 Recipe zstdRecipe(const Bytes& frame) {
     return with([&](auto& r) {
         r.maps[1].compression = 1;
@@ -277,7 +277,7 @@ void expectHeaderLies() {
         bytes[static_cast<std::size_t>(at)] ^= std::byte{1};
         expectIssue(bytes, code);
     }
-    // A later major version may lay out all the rest differently: it is named first.
+    // A later major version may change everything else, so its error comes first.
     expectIssue(fileOf(with([](auto& r) {
                     r.header = [](auto& h) { h.major = 256; };
                     r.bytes = [](Bytes& b) { b[60] ^= std::byte{1}; };
@@ -287,7 +287,7 @@ void expectHeaderLies() {
 
 void expectMetadataLies() {
     using enum IssueCode;
-    // Of values, the writer's tests have every rule: reader and writer share them.
+    // container_test covers all rules for values: reader and writer share them.
     const std::pair<IssueCode, std::function<void(Recipe&)>> lies[] = {
         {kMetadataTable, [](auto& r) { r.identifier = "RLF1"; }},
         {kNoMap, [](auto& r) { r.maps.clear(); }},
@@ -330,7 +330,7 @@ void expectMetadataLies() {
          {fb::Map::VT_OBJECT_TO_MAP, fb::Map::VT_OBJECT_PER_MAP, fb::Map::VT_PAYLOAD}) {
         expectIssue(without(map, field), kMetadataTable);
     }
-    // Two materials of one name.
+    // Two materials with the same name.
     Collider dressed = test::readmeExample();
     dressed.materials.list = {{"oak, dark"}, {"oak, pale"}};
     Bytes bytes = test::written(dressed);
@@ -353,13 +353,13 @@ void expectPayloadLies() {
         {kFrame, [](auto& m) { m.rows[2] = m.rows[0]; }},
         {kMapSizeLimit, [](auto& m) { m.width = 0xffffffff; }},
         {kPayloadSize, [](auto& m) { m.compression = 2; }},
-        {kPayloadSize, [](auto& m) { m.compression = 1; }},  // packed, and no smaller
+        {kPayloadSize, [](auto& m) { m.compression = 1; }},  // compressed, but not smaller
         {kPayloadSize, [](auto& m) { m.raw_size = 1023; }},
         {kPayloadSize, [](auto& m) { m.raw_size = ~std::uint64_t{0}; }},
         {kPayloadSize, [](auto& m) { m.stored_size = 1023; }},
         {kPayloadSize, [](auto& m) { m.stored_size = ~std::uint64_t{0}; }},
         {kPayloadSize, [](auto& m) { m.height = 17; }},
-        {kPayloadSize,  // 1 GiB from 100 bytes: less than a zstd frame could be
+        {kPayloadSize,  // 1 GiB from 100 bytes: below the smallest zstd frame
          [](auto& m) {
              m.compression = 1;
              m.width = m.height = 16384;
@@ -382,7 +382,7 @@ void expectPayloadLies() {
         expectMapIssue(code, lie);
     }
     expectIssue(fileOf(with([](auto& r) { r.maps[0].offset = 64; })), kPayloadPlace, 0);
-    // Bytes that belong to nothing.
+    // Bytes that belong to no section.
     expectIssue(fileOf(with([](auto& r) {
                     r.bytes = [](Bytes& b) {
                         b.resize(b.size() + 64);
@@ -401,7 +401,7 @@ void expectLimits() {
     EXPECT_TRUE(readContainer(bytes, {2, 2048}));
     expectIssue(bytes, IssueCode::kMapLimit, -1, {1, 2048});
     expectIssue(bytes, IssueCode::kTexelLimit, 1, {2, 2047});
-    // Each map below the limit, all together beyond it.
+    // Each map is below the limit, but their sum exceeds it.
     const Result<Collider> read = readContainer(fileOf(with([](auto& r) {
         for (MapRecipe& map : r.maps) {
             map.compression = 1;
@@ -421,10 +421,10 @@ void expectZstdLies() {
     lies[1].insert(lies[1].end(), frame.begin(), frame.end());
     lies.push_back(compress(Bytes(1023)));
     lies.push_back(compress(Bytes(1025)));
-    // 16 MiB that must not be unpacked.
+    // 16 MiB that must not be decompressed.
     lies.push_back(compress(Bytes(std::size_t{16} << 20)));
     ASSERT_LT(lies.back().size(), 1024U);
-    // A skippable frame, and a stream that does not state its content.
+    // A skippable frame, and a frame without a content size.
     const std::uint32_t skippable[] = {0x184d2a50, 4, 0};
     const auto words = std::as_bytes(std::span(skippable));
     lies.emplace_back(words.begin(), words.end());
@@ -434,7 +434,7 @@ void expectZstdLies() {
     unstated.resize(ZSTD_compress2(context, unstated.data(), unstated.size(), kRaw.data(), kRaw.size()));
     ZSTD_freeCCtx(context);
     lies.push_back(unstated);
-    // Another content that claims 1024 bytes: two bytes at 5, the size less 256.
+    // Frames that claim 1024 bytes but contain more or fewer: the two bytes at 5 store the size minus 256.
     for (const std::size_t size : {1025, 1023, 60'000}) {
         Bytes lie = compress(Bytes(size));
         const std::uint16_t claim = 1024 - 256;
@@ -447,7 +447,8 @@ void expectZstdLies() {
     }
 }
 
-/// Decode without a field, as a default is written, is the projected one; fixed-point front-back texels may hold any bits, half floats may not.
+/// A missing decode field means the default, projected. Fixed-point front-back texels may have any bits; half floats
+/// may not.
 void expectTexelLies() {
     Recipe recipe = with([](auto& r) {
         MapRecipe& map = r.maps[1];
@@ -489,7 +490,8 @@ TEST(Crafted, EveryLieHasItsIssueAndTheReadmeListsThemAll) {
     EXPECT_EQ(listed, std::vector<IssueCode>(shownCodes().begin(), shownCodes().end()));
 }
 
-/// A file may claim 32768 times its size; a reader that has limits.memory takes 16 times as much, or so many bytes.
+/// A file may claim 32768 times its size. With limits.memory, a reader accepts the larger of 16 times the size and
+/// limits.memory.
 TEST(Crafted, TexelsAreWorthTheirFile) {
     Recipe recipe;
     recipe.maps.resize(1);
@@ -506,12 +508,12 @@ TEST(Crafted, TexelsAreWorthTheirFile) {
     --limits.memory;
     expectIssue(bomb, IssueCode::kTexelLimit, 0, limits);
     EXPECT_FALSE(readContainerInfo(bomb, limits));
-    // Unpacked texels are worth their file.
+    // Uncompressed texels are never too large for their file.
     limits.memory = 0;
     EXPECT_TRUE(readContainer(fileOf({}), limits));
 }
 
-/// Whatever is read keeps every invariant, and can be written and read again.
+/// A collider that was read is valid, and can be written and read again.
 void expectSoundOrRefused(const Bytes& bytes, int& read_count) {
     const Result<Collider> read = readContainer(bytes);
     const Result<ContainerInfo> info = readContainerInfo(bytes);

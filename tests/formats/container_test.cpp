@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the writer writes, the reader reads; and no damage, by a bit or by a cut, goes unseen.
+// Containers round-trip, and every flipped bit or truncation is detected.
 #include "formats/container.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ TEST(Container, RoundTripsAtEveryLevelAndAnyAlignmentAreTheSameBytes) {
     const Collider collider = oneMapOfEveryFormat();
     for (int level = 0; level <= 19; ++level) {
         const std::vector<std::byte> bytes = written(collider, level);
-        // Every level at another alignment, and some at none.
+        // Each level has another alignment; some have none.
         std::vector<std::byte> shifted(static_cast<std::size_t>(level % 16));
         const std::size_t shift = shifted.size();
         shifted.insert(shifted.end(), bytes.begin(), bytes.end());
@@ -110,7 +110,7 @@ TEST(Damage, NoPrefixAndNoFlippedBitGoesUnseen) {
     for (const int level : {0, 19}) {
         std::vector<std::byte> bytes = written(oneMapOfEveryFormat(), level);
         for (std::size_t size = 0; size < bytes.size(); ++size) {
-            // A copy of its own, so that the address sanitizer sees a step beyond it.
+            // An exact-size copy, so that the address sanitizer detects overruns.
             const std::vector<std::byte> prefix(bytes.begin(),
                                                 bytes.begin() + static_cast<std::ptrdiff_t>(size));
             const Result<Collider> read = readContainer(prefix);
@@ -121,7 +121,7 @@ TEST(Damage, NoPrefixAndNoFlippedBitGoesUnseen) {
             const IssueCode code = size < 64 ? IssueCode::kTooShort : IssueCode::kTruncated;
             ASSERT_TRUE(std::ranges::count(issues, code, &Issue::code) == 1) << size;
         }
-        // Every bit of the header; behind it a hash notices any bit of its bytes.
+        // Every bit of the header; the hashes detect any bit of the remaining bytes.
         for (std::size_t bit = 0; bit < 8 * bytes.size(); bit += bit < 8 * 64 ? 1 : 7) {
             const auto mask = static_cast<std::byte>(1U << bit % 8);
             bytes[bit / 8] ^= mask;
@@ -147,7 +147,7 @@ TEST(Damage, OtherFilesAndTransfersAsTextAreNamed) {
 }
 
 struct Refusal {
-    const char* words;  // what the message has to say
+    const char* words;  // expected in the message
     std::function<void(Collider&)> breakIt;
     ErrorCode code = ErrorCode::kInvalidInput;
 };
@@ -160,7 +160,7 @@ void poke(DepthMap& map, std::size_t texel, std::size_t channel, T value) {
     std::memcpy(map.texels.data() + texel * texelSize(map.format) + channel * sizeof(T), &value, sizeof(T));
 }
 
-/// A texel of the map that is not empty.
+/// The index of a texel that is not empty.
 std::size_t fullTexel(const DepthMap& map) {
     for (std::uint32_t i = 0; i < map.width * map.height; ++i) {
         const Texel texel = decodeTexel(map.format, map.texelAt(0, i % map.width, i / map.width));
@@ -275,7 +275,7 @@ TEST(Validate, TakesFramesOfAnyHandednessAndScaleButNoShear) {
     DepthMap map = oneMapOfEveryFormat().maps[0];
     map.object_to_map.row[0] *= -1.0F;
     EXPECT_TRUE(validateFrame(map));
-    // Rows may be 1e-4 off a right angle, whatever their lengths, and no more.
+    // Rows of any length may be up to 1e-4 off a right angle.
     for (const auto& [cosine, valid] :
          {std::pair(0.9e-4F, true), {-0.9e-4F, true}, {1.2e-4F, false}, {-1.2e-4F, false}}) {
         map.object_to_map.row[0] = {1e-3F, cosine * 1e-3F, 0, 7};
@@ -284,7 +284,7 @@ TEST(Validate, TakesFramesOfAnyHandednessAndScaleButNoShear) {
         map.object_per_map = {1e3F, 1e-5F, 1};
         EXPECT_EQ(validateFrame(map).has_value(), valid) << cosine;
     }
-    // A sheared frame, with the lengths of the columns of its inverse.
+    // A sheared frame whose rows have the lengths of the columns of its inverse.
     map.object_to_map.row[0] = {1, 1, 0, 0};
     map.object_to_map.row[1] = {0, 1, 0, 0};
     map.object_per_map = {1, std::sqrt(2.0F), 1};

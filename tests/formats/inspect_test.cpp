@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `relief check FILE`: what is said of sound files, and of the maps that are left of damaged ones. container_hostile_test has
+// `relief check FILE`: results for sound files, and for the remaining maps of damaged files. container_hostile_test has
 // a file for every issue.
 #include "formats/inspect.h"
 
@@ -71,13 +71,13 @@ TEST(Inspect, SaysWhatIsLeftOfADamagedFile) {
     EXPECT_EQ(inspection.issues[0].map, 1);
     EXPECT_EQ(inspection.issues[0].offset, at(1));
 
-    // The last map is cut off.
+    // The last map is truncated.
     bytes.assign(good.begin(), good.begin() + static_cast<long>(at(2) + 1));
     inspection = inspected(bytes);
     EXPECT_EQ(statesOf(inspection), (std::vector{kSound, kSound, kUnreadable})) << listed(inspection);
     EXPECT_EQ(inspection.header, kSound);
 
-    // A header that is wrong says nothing against metadata that its own checksum vouches for.
+    // A damaged header does not invalidate metadata whose own checksum matches.
     bytes = good;
     bytes[57] ^= std::byte{4};
     inspection = inspected(bytes);
@@ -85,7 +85,7 @@ TEST(Inspect, SaysWhatIsLeftOfADamagedFile) {
     EXPECT_EQ(inspection.metadata, kSound);
     EXPECT_EQ(statesOf(inspection), (std::vector{kSound, kSound, kSound})) << listed(inspection);
 
-    // Damaged metadata: the payloads are as they were written, but who knows what they are of.
+    // Damaged metadata: the payloads are intact, but cannot be assigned to maps.
     bytes = good;
     bytes[48] ^= std::byte{4};
     inspection = inspected(bytes);
@@ -93,7 +93,7 @@ TEST(Inspect, SaysWhatIsLeftOfADamagedFile) {
     EXPECT_EQ(statesOf(inspection), (std::vector{kUnverified, kUnverified, kUnverified}))
         << listed(inspection);
 
-    // Two faults are two issues.
+    // Two faults give two issues.
     bytes = good;
     bytes[at(0)] ^= std::byte{1};
     bytes[at(2)] ^= std::byte{1};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Trees of materials: lookups in closed form, what readers refuse, and the container's bytes.
+// Material trees: closed-form lookups, faults that readers reject, and the container's bytes.
 #include "formats/materials.h"
 
 #include <gtest/gtest.h>
@@ -24,13 +24,13 @@ TEST(Materials, APointFindsItsCell) {
     EXPECT_EQ(at(0.5F, 0.5F, 0.5F), 2U);
     EXPECT_EQ(at(1.5F, 0.5F, 0.5F), 1U);
     EXPECT_EQ(at(0.5F, 0.5F, 1.0F), 1U);
-    EXPECT_EQ(at(0.0F, 0.0F, 0.0F), 2U);  // the upper cell has what lies between two
+    EXPECT_EQ(at(0.0F, 0.0F, 0.0F), 2U);  // points between two cells belong to the upper cell
     EXPECT_EQ(at(-1e-6F, 0.5F, 0.5F), 0U);
-    // Beyond the cube the nearest cell counts, also where coordinates are no numbers.
+    // Points outside the cube, and NaN coordinates, use the nearest cell.
     EXPECT_EQ(at(99.0F, 99.0F, 99.0F), 1U);
     EXPECT_EQ(at(1e30F, 0.5F, 0.5F), 1U);
     EXPECT_EQ(at(std::nanf(""), -99.0F, 0.5F), 0U);
-    // A pair of sides: along x − y.
+    // A pair of sides along x − y.
     const glm::vec3 low(-1.0F);
     EXPECT_EQ(materialAt(materials, low, {1.0F, 0.0F, 0.0F}), 1U);
     EXPECT_EQ(materialAt(materials, low, {0.0F, 1.0F, 0.0F}), 2U);
@@ -80,7 +80,7 @@ TEST(Materials, EveryFaultIsFound) {
         const std::string fault = faultOfMaterials(materials);
         EXPECT_NE(fault.find(wrong.message), std::string::npos) << wrong.message << ": " << fault;
     }
-    // A chain of nodes is refused where it gets too deep for a lookup.
+    // A chain of nodes is rejected if it is too deep for a lookup.
     Materials deep = someMaterials();
     deep.nodes.assign(kMaterialLevelsMax + 1, {});
     for (std::size_t i = 0; i + 1 < deep.nodes.size(); ++i) {

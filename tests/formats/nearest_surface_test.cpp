@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The search for the nearest surface against shapes whose distance is known in closed form.
-//
-// What a collider of planes stands for differs from the shape by its texels: a plane is the surface's at the texel's
-// centre and leaves a curved one towards its rim, most of all where it is seen at a grazing angle, and an edge of the shape
-// ends with a texel. So a share of the points may be off by a texel; the distances that are asked for reach up to ten.
+// The nearest-surface search against shapes with closed-form distances.
+// A collider of planes differs from the shape by about a texel. Each plane touches the surface at the texel's centre
+// and deviates from a curved surface towards the texel's rim, most of all at grazing angles. Edges of the shape end at
+// texel borders. So a fraction of the points may be off by a texel; the tested distances reach ten texels.
 #include "formats/nearest_surface.h"
 
 #include <gtest/gtest.h>
@@ -37,7 +36,7 @@ struct Scene {
     double texel = 0.0;  // object units
 };
 
-/// Three front-back maps of planes about a box of this half side.
+/// Three front-back plane maps around a box of this half side.
 Scene sceneOf(const Shape& shape, double half, std::uint32_t size, const glm::dmat3& axes = glm::dmat3(1.0)) {
     Scene scene;
     scene.collider =
@@ -49,13 +48,13 @@ Scene sceneOf(const Shape& shape, double half, std::uint32_t size, const glm::dm
 
 struct Errors {
     double mean = 0.0;          // texels
-    double over_a_texel = 0.0;  // share of the points whose distance is off by more
+    double over_a_texel = 0.0;  // fraction of points with a larger distance error
     int inside = 0;
     int count = 0;
 };
 
-/// At random points within `half` of the origin and 1 to 10 texels from the surface. What every answer promises is tested
-/// on the way.
+/// Measures random points within `half` of the origin and 1 to 10 texels from the surface. Also checks the invariants
+/// of every result.
 Errors measure(const Scene& scene, const Distance& truth, double half) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> within(-half, half);
@@ -99,7 +98,7 @@ TEST(NearestSurface, Sphere) {
     EXPECT_LT(errors.over_a_texel, 0.002);
 }
 
-/// Only one map, so that the surface is steep in its texels beside the hole, where it is seen at grazing angles.
+/// With only one map, texels beside the hole are seen at grazing angles, so their surface is steep.
 TEST(NearestSurface, TorusAndItsHole) {
     constexpr std::uint32_t kSize = 96;
     Scene scene;
@@ -120,7 +119,7 @@ TEST(NearestSurface, TorusAndItsHole) {
     EXPECT_LT(errors.over_a_texel, 0.005);
 }
 
-/// Each map sees an edge between two texels, and corners stick out of all of them.
+/// Edges fall between texels of each map, and corners stick out of all maps.
 TEST(NearestSurface, BoxSeenAskew) {
     const glm::dvec3 half(0.5, 0.35, 0.6);
     Scene scene = sceneOf(*makeBox({0, 0, 0}, half), 0.8, 64, kTurned);
@@ -129,11 +128,11 @@ TEST(NearestSurface, BoxSeenAskew) {
         scene, [&](const glm::dvec3& p) { return boxDistance(p, half); }, 0.9);
     EXPECT_LT(errors.mean, 0.06);
     EXPECT_LT(errors.over_a_texel, 0.02);
-    // Off a convex edge the plane of either face is nearer than the edge is.
+    // Beside a convex edge, either face's plane is nearer than the edge.
     double worst = 0.0;
     for (int i = 0; i <= 100; ++i) {
         for (const double off : {2.0, 4.0, 8.0}) {
-            // Beside an edge along y, at an equal distance from both of its faces.
+            // Beside an edge along y, equidistant from its two faces.
             const glm::dvec3 edge(half.x, half.y * (0.016 * i - 0.8), half.z);
             const glm::vec3 p(edge + off * scene.texel * glm::dvec3(1.0, 0.0, 1.0));
             const double truth = boxDistance(glm::dvec3(p), half);
@@ -144,7 +143,7 @@ TEST(NearestSurface, BoxSeenAskew) {
     EXPECT_LT(worst, 1.0 * scene.texel);
 }
 
-/// A cube in the middle sees floor and walls at grazing angles beside their edges.
+/// A central cube map sees floor and walls at grazing angles beside their edges.
 TEST(NearestSurface, InABoxTheNearestOfItsWallsCounts) {
     const glm::dvec3 half(0.25, 0.8, 0.4);
     Collider collider;
@@ -167,7 +166,7 @@ TEST(NearestSurface, InABoxTheNearestOfItsWallsCounts) {
     EXPECT_LT(worst, 0.05) << "a fifth of half the box";
 }
 
-/// Whatever a valid file may hold, at whatever finite point: nothing but finite numbers, and evaluate()'s side.
+/// For any valid file and finite point, results are finite and have evaluate()'s side.
 TEST(NearestSurface, IsFiniteAndOnTheSideOfTheVoteWhateverTheMapsHold) {
     constexpr float kMax = std::numeric_limits<float>::max();
     std::mt19937 random(21);
@@ -188,7 +187,7 @@ TEST(NearestSurface, IsFiniteAndOnTheSideOfTheVoteWhateverTheMapsHold) {
     for (int round = 0; round < 40; ++round) {
         Collider collider = oneMapOfEveryFormat();
         if (round % 2 == 0) {
-            collider.maps.pop_back();  // of patches, which call most of the space outside
+            collider.maps.pop_back();  // the patch map, which votes outside almost everywhere
         }
         for (DepthMap& map : collider.maps) {
             map.decode = (random() & 1U) != 0 ? Decode::kPlane : Decode::kProjected;
@@ -196,7 +195,7 @@ TEST(NearestSurface, IsFiniteAndOnTheSideOfTheVoteWhateverTheMapsHold) {
             map.empty_is_outside = (random() & 1U) != 0;
             if (map.format == MapFormat::kFixed8 || map.format == MapFormat::kFrontBackFixed ||
                 map.format == MapFormat::kCube8) {
-                for (std::byte& byte : map.texels) {  // any bytes are texels of these
+                for (std::byte& byte : map.texels) {  // any bytes are valid texels of these formats
                     byte = static_cast<std::byte>(random());
                 }
             }
@@ -226,7 +225,7 @@ TEST(NearestSurface, WhereMapsKnowNothingItSaysSo) {
         map.encloses = false;
     }
     EXPECT_EQ(nearestSurface(scene.collider, {5, 5, 5}).map, -1);
-    // Outside, and no surface anywhere.
+    // Outside, without any surface.
     for (DepthMap& map : scene.collider.maps) {
         map.encloses = true;
         std::fill(map.texels.begin(), map.texels.end(), std::byte{0});
@@ -238,7 +237,7 @@ TEST(NearestSurface, WhereMapsKnowNothingItSaysSo) {
     EXPECT_EQ(nothing.map, 0);
 }
 
-/// A point that every map calls outside, and no more, still has a distance.
+/// A point for which every map votes only "far outside" still has a distance.
 TEST(NearestSurface, FarOutsideOfAllVolumesTheDistanceIsFound) {
     const Scene scene = sceneOf(*makeSphere({0, 0, 0}, 0.9), 0.9, 64);
     for (const glm::vec3& p : {glm::vec3(3, 2, 1.5F), glm::vec3(-1.5F, 1.2F, -2), glm::vec3(10, -10, 5)}) {

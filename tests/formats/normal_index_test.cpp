@@ -15,7 +15,7 @@ namespace {
 
 using test::angleInDegrees;
 
-/// Equation 3 of the paper, in double and in its own words.
+/// Equation 3 of the paper, written independently in double precision.
 glm::dvec3 equation3(NormalIndex index) {
     const double s = (std::min<int>(index.s, 254) - 127) / 127.0;
     const double t = (std::min<int>(index.t, 254) - 127) / 127.0;
@@ -56,7 +56,7 @@ TEST(NormalIndex, LengthDoesNotMatter) {
     for (int i = 0; i < 10000; ++i) {
         const glm::vec3 n(gauss(random), gauss(random), gauss(random));
         const NormalIndex index = encodeNormal(n);
-        // Powers of two: the same direction to the last bit.
+        // Scaling by a power of two preserves the direction exactly.
         ASSERT_EQ(encodeNormal(n * 0x1p-60F), index);
         ASSERT_EQ(encodeNormal(n * 0x1p+60F), index);
     }
@@ -67,7 +67,7 @@ TEST(NormalIndex, PackingKeepsBothBytes) {
     EXPECT_EQ(unpackNormal(0x1234), (NormalIndex{0x12, 0x34}));
 }
 
-// Rounding each coordinate would be up to 0.95 degrees off.
+// Rounding each coordinate independently would be up to 0.95 degrees off.
 TEST(NormalIndex, BestOfFourStaysBelow065Degrees) {
     std::mt19937_64 random(20240701);
     std::normal_distribution<double> gauss;

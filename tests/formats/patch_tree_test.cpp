@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Trees of patches: records against the points that they were made for, and every way in which a tree can be broken.
+// Patch trees: records against the points they were fitted to, and every way to break a tree.
 #include "formats/patch_tree.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ TEST(PatchFrame, CoversTheCubeAndHasTheGradientOfItsDepth) {
             EXPECT_GE(at.z, 0.0);
             EXPECT_LE(at.z, 1.0 + frame.diagonal);
             EXPECT_LT(glm::distance(glm::dvec3(frame.across(glm::vec3(p))), at), 1e-6);
-            // Of w − H with H = 0.3 u − 0.7 v, by differences.
+            // Of w − H with H = 0.3 u − 0.7 v, by finite differences.
             const auto value = [&](const glm::dvec3& q) {
                 const glm::dvec3 there = frame.across(q);
                 return there.z - 0.3 * there.x + 0.7 * there.y;
@@ -44,7 +44,7 @@ TEST(PatchFrame, CoversTheCubeAndHasTheGradientOfItsDepth) {
             }
         }
     }
-    // No two look along one line.
+    // No two axes are parallel.
     for (const PatchFrame& a : patchFrames()) {
         for (const PatchFrame& b : patchFrames()) {
             const float cosine =
@@ -66,8 +66,8 @@ TEST(PatchHeights, AreWithinHalfAStepOfTheirRange) {
             const PatchHeights codes = PatchHeights::of(heights, side);
             std::vector<double> back(heights.size());
             codes.decode(back);
-            // The range, that the base is below the lowest by up to 1/512, and a sixteenth for the mantissa; no less than the
-            // finest scale.
+            // The range, plus up to 1/512 because the base lies below the lowest height, plus a sixteenth for the
+            // mantissa. The step is at least that of the finest scale.
             const double step =
                 std::max((2.0 * range + 1.0 / 512.0) * 17.0 / 16.0, std::ldexp(1.0, -12)) / 255.0;
             for (std::size_t i = 0; i < heights.size(); ++i) {
@@ -78,14 +78,14 @@ TEST(PatchHeights, AreWithinHalfAStepOfTheirRange) {
 }
 
 TEST(PatchTree, PlanesAreExactBetweenTheirCodes) {
-    // Every frame and size holds the plane n·p = 0.5·(n.x + n.y + n.z) through the cell's middle, seen from above.
+    // Every frame and size stores the plane n·p = 0.5·(n.x + n.y + n.z) through the cell's centre, seen from above.
     for (const PatchFrame& frame : patchFrames()) {
         const glm::dvec3 along = glm::normalize(glm::dvec3(frame.gradient(0.0F, 0.0F)));
         const glm::dvec3 n = glm::normalize(along + glm::dvec3(0.21, -0.17, 0.11));
         for (const std::uint32_t side : {2U, 3U, 5U}) {
             std::vector<double> heights;
             for (std::uint32_t k = 0; k < side * side; ++k) {
-                // By bisection along w: across() has no inverse to ask.
+                // By bisection along w, because across() has no inverse.
                 const double u = (k % side) / (side - 1.0);
                 const double v = (k / side) / (side - 1.0);
                 const auto [origin, way] = [&] {
@@ -123,7 +123,7 @@ TEST(PatchTree, PlanesAreExactBetweenTheirCodes) {
 }
 
 TEST(PatchTree, PairsAreWhatIsInBothOrInEither) {
-    // A wall, whose sides see each other's back, and the edge between two walls at right angles.
+    // A wall whose sides see each other's back, and the edge between two perpendicular walls.
     const auto plane = [](const PatchFrame& frame, bool outside_below, double height) {
         return PatchRecord::patch(frame, outside_below, PatchHeights::of(std::vector(4, height), 2), 0);
     };
@@ -155,7 +155,7 @@ TEST(PatchTree, PairsAreWhatIsInBothOrInEither) {
 }
 
 TEST(PatchTree, CellsWithoutPatchesKeepTheirSideWhateverTheirPlaneSays) {
-    // Two roots: one flat and outside, one split with no records but for one child, which is flat and inside.
+    // Two roots: one flat and outside, the other split, with a record for only one child, which is flat and inside.
     const glm::vec3 up(0, 1, 0);
     const DepthMap map = patchesOf(
         {{2, 1, 1}, 1}, {PatchRecord::flat(false, up, 0.25F), PatchRecord::split(0x80, 0x0f, 3, up, 0.1F),
@@ -167,7 +167,7 @@ TEST(PatchTree, CellsWithoutPatchesKeepTheirSideWhateverTheirPlaneSays) {
     EXPECT_GT(at(0.5F, 0.1F, 0.5F).distance, 0.0F) << "outside, though the plane has −0.15";
     EXPECT_LT(at(0.5F, 0.1F, 0.5F).distance, 0.01F);
     EXPECT_LT(at(1.25F, 0.9F, 0.25F).distance, 0.0F) << "inside, though the plane has 0.5";
-    // An offset is a 128th; the normal is exact.
+    // Offsets have steps of 1/128; the normal is exact.
     EXPECT_NEAR(at(1.25F, 0.1F, 0.25F).distance, -0.3F, 4e-3F);
     EXPECT_NEAR(at(1.25F, 0.9F, 0.75F).distance, 0.5F, 4e-3F);
     EXPECT_NEAR(at(1.75F, 0.75F, 0.75F).distance, -0.25F, 1e-6F);
@@ -195,7 +195,7 @@ TEST(PatchTree, BrokenTreesAreRefused) {
     refused({{0, 1, 1}, 0}, {leaf}, "an invalid size");
     refused({{65535, 65535, 65535}, 0}, {leaf}, "an invalid size");
     refused({{1, 1, 1}, kPatchLevelsMax + 1}, {leaf}, "an invalid size");
-    // To itself, past the next texel, beyond the map, and deeper than the header says.
+    // Children that are the node itself, not the next texels, beyond the map, or deeper than the header states.
     refused({{1, 1, 1}, 3}, {PatchRecord::split(1, 0, 1, up, 0)}, "not the next texels");
     refused({{1, 1, 1}, 3}, {PatchRecord::split(1, 0, 3, up, 0), leaf, leaf}, "not the next texels");
     refused({{4, 4, 1}, 0}, std::vector<PatchRecord>(16, PatchRecord::split(1, 0, 17, up, 0)),
@@ -205,7 +205,7 @@ TEST(PatchTree, BrokenTreesAreRefused) {
     PatchRecord odd = PatchRecord::patch(frame, false, codes, 2);
     odd.low |= 3U << 5U;
     refused({{1, 1, 1}, 0}, {odd}, "an unknown kind");
-    // Pairs of themselves, of what lies beyond the map, of another kind, of pairs, and of patches without heights.
+    // Pairs that refer to themselves, beyond the map, to another kind, to pairs, and to patches without heights.
     refused({{1, 1, 1}, 0}, {PatchRecord::pair(true, 1)}, "patches are out of place");
     refused({{1, 1, 1}, 0}, {PatchRecord::pair(true, 15)}, "patches are out of place");
     refused({{1, 1, 1}, 0}, {PatchRecord::pair(true, 2), leaf, leaf}, "an unknown kind");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Containers of version 2 as bytes: each must be read as on the day that it was written.
+// Pinned containers of version 2: each must read exactly as on the day it was written.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -62,7 +62,7 @@ void addNumbers(std::ostream& text, const char* name, std::initializer_list<glm:
     text << '\n';
 }
 
-/// "name 0123456789abcdef", the hash of many bytes.
+/// "name 0123456789abcdef": a hash of many bytes.
 void addHash(std::ostream& text, const char* name, std::span<const std::byte> bytes) {
     text << name << ' ' << std::hex << std::setfill('0') << std::setw(16) << xxh3_64(bytes) << std::dec
          << '\n';
@@ -110,7 +110,7 @@ void addAnswer(std::ostream& text, const Collider& collider, const glm::vec3& p)
     text << '\n';
 }
 
-/// The samples of a collider at 64 points in and about its bounds: some as text, all as a hash.
+/// Field samples of a collider at 64 points in and around its bounds: some as text, all as a hash.
 void addAnswers(std::ostream& text, const Collider& collider) {
     const Bounds& bounds = collider.bounds;
     std::ostringstream all;
@@ -120,7 +120,7 @@ void addAnswers(std::ostream& text, const Collider& collider) {
         glm::vec3 p{0.0F};
         for (int axis = 0; axis < 3; ++axis) {
             state = state * 1664525U + 1013904223U;
-            // In the bounds, made larger by a quarter on every side; 16 bits are exact in a float.
+            // Within the bounds enlarged by a quarter on each side; 16 bits are exact in a float.
             const float share = 1.5F * (static_cast<float>(state >> 16U) / 65536.0F) - 0.25F;
             p[axis] = bounds.min[axis] + share * bounds.size()[axis];
         }
@@ -132,8 +132,8 @@ void addAnswers(std::ostream& text, const Collider& collider) {
     addHash(text, "answers", toBytes(all.str()));
 }
 
-/// Every number of a collider, its texels and material nodes as hashes, and its answers.
-/// Floats have nine digits, by which they are read back exactly.
+/// Every number of a collider, hashes of its texels and material nodes, and its field. Floats have nine digits, enough
+/// to read them back exactly.
 std::string pinnedText(const Collider& collider) {
     const Provenance& from = collider.provenance;
     std::ostringstream text;
@@ -167,7 +167,7 @@ TEST(PinnedContainers, SayWhatTheySaid) {
     }
 }
 
-// What this version writes, it writes as ever: zstd's bytes depend on its own version.
+// Uncompressed bytes never change; those of zstd depend on the version of zstd.
 TEST(PinnedContainers, AreWrittenAgainAsTheyWere) {
     std::size_t same = 0;
     for (const fs::path& file : containers()) {

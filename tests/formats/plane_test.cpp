@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Votes of planes where analytic_test does not have them, and rays of texels.
+// Plane votes that analytic_test does not cover, and texel rays.
 #include "formats/plane.h"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ TEST(PlaneDecode, VolumeWindowAndEmptyTexelsAreThoseOfProjected) {
                 if (!map.encloses || !plane) {
                     continue;
                 }
-                // Step 5: an enclosing map says inside in its volume only.
+                // Step 5: an enclosing map votes inside only within its volume.
                 const float low = map.projection() == Projection::kCube ? -1.0F : 0.0F;
                 const glm::vec3 in_map = map.object_to_map.apply(p);
                 if (glm::clamp(in_map, low, 1.0F) != in_map) {

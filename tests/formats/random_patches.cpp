@@ -33,7 +33,7 @@ DepthMap randomPatches(std::mt19937& random) {
     };
     const auto below = [&](std::uint32_t end) { return static_cast<std::uint32_t>(random() % end); };
 
-    // Splits and leaves of every level, where children and heights are not yet placed.
+    // Splits and leaves of every level, before children and heights are placed.
     struct Node {
         int kind;  // 0 flat, 1 split, 2 patch
         std::uint32_t children;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Maps of patches with every kind of record, for tests that compare readers.
+// Patch maps with every kind of record, for tests that compare readers.
 #pragma once
 
 #include <random>
@@ -10,10 +10,10 @@
 
 namespace relief::test {
 
-/// A valid tree of random records, three levels deep, in its own space: object_to_map is one to one.
+/// A valid tree of random records, three levels deep. object_to_map is the identity.
 [[nodiscard]] DepthMap randomPatches(std::mt19937& random);
 
-/// A valid tree of given records, with nothing behind them.
+/// A valid tree of these records, with no texels after them.
 [[nodiscard]] DepthMap patchesOf(const PatchTreeSize& size, const std::vector<PatchRecord>& records);
 
 }  // namespace relief::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The worked example of formats/README.md against the code: the page is normative, so it must not drift.
+// Compares the worked example of formats/README.md with the code: the page is normative, so it must not drift.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -22,7 +22,7 @@ std::string readme() {
     return bytes ? std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size()) : std::string();
 }
 
-/// The bytes of all lines "offset  bytes  | words", whose offsets have to follow each other.
+/// The bytes of all lines "offset  bytes  | words". Checks that the offsets are consecutive.
 std::vector<std::byte> parseDump(const std::string& text) {
     const std::regex line_pattern("([0-9a-f]{4})  ((?:[0-9a-f]{2} ){1,32}) *\\| .*");
     std::vector<std::byte> bytes;
@@ -49,7 +49,7 @@ TEST(Readme, HexdumpIsTheContainerOfTheExample) {
 }
 
 TEST(Readme, VotesOfTheExample) {
-    // "| (x, y, z) | … | distance |", the last cell "far outside" or a number.
+    // "| (x, y, z) | … | distance |"; the last cell is "far outside" or a number.
     const std::regex row("\\| `\\(([-0-9.]+), ([-0-9.]+), ([-0-9.]+)\\)` \\|.*\\| ([^|]+) \\|");
     const std::string text = readme();
     int rows = 0;

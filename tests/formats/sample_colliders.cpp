@@ -63,7 +63,7 @@ Collider readmeExample() {
     collider.unit = "m";
     collider.provenance = {
         "cube.obj", "00112233445566778899aabbccddeeff", 12, "relief 0.1.0", {{"map", "fixed8"}}};
-    // [−2, 2]² × [−1, 1], seen along +z: the middle texel holds the plane z = −½.
+    // [−2, 2]² × [−1, 1], seen along +z: the middle texel stores the plane z = −½.
     const OrthographicFrame frame = centeredFrame({0, 0, 0}, glm::dmat3(1.0), {4, 4, 2});
     DepthMap map = emptyMap(frame, MapFormat::kFixed8, Compare::kLess, 3, 3);
     encodeTexel(map.format, {Surface{0.25F, {0, 0, -1}}, std::nullopt}, map.texelAt(0, 1, 1));

@@ -22,7 +22,7 @@ std::vector<std::byte> bytesOf(std::initializer_list<int> values) {
     return bytes;
 }
 
-/// Their bytes are those of the texel, and read as the texel.
+/// Expects these bytes for the texel, and the texel from these bytes.
 void expectBytes(MapFormat format, const Texel& texel, std::initializer_list<int> values) {
     SCOPED_TRACE(std::string(mapFormatName(format)) + " " + depthEncodingName(format));
     std::vector<std::byte> bytes(texelSize(format), std::byte{0xcc});
@@ -52,7 +52,7 @@ TEST(Texel, ByteLayout) {
     expectBytes(MapFormat::kFrontBackFixed, {{}, Surface{0.0F, {1, 0, 0}}}, {0, 0, 127, 254, 0, 0, 1, 0});
     expectBytes(MapFormat::kFloat32, {front, {}},
                 {0, 0, 0x80, 0x3f, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0x80, 0x3e});
-    // Nothing is zero bits but for float.
+    // Empty is all zero bits, except for float.
     expectBytes(MapFormat::kFixed8, {}, {0, 0, 0, 0});
     expectBytes(MapFormat::kCube8, {}, {0, 0, 0, 0});
     expectBytes(MapFormat::kFrontBackHalf, {}, {0, 0, 0, 0, 0, 0, 0, 0});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Animated meshes with poses in closed form.
+// Animated meshes whose poses have closed forms.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -10,20 +10,20 @@
 
 namespace relief {
 
-/// A tube of radius 0.1 along +y from 0 to 2, its ends closed, with a joint at its foot and another at half its height. Weights
-/// go over within a third of its length. The clip "bend" turns the upper joint by 90° about z and back within 2 s, by linear
-/// keys; "grow" lets one morph target, which doubles the radius, come in 1 s.
+/// A closed tube of radius 0.1 along +y from 0 to 2, with a joint at its foot and another at half its height. Weights
+/// blend over a third of its length. The clip "bend" rotates the upper joint by 90° about z and back within 2 s, with
+/// linear keys. "grow" blends in a morph target within 1 s, which doubles the radius.
 [[nodiscard]] AnimatedMesh bendingTube(int around = 32, int rings = 40);
 
-/// A box of half sides `half`, one node, which the clip "go" moves along +x by 1 within 1 s, and the clip "turn" turns about y
-/// by 90° within 1 s.
+/// A box with half sides `half` and one node. The clip "go" moves it by 1 along +x within 1 s. The clip "turn" rotates
+/// it by 90° about y within 1 s.
 [[nodiscard]] AnimatedMesh movingBox(const glm::vec3& half);
 
-/// How often a closed surface winds around a point, by the solid angles of its triangles: ½ and more is inside.
+/// Winding number of a closed surface at a point, from the solid angles of its triangles: ½ and above is inside.
 [[nodiscard]] double windingNumber(std::span<const glm::vec3> positions,
                                    std::span<const glm::uvec3> triangles, const glm::dvec3& p);
 
-/// Points on the surface by its area, moved by a Gaussian of a two hundredth of `size`.
+/// Points distributed uniformly over the surface, offset by a Gaussian of `size` / 200.
 [[nodiscard]] std::vector<glm::vec3> pointsNear(std::span<const glm::vec3> positions,
                                                 std::span<const glm::uvec3> triangles, std::size_t count,
                                                 float size, std::uint32_t seed);

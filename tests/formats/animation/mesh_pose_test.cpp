@@ -23,7 +23,7 @@ void expectNear(const glm::vec3& value, const glm::vec3& expected, float toleran
         << expected.z;
 }
 
-/// The top of the tube, its last vertex.
+/// The top of the tube, its last vertex, at this time.
 glm::vec3 topAt(const AnimatedMesh& mesh, const char* clip, double seconds) {
     return posed(mesh, poseAt(mesh, mesh.clips.at(*findClip(mesh, clip)), seconds)).back();
 }
@@ -51,13 +51,13 @@ TEST(MeshPose, TakesTheShorterWayAndCrossesCurves) {
     AnimatedMesh mesh = bendingTube();
     MeshClip& clip = mesh.clips[0];
     const float half = std::sqrt(0.5F);
-    // The same rotation by the opposite quaternion.
+    // The same rotation as the opposite quaternion.
     clip.channels[0].values = {0, 0, 0, 1, 0, 0, -half, -half, 0, 0, 0, 1};
     expectNear(topAt(mesh, "bend", 0.5), {-half, 1.0F + half, 0});
     clip.channels[0].curve = KeyCurve::kStep;
     expectNear(topAt(mesh, "bend", 0.99), {0, 2, 0});
     expectNear(topAt(mesh, "bend", 1.0), {-1, 1, 0});
-    // A Hermite curve of a parabola is that parabola: y = 1 + t², slopes 0 and 2, in one key of 1 s.
+    // A Hermite curve reproduces the parabola y = 1 + t², with slopes 0 and 2, in one key of 1 s.
     clip.channels[0] = {1,
                         NodeMember::kTranslation,
                         KeyCurve::kCubic,
@@ -72,7 +72,7 @@ TEST(MeshPose, TakesTheShorterWayAndCrossesCurves) {
 TEST(MeshPose, FollowsParentsAndMatrices) {
     AnimatedMesh mesh = bendingTube();
     mesh.nodes[0].matrix =
-        Affine{{{0, -2, 0, 1}, {2, 0, 0, 0}, {0, 0, 2, 5}}};  // twice as large, turned, moved
+        Affine{{{0, -2, 0, 1}, {2, 0, 0, 0}, {0, 0, 2, 5}}};  // scaled by 2, rotated, moved
     ASSERT_TRUE(validate(mesh));
     expectNear(topAt(mesh, "bend", 1.0), {1.0F - 2.0F * 1.0F, 2.0F * -1.0F, 5.0F});
 }
@@ -107,7 +107,8 @@ TEST(MeshPose, BoundsHoldEveryVertexAtEveryTime) {
     }
 }
 
-// A square that turns ten times a second, with keys where it stands straight: its box is largest between them.
+// A square that rotates ten times a second, with keys at the times when it is axis-aligned: its box is largest between
+// keys.
 TEST(MeshPose, TheRoomHoldsWhatTurnsFast) {
     AnimatedMesh mesh = movingBox({1.0F, 0.1F, 1.0F});
     ClipChannel& channel = mesh.clips[1].channels[0];
@@ -135,7 +136,7 @@ TEST(MeshPose, ADayOfNothingIsNoWork) {
     EXPECT_GT(poseExtent(mesh).room.x, 1.0F);
 }
 
-/// Gives every third triangle the second of two materials.
+/// Assigns the second of two materials to every third triangle.
 void dress(AnimatedMesh& mesh) {
     mesh.materials = {"cloth", ""};
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -230,7 +231,7 @@ TEST(MeshParts, GroupsAndMaterialsByName) {
         const float y = mesh.positions[i].y;
         EXPECT_NEAR((*middle)[i], std::clamp(1.5F * y - 1.0F, 0.0F, 1.0F), 1e-6F);
     }
-    // Two joints of one name are one group, and one that moves nothing is none.
+    // Joints with the same name form one group. A joint without vertices forms none.
     mesh.nodes[1].name = "foot";
     EXPECT_EQ(groupWeights(mesh, "foot").value_or(std::vector<float>()),
               std::vector<float>(mesh.positions.size(), 1.0F));
@@ -245,7 +246,7 @@ TEST(MeshParts, GroupsAndMaterialsByName) {
     ASSERT_FALSE(none);
     EXPECT_EQ(none.error().message.find('\n'), std::string::npos);
     EXPECT_NE(none.error().message.find("it has 'cloth'"), std::string::npos) << none.error().message;
-    // Long lists are cut.
+    // Long lists are truncated.
     std::vector<std::string> many;
     for (int i = 0; i < 30; ++i) {
         many.push_back("name " + std::to_string(i));

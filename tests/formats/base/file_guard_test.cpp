@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// No output of a run is one of its inputs or another output, whatever names and links lead there.
+// An output of a run may be neither an input nor another output, under any path or link.
 #include "formats/base/file_guard.h"
 
 #include <gtest/gtest.h>
@@ -198,7 +198,7 @@ TEST_F(FileGuardTest, WhoFillsAFolderWritesNothingElsewhere) {
         refusesFrames("out", "out/frame_0001.png' of --frames" + says);
         expectUsage(FileGuard().writes(in("out/world.json"), "--world", in("out")), "out",
                     "out/world.json' of --world" + says);
-        writes("out/world.json", "-o");  // which names the link itself
+        writes("out/world.json", "-o");  // names the link itself
         guard_ = FileGuard();
         for (const char* name : {"a.relief", "frame_0001.png", "world.json"}) {
             fs::remove(folder_ / "out" / name);

@@ -41,7 +41,7 @@ class FileIo : public testing::Test {
     test::TemporaryFolder folder_;
 };
 
-/// Runs f in a forked child, so that limits and descriptors of this process stay as they are.
+/// Runs f in a forked child, which protects the limits and descriptors of this process.
 /// \return the child's exit code.
 int inChild(const std::function<int()>& f) {
     const pid_t child = ::fork();
@@ -53,7 +53,7 @@ int inChild(const std::function<int()>& f) {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-/// kIo, in one line that has these words: the path, or what the system says.
+/// kIo, with a one-line message that contains these words: the path, or the error of the system.
 template <class T>
 bool failsWith(const Result<T>& result, const std::string& words) {
     return !result && result.error().code == ErrorCode::kIo &&
@@ -88,7 +88,7 @@ TEST_F(FileIo, RoundTripOfAllKindsOfSizes) {
 
 TEST_F(FileIo, ReplacesTheFileByAnotherOne) {
     ASSERT_TRUE(writeFile(in("a"), toBytes("old")));
-    // Whoever has the older file open keeps it whole: it is replaced, never overwritten.
+    // An open descriptor of the old file keeps its content: the file is replaced, never overwritten.
     const int old_file = ::open(in("a").c_str(), O_RDONLY);
     ASSERT_TRUE(writeFile(in("a"), toBytes("a newer one")));
     char buffer[16] = {};
@@ -263,7 +263,7 @@ TEST_F(FileIo, TheLimitIsInclusiveForFilesAndStreams) {
     ASSERT_TRUE(writeFile(in("a"), pattern(1000)));
     EXPECT_TRUE(readFile(in("a"), 1000));
     expectError(readFile(in("a"), 999), ErrorCode::kLimit);
-    // A stream tells its length only by ending.
+    // The length of a stream is known only at its end.
     for (const std::uint64_t limit : {std::uint64_t{1000}, std::uint64_t{999}}) {
         int ends[2];
         ASSERT_EQ(::pipe(ends), 0);

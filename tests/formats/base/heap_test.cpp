@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The heap's first part consists of large pages where the system has them, and freed memory stays.
+// The first part of the heap uses large pages if the system supports them, and freed memory is not returned to the
+// system.
 #include "formats/base/heap.h"
 
 #include <gtest/gtest.h>
@@ -17,12 +18,12 @@ namespace relief {
 namespace {
 
 #if defined(RELIEF_SANITIZED) || defined(__SANITIZE_THREAD__)
-constexpr bool kOwnHeap = false;  // a sanitizer's
+constexpr bool kOwnHeap = false;  // a sanitizer replaces the heap
 #else
 constexpr bool kOwnHeap = true;
 #endif
 
-/// The kernel's flags of the mapping that an address is in, as " rd wr … "; "" if there is none.
+/// The kernel's flags of the mapping that contains an address, as " rd wr … "; "" if it is not mapped.
 std::string flagsAt(const void* address) {
     const auto wanted = reinterpret_cast<std::uintptr_t>(address);
     std::ifstream maps("/proc/self/smaps");
@@ -54,26 +55,26 @@ void touch(std::size_t bytes) {
     EXPECT_EQ(block[bytes / 2], 1);
 }
 
-// In a process of its own, as the heap of this one is in use.
+// Runs in its own process because the heap of this process is already in use.
 TEST(Heap, AsksForLargePagesAndKeepsWhatIsFreed) {
     GTEST_FLAG_SET(death_test_style,
-                   "threadsafe");  // starts the program again: a fork would inherit this heap
+                   "threadsafe");  // restarts the program: a fork would inherit this heap
     const auto work = [] {
         prepareHeap(std::size_t{64} << 20);
         const std::unique_ptr<char[]> block(new char[24 << 20]);
         const bool large = flagsAt(block.get() + (12 << 20)).find(" hg ") != std::string::npos;
-        constexpr std::size_t kBytes = 24 << 20;  // more than a step of the heap, less than its largest block
+        constexpr std::size_t kBytes = 24 << 20;  // above a step of the heap, below its largest block
         touch(kBytes);
         const long before = pageFaults();
         touch(kBytes);
-        const bool kept = pageFaults() - before < 64;  // 6144 of 4 kB, if they were new
+        const bool kept = pageFaults() - before < 64;  // 6144 new pages of 4 kB otherwise
         ::_exit(kOwnHeap ? (large ? 0 : 1) + (kept ? 0 : 2) : 0);
     };
     EXPECT_EXIT(work(), testing::ExitedWithCode(0), "")
         << "1: no large pages are asked for; 2: what was freed went back to the system";
 }
 
-// Where less can be had, by ulimit -v say, the heap stays as it is, and serves.
+// If less memory is available, as under ulimit -v, the heap stays unchanged and usable.
 TEST(Heap, TakesNoMoreThanItMay) {
     const auto work = [] {
         std::ifstream sizes("/proc/self/statm");

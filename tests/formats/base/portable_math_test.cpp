@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Against libm in long double; and the very bits, which no compiler or processor may change.
+// Compares with libm in long double, and pins the exact bits, which must not depend on compiler or processor.
 #include "formats/base/portable_math.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kSamples = 20'000;
 
-/// From low to high, no multiple of anything.
+/// Values between low and high that are not multiples of a round number.
 double sample(double low, double high, int i) {
     return low + (high - low) * ((i + 0.318309886183790672) / kSamples);
 }
@@ -81,7 +81,7 @@ TEST(PortableMath, EndsAndCorners) {
     EXPECT_TRUE(std::isnan(portable::cos(std::numeric_limits<double>::infinity())));
 }
 
-/// One number for the bits of many results.
+/// A hash of the bits of many results.
 std::uint64_t bitsOf(const std::function<double(double)>& f, double low, double high) {
     std::uint64_t hash = 0xcbf29ce484222325U;
     for (int i = 0; i < kSamples; ++i) {
@@ -90,7 +90,7 @@ std::uint64_t bitsOf(const std::function<double(double)>& f, double low, double 
     return hash;
 }
 
-// Taken from GCC 12 on x86-64 with -O2. A difference means that a compiler or a processor rounds otherwise:
+// Taken from GCC 12 on x86-64 with -O2. A difference means that a compiler or processor rounds differently:
 // look for contraction, x87 or -ffast-math before changing a number here.
 TEST(PortableMath, TheBitsAreTheSameEverywhere) {
     EXPECT_EQ(bitsOf(portable::log, 1e-6, 1e6), 0xc2c47b6f2235efc6U);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Programs that are started: what they get of this process, and how their end is told.
+// Child processes: what they inherit, and how their exit is reported.
 #include "formats/base/process.h"
 #include "formats/base/descriptor.h"
 
@@ -15,7 +15,8 @@
 namespace relief {
 namespace {
 
-/// Runs a shell script, \return what it wrote.
+/// Runs a shell script.
+/// \return its output.
 std::string outputOf(const std::string& script, ProcessStart start = {}) {
     Descriptor reading;
     Descriptor writing;
@@ -54,7 +55,7 @@ TEST(Process, HasItsDescriptorsAndNoOther) {
               "/dev/null\n/dev/null\n0\n1\n2\n");
 }
 
-// Each number is another's, so that none may be overwritten before it is placed.
+// Each descriptor's number is the target of another, so none may be overwritten before it is moved.
 TEST(Process, DescriptorsMayTradePlaces) {
     Process process;
     ProcessStart start;
@@ -77,12 +78,12 @@ TEST(Process, DescriptorsMayTradePlaces) {
 
 TEST(Process, SignalsAreAsTheCallerWants) {
     const auto lines = [](const ProcessStart& start) {
-        // glibc's posix_spawn ignores two signals of its own, 32 and 33.
+        // posix_spawn of glibc ignores its two internal signals, 32 and 33.
         return outputOf("grep -E 'Sig(Blk|Ign)' /proc/$$/status | cut -f2 | sed s/0000000180/0000000000/",
                         start);
     };
     for (const int number : {SIGHUP, SIGINT, SIGQUIT}) {
-        std::signal(number, SIG_DFL);  // a shell may ignore them for what it runs in the background
+        std::signal(number, SIG_DFL);  // shells may ignore signals for background jobs
     }
     // SIGPIPE is 13 and SIGUSR1 10: bits 12 and 9.
     const auto pipe_before = std::signal(SIGPIPE, SIG_IGN);

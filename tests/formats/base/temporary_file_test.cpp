@@ -43,7 +43,7 @@ TEST_F(TemporaryFiles, AreRemovedUnlessTheyAreRenamed) {
     TemporaryFile file;
     ASSERT_EQ(file.create(folder_, 0600), 0);
     ASSERT_EQ(file.fill(std::as_bytes(std::span("whole", 5)), std::nullopt), 0);
-    // Until then it is no leftover to a process that does not see this one.
+    // The file is locked, so a process that cannot see this PID does not remove it as a leftover.
     const Descriptor other(openRetry((folder_ / *names().begin()).c_str(), O_RDWR));
     EXPECT_NE(::flock(other.get(), LOCK_EX | LOCK_NB), 0);
     ASSERT_EQ(file.renameTo(folder_ / "a"), 0);
@@ -80,7 +80,8 @@ TEST_F(TemporaryFiles, ThoseOfAKilledProcessGoWithTheNextOutput) {
     ASSERT_TRUE(writeFile(folder_ / "a", {}));
     EXPECT_EQ(names(), std::set<std::string>{"a"});
 
-    // All others stay: of a live process, of one elsewhere that still writes, links, folders, pipes, and other names.
+    // All other files stay: those of live processes, files that are still locked, links, folders, pipes, and other
+    // names.
     const std::string dead = ".relief-" + std::to_string(killed) + "-";
     const fs::path other = folder_ / "other";
     fs::create_directory(other);

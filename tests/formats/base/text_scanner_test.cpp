@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Words and lines of text files, however they are written.
+// Words and lines of text files, for every line ending and layout.
 #include "formats/base/text_scanner.h"
 
 #include <gtest/gtest.h>

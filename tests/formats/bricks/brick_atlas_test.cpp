@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The file between the two benchmarks: it comes back as it was, and nothing else is taken for one.
+// The file shared by the two benchmarks: it round-trips, and all other bytes are rejected.
 #include "formats/bricks/brick_atlas.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Paths of a scene: inside its folder, whatever links and dots they are made of.
+// Paths of a scene must stay in its folder, through any links and dots.
 #include "formats/config/confined_path.h"
 
 #include <gtest/gtest.h>
@@ -85,12 +85,12 @@ TEST_F(ScenePaths, LinksThatLeadOut) {
           "to_folder/missing", "to_folder/../scenes_too/c.relief"}) {
         expectError(text, "leads out");
     }
-    // Through the folder outside `..` leads elsewhere than the text alone says.
+    // After a link to an outside folder, `..` resolves differently than in the text.
     link("/usr/share", "share");
     expectError("share/../a.relief", "leads out");
 }
 
-// By the time that it is opened something may be there.
+// A file may exist there by the time the path is opened.
 TEST_F(ScenePaths, DanglingLinksThatLeadOut) {
     link(base_ / "scenes_too/missing", "dangling");
     link("dangling", "to_dangling");
@@ -103,7 +103,7 @@ TEST_F(ScenePaths, DanglingLinksThatLeadOut) {
     EXPECT_FALSE(resolveInside(folder_, "circle_a"));
 }
 
-// The folder's own name may be a link, end in a slash, be empty, or name nothing.
+// The folder's name may be a link, have a trailing slash, be empty, or not exist.
 TEST_F(ScenePaths, EveryWayToNameTheFolder) {
     fs::create_directory_symlink(folder_, base_ / "alias");
     for (const fs::path& folder :
@@ -116,7 +116,7 @@ TEST_F(ScenePaths, EveryWayToNameTheFolder) {
     EXPECT_TRUE(resolveInside("/", "a.relief"));
 }
 
-// One folder more, and nothing beside it; the scene's own stays.
+// A root permits one more folder, and no others; the scene's own folder stays permitted.
 TEST_F(ScenePaths, ARootMayBeNamedToo) {
     const fs::path root = base_ / "scenes_too";
     const auto resolved = required(resolveInside(folder_, "../scenes_too/c.relief", "scene", root));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A table read into a struct: every form of a value, and every error with its place and its cure.
+// Reads a table into a struct: every value form, and every error with its position and fix.
 #include "formats/config/toml_reader.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is derived from fields(): JSON and its schema, tables, dictionaries.
+// Output derived from fields(): JSON, schemas, tables, dictionaries.
 #include "formats/fields/json_value.h"
 
 #include <gtest/gtest.h>
@@ -63,7 +63,7 @@ TEST(FieldsAsJson, SchemaIsClosedAndHasRangesAndWords) {
     EXPECT_EQ(schema["properties"]["crowded"]["type"], "boolean");
 }
 
-/// A report: a value of it is a leaf that was found or one that was not.
+/// A report whose value is either a leaf that was found or one that was not.
 struct Search {
     bool found = true;
     std::string why;

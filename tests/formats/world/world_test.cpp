@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// World files from outside: what is read is a world, and what is none is refused with its place.
+// World files from untrusted sources: valid files are read; all others are rejected with the position.
 #include "formats/world/world.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ World smallWorld() {
     return world;
 }
 
-/// The text with a part of it replaced; the test fails if it is not there.
+/// The text with one part replaced. The test fails if the part is missing.
 std::string with(const std::string& part, const std::string& other) {
     std::string text = worldText(smallWorld());
     const std::size_t at = text.find(part);
@@ -136,11 +136,11 @@ TEST(World, HasLimits) {
     EXPECT_EQ(parseWorld(many + "]").error().code, ErrorCode::kLimit) << "before memory is taken for them";
 }
 
-/// A folder with a world of one collider in it.
+/// A folder that contains a world of one collider.
 class WorldFolder : public testing::Test {
   protected:
     void SetUp() override {
-        // A sphere of radius ½, seen along z from both sides.
+        // A sphere of radius ½, with maps along z from both sides.
         collider_.bounds = {glm::vec3(-0.5F), glm::vec3(0.5F)};
         collider_.maps = {test::makeMap(*test::makeSphere({0, 0, 0}, 0.5),
                                         test::centeredFrame({0, 0, 0}, glm::dmat3(1.0), {1.01, 1.01, 1.01}),
@@ -148,7 +148,7 @@ class WorldFolder : public testing::Test {
         writeCollider();
         world_.bodies.resize(1);
     }
-    /// The world's only collider.
+    /// Writes the world's only collider.
     void writeCollider() {
         const std::vector<std::byte> bytes = test::written(collider_);
         ASSERT_TRUE(writeFile(folder_ / "a.relief", bytes));
@@ -197,7 +197,7 @@ TEST_F(WorldFolder, ContainersAreThereAndTheOnesThatWereMeant) {
     fs::remove(folder_.parent_path() / (folder_.filename().string() + ".relief"));
 }
 
-/// Also of containers that are not read now: pages hold their bytes.
+/// Also applies to containers that are not read now, because pages embed their bytes.
 TEST_F(WorldFolder, NoContainerIsALinkOutOfIt) {
     const test::TemporaryFolder elsewhere;
     const fs::path secret = elsewhere.write("secret", "x");
@@ -248,7 +248,7 @@ TEST_F(WorldFolder, TheBodiesAtAPointDecideAsAllOfThem) {
     for (int i = 0; i < 20 * 20 * 20; ++i) {
         const glm::vec3 share(glm::vec3(i % 20, i / 20 % 20, i / 400) / 19.0F * 3.0F - 1.0F);
         const glm::vec3 p = box.min + share * box.size();
-        // By hand, without WorldField: the second body is turned by 2·asin(0.6) about y.
+        // Computed by hand, without WorldField: the second body is rotated by 2·asin(0.6) about y.
         const glm::vec3 moved = p - glm::vec3(0.5F, 0.25F, 0.0F);
         const float c = 0.28F;
         const float s = 0.96F;
