@@ -196,7 +196,7 @@ TEST(Analytic, SphereBoxAndTorusInEveryFormatCompareAndDecode) {
     }
 }
 
-TEST(Analytic, CubesFromWithinAConvexShapeFromBesideItAndFromTheHoleOfATorus) {
+TEST(Analytic, CubesInsideAConvexShapeBesideItAndInATorusHole) {
     Votes votes;
     const auto sphere = makeSphere({0.2, 0.1, -0.2}, 0.75);
     const auto box = makeBox({0.15, 0.2, -0.25}, {0.4, 0.5, 0.3});
@@ -214,7 +214,7 @@ TEST(Analytic, CubesFromWithinAConvexShapeFromBesideItAndFromTheHoleOfATorus) {
     }
 }
 
-TEST(CubeCoordinates, TableOfOpenGL) {
+TEST(CubeCoordinates, MatchTheOpenGlTable) {
     // OpenGL 3.3, table 3.21: s = ½(sc/|ma| + 1), t = ½(tc/|ma| + 1), computed by hand for one direction per face.
     struct Row {
         glm::vec3 direction;
@@ -237,7 +237,7 @@ TEST(CubeCoordinates, TableOfOpenGL) {
     }
 }
 
-TEST(CubeCoordinates, EqualComponentsGoToXThenY) {
+TEST(CubeCoordinates, TiesPreferXThenY) {
     EXPECT_EQ(cubeCoordinates({1, 1, 1}).face, 0U);
     EXPECT_EQ(cubeCoordinates({-1, 1, -1}).face, 1U);
     EXPECT_EQ(cubeCoordinates({0.5F, 1, 1}).face, 2U);
@@ -257,7 +257,7 @@ void expectFarOutside(const std::optional<Vote>& got, const std::string& what) {
     EXPECT_EQ(got->normal, glm::vec3(0.0F)) << what;
 }
 
-TEST(ViewVolume, OutsideTheWindowIsFarOutsideIfTheMapEnclosesAndSilentOtherwise) {
+TEST(ViewVolume, OutsideTheWindowOnlyEnclosingMapsVote) {
     DepthMap map = plateMap(Compare::kLess);
     const glm::vec3 beside[] = {{2.5F, 0, 0}, {-2.5F, 0, 0}, {0, 2.5F, 0}, {0, -2.5F, 0}, {9, -9, 0.5F}};
     for (const glm::vec3& p : beside) {
@@ -270,7 +270,7 @@ TEST(ViewVolume, OutsideTheWindowIsFarOutsideIfTheMapEnclosesAndSilentOtherwise)
     EXPECT_TRUE(vote(map, {0, 0, 0.5F}));
 }
 
-TEST(ViewVolume, TheBorderIsOutsideTheWindow) {
+TEST(ViewVolume, BorderIsOutsideTheWindow) {
     DepthMap map = plateMap(Compare::kLess);
     // A surface in the border is ignored.
     for (std::uint32_t i = 0; i < 8; ++i) {
@@ -306,7 +306,7 @@ TEST(ViewVolume, BeforeAndBehindTheVolume) {
     }
 }
 
-TEST(ViewVolume, AnEmptyTexelIsFarOutsideIfRaysStartInFreeSpaceAndSilentOtherwise) {
+TEST(ViewVolume, EmptyTexelsVoteOnlyIfRaysStartInFreeSpace) {
     for (DepthMap map : {emptyMap(centeredFrame({0, 0, 0}, kTurned, {4.0, 4.0, 2.0}), MapFormat::kFixed8,
                                   Compare::kLess, 6, 6),
                          emptyMap(CubeFrame{{0, 0, 0}, kTurned, {2.0, 2.0, 1.0}}, Compare::kLess, 6)}) {
@@ -334,7 +334,7 @@ TEST(ViewVolume, CubeAtItsCentreAndOutsideItsVolume) {
     expectFarOutside(vote(map, {1.6F, 0, 0}), "behind a LESS cube");
 }
 
-TEST(ViewVolume, NoFinitePointGivesNaNAndFarOnesAreOutside) {
+TEST(ViewVolume, FinitePointsNeverGiveNanAndFarPointsAreOutside) {
     constexpr float kMax = std::numeric_limits<float>::max();
     const auto ball = makeSphere({0, 0, 0}, 1.0);
     Collider collider =

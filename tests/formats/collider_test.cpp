@@ -45,7 +45,7 @@ Collider colliderOf(const Votes& votes) {
 const glm::vec3 kOrigin(0.0F);
 constexpr float kFar = kFarOutside;
 
-TEST(Rule2, AnyOutsideWinsThenTheSmallestPositiveOrTheLargestNegative) {
+TEST(Rule2, OutsideWinsThenTheVoteNearestToZero) {
     const auto distance = [](const Votes& votes) { return evaluate(colliderOf(votes), kOrigin).distance; };
     EXPECT_EQ(distance({-1.0F, -0.25F, -0.5F}), -0.25F);
     EXPECT_EQ(distance({-1.0F, 1.5F, -0.5F}), 1.5F);
@@ -56,7 +56,7 @@ TEST(Rule2, AnyOutsideWinsThenTheSmallestPositiveOrTheLargestNegative) {
     EXPECT_EQ(distance({-1.0F, 0.0F}), 0.0F);
 }
 
-TEST(InsideBox, IsWhereAllVolumesThatEncloseMeet) {
+TEST(InsideBox, IsTheIntersectionOfEnclosingVolumes) {
     Collider collider = colliderOf({-1.0F, -1.0F, -1.0F});
     const auto place = [&](std::size_t map, const glm::dvec3& center, bool encloses) {
         const DepthMap placed = test::emptyMap(test::centeredFrame(center, glm::dmat3(1.0), {4, 4, 4}),
@@ -108,7 +108,7 @@ TEST(Rule2, OrderDoesNotMatter) {
     }
 }
 
-TEST(Rule2, NoVoteIsMapMinusOneAndNotInside) {
+TEST(Rule2, NoVoteIsMapMinusOneAndOutside) {
     for (const Votes& votes : {Votes{}, Votes{std::nullopt}, Votes{std::nullopt, std::nullopt}}) {
         const FieldSample sample = evaluate(colliderOf(votes), kOrigin);
         EXPECT_EQ(sample.map, -1);
@@ -117,14 +117,14 @@ TEST(Rule2, NoVoteIsMapMinusOneAndNotInside) {
     }
 }
 
-TEST(Rule2, FirstOfEqualsDecides) {
+TEST(Rule2, FirstOfEqualVotesWins) {
     EXPECT_EQ(evaluate(colliderOf({std::nullopt, -0.5F, -0.5F}), kOrigin).map, 1);
     EXPECT_EQ(evaluate(colliderOf({-1.0F, 0.5F, 0.5F, kFar}), kOrigin).map, 1);
     EXPECT_EQ(evaluate(colliderOf({-1.0F, kFar, kFar}), kOrigin).map, 1);
     EXPECT_EQ(evaluate(colliderOf({0.0F, 0.0F}), kOrigin).map, 0);
 }
 
-TEST(Rule2, FarOutsideHasNoNormalAndTheDecidingMapGivesIt) {
+TEST(Rule2, NormalComesFromTheDecidingMapAndIsZeroFarOutside) {
     EXPECT_EQ(evaluate(colliderOf({-0.5F, kFar}), kOrigin).normal, kOrigin);
     const Collider collider = colliderOf({-0.5F, 0.25F, kFar});
     const FieldSample sample = evaluate(collider, kOrigin);
@@ -153,7 +153,7 @@ void expectInsideAgrees(const Collider& collider, const glm::vec3& p) {
     ASSERT_EQ(early.map, first);
 }
 
-TEST(Inside, IsTheSignOfEvaluateForAnyOrderOfVotes) {
+TEST(Inside, IsTheSignOfEvaluateForAnyVoteOrder) {
     Votes votes = {std::nullopt, -1.0F, -0.25F, 0.0F, 0.5F, kFar, std::nullopt, -0.25F};
     std::sort(votes.begin(), votes.end());
     do {
@@ -162,7 +162,7 @@ TEST(Inside, IsTheSignOfEvaluateForAnyOrderOfVotes) {
     expectInsideAgrees({}, kOrigin);
 }
 
-TEST(Inside, StopsAtTheFirstMapThatSeesThePointOutside) {
+TEST(Inside, StopsAtTheFirstOutsideVote) {
     // The second map has no texels, so it must not be read.
     Collider collider = colliderOf({-0.5F, 0.25F, -0.5F});
     collider.maps[2].texels.clear();

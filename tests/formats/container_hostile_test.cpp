@@ -227,7 +227,7 @@ Recipe zstdRecipe(const Bytes& frame) {
     });
 }
 
-TEST(Crafted, TheRecipeItselfIsRead) {
+TEST(Crafted, TheUnchangedRecipeIsValid) {
     for (const Recipe& recipe : {Recipe{}, zstdRecipe(compress(kRaw))}) {
         const Collider read = required(readContainer(fileOf(recipe)));
         ASSERT_EQ(read.maps.size(), 2U);
@@ -466,7 +466,7 @@ void expectTexelLies() {
     expectIssue(fileOf(recipe), IssueCode::kTexels, 1);
 }
 
-TEST(Crafted, EveryLieHasItsIssueAndTheReadmeListsThemAll) {
+TEST(Crafted, EveryLieHasAnIssueThatTheReadmeLists) {
     expectHeaderLies();
     expectMetadataLies();
     expectPayloadLies();
@@ -492,7 +492,7 @@ TEST(Crafted, EveryLieHasItsIssueAndTheReadmeListsThemAll) {
 
 /// A file may claim 32768 times its size. With limits.memory, a reader accepts the larger of 16 times the size and
 /// limits.memory.
-TEST(Crafted, TexelsAreWorthTheirFile) {
+TEST(Crafted, TexelsAreLimitedByTheFileSize) {
     Recipe recipe;
     recipe.maps.resize(1);
     recipe.maps[0].compression = 1;
@@ -541,7 +541,7 @@ Collider withMaterials() {
     return collider;
 }
 
-TEST(Mutated, EveryBitOfTheMetadataWithMendedChecksums) {
+TEST(Mutated, EveryMetadataBitWithFixedChecksums) {
     const Bytes bytes = *writeContainer(withMaterials());
     ContainerHeader header;
     std::memcpy(&header, bytes.data(), sizeof(header));
@@ -552,10 +552,11 @@ TEST(Mutated, EveryBitOfTheMetadataWithMendedChecksums) {
         test::mendChecksums(flipped);
         ASSERT_NO_FATAL_FAILURE(expectSoundOrRefused(flipped, read_count)) << "bit " << bit;
     }
-    EXPECT_GT(read_count, 100) << "names and bounds may change; a reader that refuses all tests nothing";
+    EXPECT_GT(read_count, 100)
+        << "flips in names and bounds are valid; rejecting every file would test nothing";
 }
 
-TEST(Mutated, EveryBitOfAZstdFrameWithMendedChecksums) {
+TEST(Mutated, EveryZstdFrameBitWithFixedChecksums) {
     Bytes raw(kRaw.size());
     std::mt19937 random(3);
     for (std::size_t i = 100; i < 400; ++i) {

@@ -40,7 +40,7 @@ std::vector<PartState> statesOf(const Inspection& inspection) {
     return states;
 }
 
-TEST(Inspect, SoundFilesHaveNothingToSay) {
+TEST(Inspect, SoundFilesHaveNoIssues) {
     for (const int level : {0, 3}) {
         for (const Collider& collider : {test::oneMapOfEveryFormat(), test::readmeExample()}) {
             const Inspection inspection = inspected(written(collider, level));
@@ -54,7 +54,7 @@ TEST(Inspect, SoundFilesHaveNothingToSay) {
     EXPECT_DOUBLE_EQ(one_texel.maps[0].coverage.value(), 1.0 / 9.0);
 }
 
-TEST(Inspect, SaysWhatIsLeftOfADamagedFile) {
+TEST(Inspect, ListsTheIntactMapsOfADamagedFile) {
     Collider collider = test::readmeExample();
     collider.maps.resize(3, collider.maps[0]);
     const Bytes good = written(collider);

@@ -16,7 +16,7 @@
 namespace relief::test {
 namespace {
 
-TEST(Materials, APointFindsItsCell) {
+TEST(Materials, LookupFindsTheCell) {
     const Materials materials = someMaterials();
     ASSERT_EQ(faultOfMaterials(materials), "");
     const glm::vec3 up(0.0F, 1.0F, 0.0F);
@@ -37,7 +37,7 @@ TEST(Materials, APointFindsItsCell) {
     EXPECT_EQ(materialAt(materials, low, {0.0F, -9.0F, 0.0F}), 1U);
 }
 
-TEST(Materials, NineAxesTellSidesApart) {
+TEST(Materials, NineAxesDistinguishSides) {
     const glm::vec3 v(1.0F, 2.0F, 4.0F);
     const std::array<float, kMaterialAxes> along{1.0F, 2.0F, 4.0F, 3.0F, -1.0F, 5.0F, -3.0F, 6.0F, -2.0F};
     for (int axis = 0; axis < kMaterialAxes; ++axis) {
@@ -45,7 +45,7 @@ TEST(Materials, NineAxesTellSidesApart) {
     }
 }
 
-TEST(Materials, EveryFaultIsFound) {
+TEST(Materials, EveryFaultIsDetected) {
     struct Case {
         const char* message;
         std::function<void(Materials&)> spoil;
@@ -92,7 +92,7 @@ TEST(Materials, EveryFaultIsFound) {
     EXPECT_EQ(faultOfMaterials(deep), "");
 }
 
-TEST(Materials, AContainerKeepsThemAndOthersStayAsTheyWere) {
+TEST(Materials, RoundTripInContainersAndLeaveOthersUnchanged) {
     Collider collider = readmeExample();
     const std::vector<std::byte> without = written(collider);
     collider.materials = someMaterials();
@@ -109,7 +109,7 @@ TEST(Materials, AContainerKeepsThemAndOthersStayAsTheyWere) {
     EXPECT_FALSE(writeContainer(collider));
 }
 
-TEST(Materials, ResponsesAreByName) {
+TEST(Materials, ResponsesAreSetByName) {
     Materials materials = someMaterials();
     const std::vector<MaterialResponse> responses{{"stone", 0.1F, {}, 5.0F}, {"stove", {}, {}, {}}};
     EXPECT_EQ(repeatedName(responses), std::nullopt);

@@ -99,7 +99,7 @@ TEST(NearestSurface, Sphere) {
 }
 
 /// With only one map, texels beside the hole are seen at grazing angles, so their surface is steep.
-TEST(NearestSurface, TorusAndItsHole) {
+TEST(NearestSurface, TorusWithItsHole) {
     constexpr std::uint32_t kSize = 96;
     Scene scene;
     scene.texel = 2.0 / kSize;
@@ -120,7 +120,7 @@ TEST(NearestSurface, TorusAndItsHole) {
 }
 
 /// Edges fall between texels of each map, and corners stick out of all maps.
-TEST(NearestSurface, BoxSeenAskew) {
+TEST(NearestSurface, RotatedBox) {
     const glm::dvec3 half(0.5, 0.35, 0.6);
     Scene scene = sceneOf(*makeBox({0, 0, 0}, half), 0.8, 64, kTurned);
     scene.collider.bounds = {-glm::vec3(half), glm::vec3(half)};
@@ -144,7 +144,7 @@ TEST(NearestSurface, BoxSeenAskew) {
 }
 
 /// A central cube map sees floor and walls at grazing angles beside their edges.
-TEST(NearestSurface, InABoxTheNearestOfItsWallsCounts) {
+TEST(NearestSurface, InsideABoxTheNearestWallCounts) {
     const glm::dvec3 half(0.25, 0.8, 0.4);
     Collider collider;
     collider.bounds = {-glm::vec3(half), glm::vec3(half)};
@@ -163,11 +163,11 @@ TEST(NearestSurface, InABoxTheNearestOfItsWallsCounts) {
         ASSERT_LT(nearest.distance, 0.0F);
         worst = std::max(worst, std::abs(nearest.distance - truth));
     }
-    EXPECT_LT(worst, 0.05) << "a fifth of half the box";
+    EXPECT_LT(worst, 0.05) << "a fifth of the box's half side";
 }
 
 /// For any valid file and finite point, results are finite and have evaluate()'s side.
-TEST(NearestSurface, IsFiniteAndOnTheSideOfTheVoteWhateverTheMapsHold) {
+TEST(NearestSurface, IsFiniteAndOnTheVotedSideForAnyTexels) {
     constexpr float kMax = std::numeric_limits<float>::max();
     std::mt19937 random(21);
     std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
@@ -219,7 +219,7 @@ TEST(NearestSurface, IsFiniteAndOnTheSideOfTheVoteWhateverTheMapsHold) {
     EXPECT_GT(inside, 1000);
 }
 
-TEST(NearestSurface, WhereMapsKnowNothingItSaysSo) {
+TEST(NearestSurface, NoDataIsReported) {
     Scene scene = sceneOf(*makeSphere({0, 0, 0}, 0.5), 0.5, 16);
     for (DepthMap& map : scene.collider.maps) {
         map.encloses = false;
@@ -238,7 +238,7 @@ TEST(NearestSurface, WhereMapsKnowNothingItSaysSo) {
 }
 
 /// A point for which every map votes only "far outside" still has a distance.
-TEST(NearestSurface, FarOutsideOfAllVolumesTheDistanceIsFound) {
+TEST(NearestSurface, HasADistanceFarOutsideAllVolumes) {
     const Scene scene = sceneOf(*makeSphere({0, 0, 0}, 0.9), 0.9, 64);
     for (const glm::vec3& p : {glm::vec3(3, 2, 1.5F), glm::vec3(-1.5F, 1.2F, -2), glm::vec3(10, -10, 5)}) {
         ASSERT_EQ(evaluate(scene.collider, p).distance, kFarOutside);

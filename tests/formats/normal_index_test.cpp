@@ -41,7 +41,7 @@ TEST(NormalIndex, SixAxesAreExact) {
     }
 }
 
-TEST(NormalIndex, EveryIndexIsEquation3AndEncodesToItsOwnVector) {
+TEST(NormalIndex, EveryIndexMatchesEquation3AndRoundTrips) {
     for (unsigned packed = 0; packed < 65536; ++packed) {
         const glm::vec3 decoded = decodeNormal(indexOf(packed));
         ASSERT_NEAR(glm::length(glm::dvec3(decoded)), 1.0, 2e-7) << packed;
@@ -68,7 +68,7 @@ TEST(NormalIndex, PackingKeepsBothBytes) {
 }
 
 // Rounding each coordinate independently would be up to 0.95 degrees off.
-TEST(NormalIndex, BestOfFourStaysBelow065Degrees) {
+TEST(NormalIndex, BestOfFourErrorIsBelow065Degrees) {
     std::mt19937_64 random(20240701);
     std::normal_distribution<double> gauss;
     double worst = 0.0;
@@ -77,7 +77,7 @@ TEST(NormalIndex, BestOfFourStaysBelow065Degrees) {
         worst = std::max(worst, angleInDegrees(glm::dvec3(decodeNormal(encodeNormal(n))), glm::dvec3(n)));
     }
     EXPECT_LE(worst, 0.65);
-    EXPECT_GT(worst, 0.55) << "suspiciously good: does the test still look at 8+8-bit indices?";
+    EXPECT_GT(worst, 0.55) << "too accurate: does this still test 8+8-bit indices?";
 }
 
 }  // namespace

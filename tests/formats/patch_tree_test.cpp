@@ -19,7 +19,7 @@ namespace {
 using test::patchesOf;
 using test::randomPatches;
 
-TEST(PatchFrame, CoversTheCubeAndHasTheGradientOfItsDepth) {
+TEST(PatchFrame, CoversTheCubeAndHasTheGradientOfDepth) {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
     for (const PatchFrame& frame : patchFrames()) {
@@ -54,7 +54,7 @@ TEST(PatchFrame, CoversTheCubeAndHasTheGradientOfItsDepth) {
     }
 }
 
-TEST(PatchHeights, AreWithinHalfAStepOfTheirRange) {
+TEST(PatchHeights, AreWithinHalfAStep) {
     std::mt19937 random(2);
     for (const double range : {1e-5, 0.01, 0.3, 1.0, 3.5}) {
         std::uniform_real_distribution<double> unit(0.4 - range, 0.4 + range);
@@ -77,7 +77,7 @@ TEST(PatchHeights, AreWithinHalfAStepOfTheirRange) {
     }
 }
 
-TEST(PatchTree, PlanesAreExactBetweenTheirCodes) {
+TEST(PatchTree, PlanesAreExactUpToTheirCodes) {
     // Every frame and size stores the plane n·p = 0.5·(n.x + n.y + n.z) through the cell's centre, seen from above.
     for (const PatchFrame& frame : patchFrames()) {
         const glm::dvec3 along = glm::normalize(glm::dvec3(frame.gradient(0.0F, 0.0F)));
@@ -122,7 +122,7 @@ TEST(PatchTree, PlanesAreExactBetweenTheirCodes) {
     }
 }
 
-TEST(PatchTree, PairsAreWhatIsInBothOrInEither) {
+TEST(PatchTree, PairsAreIntersectionsOrUnions) {
     // A wall whose sides see each other's back, and the edge between two perpendicular walls.
     const auto plane = [](const PatchFrame& frame, bool outside_below, double height) {
         return PatchRecord::patch(frame, outside_below, PatchHeights::of(std::vector(4, height), 2), 0);
@@ -154,7 +154,7 @@ TEST(PatchTree, PairsAreWhatIsInBothOrInEither) {
     }
 }
 
-TEST(PatchTree, CellsWithoutPatchesKeepTheirSideWhateverTheirPlaneSays) {
+TEST(PatchTree, CellsWithoutPatchesKeepTheirSide) {
     // Two roots: one flat and outside, the other split, with a record for only one child, which is flat and inside.
     const glm::vec3 up(0, 1, 0);
     const DepthMap map = patchesOf(
@@ -164,9 +164,9 @@ TEST(PatchTree, CellsWithoutPatchesKeepTheirSideWhateverTheirPlaneSays) {
     const auto at = [&](float x, float y, float z) { return *vote(map, {x, y, z}); };
     EXPECT_NEAR(at(0.5F, 0.5F, 0.5F).distance, 0.25F, 1e-6F);
     EXPECT_NEAR(at(0.5F, 0.9F, 0.5F).distance, 0.65F, 1e-6F);
-    EXPECT_GT(at(0.5F, 0.1F, 0.5F).distance, 0.0F) << "outside, though the plane has −0.15";
+    EXPECT_GT(at(0.5F, 0.1F, 0.5F).distance, 0.0F) << "outside, although the plane's distance is −0.15";
     EXPECT_LT(at(0.5F, 0.1F, 0.5F).distance, 0.01F);
-    EXPECT_LT(at(1.25F, 0.9F, 0.25F).distance, 0.0F) << "inside, though the plane has 0.5";
+    EXPECT_LT(at(1.25F, 0.9F, 0.25F).distance, 0.0F) << "inside, although the plane's distance is 0.5";
     // Offsets have steps of 1/128; the normal is exact.
     EXPECT_NEAR(at(1.25F, 0.1F, 0.25F).distance, -0.3F, 4e-3F);
     EXPECT_NEAR(at(1.25F, 0.9F, 0.75F).distance, 0.5F, 4e-3F);
@@ -180,7 +180,7 @@ TEST(PatchTree, CellsWithoutPatchesKeepTheirSideWhateverTheirPlaneSays) {
     EXPECT_TRUE(vote(part, {0.5F, 0.5F, 0.5F}));
 }
 
-TEST(PatchTree, BrokenTreesAreRefused) {
+TEST(PatchTree, BrokenTreesAreRejected) {
     const glm::vec3 up(0, 1, 0);
     const PatchRecord leaf = PatchRecord::flat(true, up, -1.0F);
     const std::vector<double> heights(25, 0.5);
@@ -225,7 +225,7 @@ TEST(PatchTree, BrokenTreesAreRefused) {
     EXPECT_FALSE(validatePatches(none.texels));
 }
 
-TEST(PatchTree, FramesOfSeveralLengthsAreRefused) {
+TEST(PatchTree, NonUniformFramesAreRejected) {
     std::mt19937 random(6);
     DepthMap map = randomPatches(random);
     EXPECT_TRUE(validateFrame(map)) << validateFrame(map).error().message;

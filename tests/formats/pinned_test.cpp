@@ -151,8 +151,8 @@ std::string pinnedText(const Collider& collider) {
     return text.str();
 }
 
-TEST(PinnedContainers, SayWhatTheySaid) {
-    EXPECT_EQ(containers().size(), 8U) << "none is removed";
+TEST(PinnedContainers, ReadAsBefore) {
+    EXPECT_EQ(containers().size(), 8U) << "no pinned container may be removed";
     for (const fs::path& file : containers()) {
         SCOPED_TRACE(file.filename());
         const Collider collider = required(loadCollider(file));
@@ -168,7 +168,7 @@ TEST(PinnedContainers, SayWhatTheySaid) {
 }
 
 // Uncompressed bytes never change; those of zstd depend on the version of zstd.
-TEST(PinnedContainers, AreWrittenAgainAsTheyWere) {
+TEST(PinnedContainers, AreWrittenAsBefore) {
     std::size_t same = 0;
     for (const fs::path& file : containers()) {
         SCOPED_TRACE(file.filename());

@@ -16,7 +16,7 @@ namespace {
 
 using namespace test;
 
-TEST(PlaneDecode, VolumeWindowAndEmptyTexelsAreThoseOfProjected) {
+TEST(PlaneDecode, VolumeWindowAndEmptyTexelsMatchProjected) {
     const auto sphere = makeSphere({0, 0, 0}, 0.7);
     std::vector<DepthMap> maps;
     for (const Encoding& e : kOrthographic) {
@@ -59,7 +59,7 @@ TEST(PlaneDecode, VolumeWindowAndEmptyTexelsAreThoseOfProjected) {
     EXPECT_GT(same, 1000);
 }
 
-TEST(TexelRay, IsTheFramesOwn) {
+TEST(TexelRay, MatchesTheFrame) {
     const OrthographicFrame frame = centeredFrame({2.0, -1.0, 0.5}, kTurned, {3.0, 1.0, 0.75});
     const DepthMap map = emptyMap(frame, MapFormat::kFixed8, Compare::kGreater, 9, 5);
     for (std::uint32_t y = 0; y < 5; ++y) {

@@ -41,14 +41,14 @@ std::vector<std::byte> parseDump(const std::string& text) {
     return bytes;
 }
 
-TEST(Readme, HexdumpIsTheContainerOfTheExample) {
+TEST(Readme, HexdumpIsTheExampleContainer) {
     const std::vector<std::byte> bytes = parseDump(readme());
     EXPECT_EQ(bytes, test::written(test::readmeExample()));
     const Collider read = required(readContainer(bytes));
     EXPECT_EQ(read, test::readmeExample());
 }
 
-TEST(Readme, VotesOfTheExample) {
+TEST(Readme, ExampleVotesAreRight) {
     // "| (x, y, z) | … | distance |"; the last cell is "far outside" or a number.
     const std::regex row("\\| `\\(([-0-9.]+), ([-0-9.]+), ([-0-9.]+)\\)` \\|.*\\| ([^|]+) \\|");
     const std::string text = readme();
@@ -69,14 +69,14 @@ TEST(Readme, VotesOfTheExample) {
     EXPECT_GE(rows, 4);
 }
 
-TEST(Readme, StatesTheLimitsOfTheCode) {
+TEST(Readme, StatesTheLimits) {
     const std::string text = readme();
     const ContainerLimits limits;
     for (const std::string& words :
          {std::to_string(limits.maps) + " maps", std::to_string(limits.texel_bytes >> 30) + " GiB",
           std::to_string(kMapSizeMax) + " texels", std::to_string(kMeshNameMax) + " bytes"}) {
         EXPECT_NE(text.find(words), std::string::npos)
-            << "formats/README.md does not say \"" << words << "\"";
+            << "formats/README.md does not contain \"" << words << "\"";
     }
 }
 

@@ -67,7 +67,7 @@ TEST(Texel, DepthsHaveNames) {
     }
 }
 
-TEST(Texel, FixedDepthCodesRoundTripRiseAndAreHalfAStepOff) {
+TEST(Texel, FixedDepthCodesRoundTripMonotonicallyWithinHalfAStep) {
     for (const float depth_max : {1.0F, kCubeDepthMax}) {
         float before = -1.0F;
         for (unsigned code = 1; code < 65536; ++code) {
@@ -88,7 +88,7 @@ TEST(Texel, FixedDepthCodesRoundTripRiseAndAreHalfAStepOff) {
     }
 }
 
-TEST(Texel, HalfDepthCodesRoundTripRiseAndAreNeverEmptyOrSubnormal) {
+TEST(Texel, HalfDepthCodesRoundTripMonotonicallyNeverEmptyOrSubnormal) {
     float before = 0.0F;
     for (std::uint16_t bits = 0x0400; bits <= 0x3c00; ++bits) {
         const float depth = decodeHalfDepth(bits);

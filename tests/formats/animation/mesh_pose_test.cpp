@@ -28,7 +28,7 @@ glm::vec3 topAt(const AnimatedMesh& mesh, const char* clip, double seconds) {
     return posed(mesh, poseAt(mesh, mesh.clips.at(*findClip(mesh, clip)), seconds)).back();
 }
 
-TEST(MeshPose, TurnsAboutTheJointAtAConstantSpeed) {
+TEST(MeshPose, RotatesAboutTheJointAtConstantSpeed) {
     const AnimatedMesh mesh = bendingTube();
     ASSERT_TRUE(validate(mesh));
     for (const double t : {0.0, 0.1, 0.5, 1.0, 1.25, 2.0}) {
@@ -47,7 +47,7 @@ TEST(MeshPose, MorphsBeforeJointsMove) {
     }
 }
 
-TEST(MeshPose, TakesTheShorterWayAndCrossesCurves) {
+TEST(MeshPose, TakesTheShorterArcAndEvaluatesSplines) {
     AnimatedMesh mesh = bendingTube();
     MeshClip& clip = mesh.clips[0];
     const float half = std::sqrt(0.5F);
@@ -87,7 +87,7 @@ TEST(MeshPose, RepeatsClips) {
     EXPECT_EQ(repeated(clip, -1e-300), 0.0);
 }
 
-TEST(MeshPose, BoundsHoldEveryVertexAtEveryTime) {
+TEST(MeshPose, BoundsContainEveryVertexAtEveryTime) {
     const AnimatedMesh mesh = bendingTube();
     const PoseBounds bounds(mesh);
     const PoseExtent extent = poseExtent(mesh);
@@ -109,7 +109,7 @@ TEST(MeshPose, BoundsHoldEveryVertexAtEveryTime) {
 
 // A square that rotates ten times a second, with keys at the times when it is axis-aligned: its box is largest between
 // keys.
-TEST(MeshPose, TheRoomHoldsWhatTurnsFast) {
+TEST(MeshPose, RoomContainsFastRotations) {
     AnimatedMesh mesh = movingBox({1.0F, 0.1F, 1.0F});
     ClipChannel& channel = mesh.clips[1].channels[0];
     channel.times.clear();
@@ -127,7 +127,7 @@ TEST(MeshPose, TheRoomHoldsWhatTurnsFast) {
     EXPECT_FALSE(isCyclic(mesh, mesh.clips[0]));
 }
 
-TEST(MeshPose, ADayOfNothingIsNoWork) {
+TEST(MeshPose, LongIdleClipsAreFast) {
     AnimatedMesh mesh = bendingTube(8, 6);
     mesh.nodes.resize(kMeshNodesMax, mesh.nodes[0]);
     mesh.clips[0].seconds = kClipSecondsMax;
@@ -144,7 +144,7 @@ void dress(AnimatedMesh& mesh) {
     }
 }
 
-TEST(AnimatedMesh, ComesBackFromItsBytes) {
+TEST(AnimatedMesh, RoundTrips) {
     AnimatedMesh mesh = bendingTube(8, 6);
     mesh.nodes[0].matrix = Affine{{{1, 0, 0, 1}, {0, 1, 0, 0}, {0, 0, 1, 5}}};
     for (const bool dressed : {false, true}) {
@@ -158,7 +158,7 @@ TEST(AnimatedMesh, ComesBackFromItsBytes) {
     }
 }
 
-TEST(AnimatedMesh, RefusesTruncationsAndLivesThroughFlippedBytes) {
+TEST(AnimatedMesh, RejectsTruncationsAndSurvivesFlippedBytes) {
     AnimatedMesh tube = bendingTube(6, 4);
     dress(tube);
     const std::vector<std::byte> bytes = writeAnimatedMesh(tube);
@@ -177,7 +177,7 @@ TEST(AnimatedMesh, RefusesTruncationsAndLivesThroughFlippedBytes) {
     }
 }
 
-TEST(AnimatedMesh, SaysWhatIsWrong) {
+TEST(AnimatedMesh, ErrorsNameTheFault) {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     using Change = std::function<void(AnimatedMesh&)>;
     const std::pair<Change, const char*> cases[] = {

@@ -69,12 +69,12 @@ TEST_F(FileGuardTest, NoOutputIsAnInput) {
     refuses("linked/input", "is the input '");
     writes("real/old", "--dump");
     writes("new", "--stats");
-    EXPECT_FALSE(guard_.reads(in("linked/old"))) << "an input that is known late";
+    EXPECT_FALSE(guard_.reads(in("linked/old"))) << "an input added late";
     EXPECT_TRUE(guard_.reads(""));
     EXPECT_TRUE(guard_.writes("", "--events"));
 }
 
-TEST_F(FileGuardTest, FoldersThatAreMadeLaterHoldFiles) {
+TEST_F(FileGuardTest, FilesMayLieInAFolderThatIsCreatedLater) {
     const fs::path made = in("new/sub");
     for (const char* file : {"new/sub/a", "new/b", "linked/../new/sub/c", "d"}) {
         const auto done = guard_.writes(in(file), "--new", made);
@@ -86,7 +86,7 @@ TEST_F(FileGuardTest, FoldersThatAreMadeLaterHoldFiles) {
     EXPECT_FALSE(fs::exists(in("new")));
 }
 
-TEST_F(FileGuardTest, NoTwoOutputsAreOne) {
+TEST_F(FileGuardTest, OutputsAreDistinct) {
     fs::create_symlink("real/later", folder_ / "dangling");
     fs::create_symlink("dangling", folder_ / "twice");
     writes("scene", "--dump");
@@ -106,7 +106,7 @@ TEST_F(FileGuardTest, NoTwoOutputsAreOne) {
     writes("circle", "-o");  // writing it fails
 }
 
-TEST_F(FileGuardTest, StandardOutputIsOne) {
+TEST_F(FileGuardTest, StandardOutputIsAnOutput) {
     writes("-", "--dump");
     refuses("-", "--dump and --new would both write standard output");
     EXPECT_FALSE(guard_.writes("/dev/stdout", "--stats"));
@@ -114,7 +114,7 @@ TEST_F(FileGuardTest, StandardOutputIsOne) {
     EXPECT_TRUE(guard_.reads("-"));
 }
 
-TEST_F(FileGuardTest, FramesReplaceNothingElse) {
+TEST_F(FileGuardTest, FramesReplaceOnlyFrames) {
     std::ofstream(folder_ / "real/frame_0001.png") << "old";
     std::ofstream(folder_ / "real/frame_0003.png") << "beyond the last";
     std::ofstream(folder_ / "real/frame_00001.png") << "another name";
@@ -130,7 +130,7 @@ TEST_F(FileGuardTest, FramesReplaceNothingElse) {
     EXPECT_FALSE(guard_.reads(in("real/frame_0000.png")));
 }
 
-TEST_F(FileGuardTest, FramesReplaceNoInputByNameOrThroughALink) {
+TEST_F(FileGuardTest, FramesReplaceNoInput) {
     reads("scene");
     for (const char* kind : {"symbolic", "hard"}) {
         fs::remove(folder_ / "real/frame_0000.png");
@@ -146,7 +146,7 @@ TEST_F(FileGuardTest, FramesReplaceNoInputByNameOrThroughALink) {
     refusesFrames("linked", "linked/frame_0000.png' is the input");
 }
 
-TEST_F(FileGuardTest, FramesAreNoOtherOutputNorEachOther) {
+TEST_F(FileGuardTest, FramesReplaceNoOtherOutput) {
     writes("made", "--dump");
     refusesFrames("made", "--dump and --frames would both write");
     refusesFrames("made/deeper", "--dump and --frames would both write");
@@ -154,7 +154,7 @@ TEST_F(FileGuardTest, FramesAreNoOtherOutputNorEachOther) {
     refuses("fresh", "--frames and --new would both write");
 }
 
-TEST_F(FileGuardTest, FilesByEndingAreThoseThereAndThoseToCome) {
+TEST_F(FileGuardTest, FilesByEndingIncludeExistingAndFutureFiles) {
     std::ofstream(folder_ / "real/a.relief") << "container";
     fs::create_symlink("real/a.relief", folder_ / "to_container");
     fs::create_hard_link(folder_ / "real/a.relief", folder_ / "same_container");
@@ -173,7 +173,7 @@ TEST_F(FileGuardTest, FilesByEndingAreThoseThereAndThoseToCome) {
     refuses("missing", "--world and --new");
 }
 
-TEST_F(FileGuardTest, FilesByEndingReplaceNoOther) {
+TEST_F(FileGuardTest, FilesByEndingReplaceNoOtherOutput) {
     writes("real/x.relief", "-o");
     expectUsage(containers("linked"), "real", "-o and --world would both write '");
     fs::create_directory(folder_ / "one");
@@ -181,13 +181,13 @@ TEST_F(FileGuardTest, FilesByEndingReplaceNoOther) {
     std::ofstream(folder_ / "one/a.relief") << "container";
     fs::create_hard_link(folder_ / "one/a.relief", folder_ / "two/a.relief");
     EXPECT_TRUE(containers("one"));
-    EXPECT_TRUE(containers("two")) << "each is replaced, which leaves the other name as it is";
+    EXPECT_TRUE(containers("two")) << "replacing one name does not change the other";
     fs::create_directory(folder_ / "three");
     fs::create_symlink("../one/a.relief", folder_ / "three/a.relief");
     EXPECT_FALSE(containers("three"));
 }
 
-TEST_F(FileGuardTest, WhoFillsAFolderWritesNothingElsewhere) {
+TEST_F(FileGuardTest, LinksOutOfAnOutputFolderAreRejected) {
     fs::create_directory(folder_ / "out");
     for (const char* target : {"../real/old", "../real/later"}) {
         for (const char* name : {"a.relief", "frame_0001.png", "world.json"}) {
@@ -215,14 +215,14 @@ TEST_F(FileGuardTest, WhoFillsAFolderWritesNothingElsewhere) {
 TEST_F(FileGuardTest, KeptFilesAreSharedAndReplaceLinks) {
     fs::create_symlink("scene", folder_ / "cache");
     reads("scene");
-    EXPECT_TRUE(guard_.keeps(in("cache"), "--world")) << "the link is replaced, and not the scene";
-    EXPECT_TRUE(guard_.keeps(in("cache"), "--output")) << "two worlds may have one cache";
+    EXPECT_TRUE(guard_.keeps(in("cache"), "--world")) << "replaces the link, not the scene";
+    EXPECT_TRUE(guard_.keeps(in("cache"), "--output")) << "two worlds may share a cache";
     refuses("cache", "--world and --new would both write '");
     EXPECT_FALSE(guard_.reads(in("cache")));
     expectUsage(guard_.keeps(in("scene"), "--world"), "scene", "is the input");
 }
 
-TEST_F(FileGuardTest, FoldersThatItMadeAndThatStayEmptyAreRemoved) {
+TEST_F(FileGuardTest, CreatedFoldersThatStayEmptyAreRemoved) {
     fs::create_directory(folder_ / "empty");
     const auto make = [&](bool keep) {
         FileGuard guard;
@@ -246,7 +246,7 @@ TEST_F(FileGuardTest, FoldersThatItMadeAndThatStayEmptyAreRemoved) {
     }
 }
 
-TEST_F(FileGuardTest, NumbersHaveFourDigitsOrMore) {
+TEST_F(FileGuardTest, NumbersHaveAtLeastFourDigits) {
     const NumberedFiles files{"f", "p_", ".ply", 20'000};
     EXPECT_EQ(files.path(7), "f/p_0007.ply");
     EXPECT_EQ(files.path(12'345), "f/p_12345.ply");

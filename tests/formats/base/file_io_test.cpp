@@ -75,7 +75,7 @@ std::vector<std::byte> pattern(std::size_t size) {
     return bytes;
 }
 
-TEST_F(FileIo, RoundTripOfAllKindsOfSizes) {
+TEST_F(FileIo, RoundTripsFilesOfManySizes) {
     const std::size_t mib = std::size_t{1} << 20;
     for (const std::size_t size :
          {std::size_t{0}, std::size_t{1}, std::size_t{4096}, mib - 1, mib, mib + 1, 5 * mib}) {
@@ -86,7 +86,7 @@ TEST_F(FileIo, RoundTripOfAllKindsOfSizes) {
     EXPECT_EQ(names(), std::set<std::string>{"a"});
 }
 
-TEST_F(FileIo, ReplacesTheFileByAnotherOne) {
+TEST_F(FileIo, ReplacesTheFile) {
     ASSERT_TRUE(writeFile(in("a"), toBytes("old")));
     // An open descriptor of the old file keeps its content: the file is replaced, never overwritten.
     const int old_file = ::open(in("a").c_str(), O_RDONLY);
@@ -98,7 +98,7 @@ TEST_F(FileIo, ReplacesTheFileByAnotherOne) {
     EXPECT_EQ(*readFile(in("a")), toBytes("a newer one"));
 }
 
-TEST_F(FileIo, RelativePathsWriteIntoTheWorkingFolder) {
+TEST_F(FileIo, RelativePathsStartAtTheWorkingFolder) {
     const int code = inChild([&] {
         return ::chdir(in("").c_str()) == 0 && writeFile("plain", toBytes("x")) &&
                        writeFile("./dot", toBytes("y"))
@@ -109,7 +109,7 @@ TEST_F(FileIo, RelativePathsWriteIntoTheWorkingFolder) {
     EXPECT_EQ(names(), (std::set<std::string>{"plain", "dot"}));
 }
 
-TEST_F(FileIo, NewFilesFollowTheUmaskAndOldOnesKeepTheirBits) {
+TEST_F(FileIo, NewFilesFollowTheUmaskAndReplacedFilesKeepTheirMode) {
     const mode_t before = ::umask(027);
     ASSERT_TRUE(writeFile(in("new"), toBytes("x")));
     EXPECT_EQ(modeOf(in("new")), 0640U);
@@ -121,7 +121,7 @@ TEST_F(FileIo, NewFilesFollowTheUmaskAndOldOnesKeepTheirBits) {
     ::umask(before);
 }
 
-TEST_F(FileIo, ASymbolicLinkStaysAndItsTargetIsReplaced) {
+TEST_F(FileIo, SymbolicLinksStayAndTheirTargetsAreReplaced) {
     fs::create_directory(in("deep"));
     ASSERT_TRUE(writeFile(in("deep/target"), toBytes("old")));
     fs::create_symlink("deep/target", in("link"));
@@ -142,7 +142,7 @@ TEST_F(FileIo, ASymbolicLinkStaysAndItsTargetIsReplaced) {
     EXPECT_TRUE(failsWith(writeFile(in("circle"), toBytes("x")), "circle"));
 }
 
-TEST_F(FileIo, AFullDiskAndNoDescriptorLeaveTheOlderFileAndNoTemporaryOne) {
+TEST_F(FileIo, FailedWritesKeepTheOldFileAndLeaveNoTemporaryFile) {
     ASSERT_TRUE(writeFile(in("a"), toBytes("old")));
     const int full = inChild([&] {
         std::signal(SIGXFSZ, SIG_IGN);
@@ -180,7 +180,7 @@ TEST_F(FileIo, DescriptorsAreClosed) {
     EXPECT_EQ(next(), before);
 }
 
-TEST_F(FileIo, RefusesFoldersAndPathsThatLeadNowhere) {
+TEST_F(FileIo, RejectsFoldersAndInvalidPaths) {
     ASSERT_TRUE(writeFile(in("a"), toBytes("x")));
     fs::create_directory(in("folder"));
     const fs::path paths[] = {in("folder"),
@@ -200,7 +200,8 @@ TEST_F(FileIo, RefusesFoldersAndPathsThatLeadNowhere) {
     EXPECT_TRUE(failsWith(writeFile(in("missing/b"), toBytes("x")), "folders are not created"));
     EXPECT_EQ(names(), (std::set<std::string>{"a", "folder"}));
     EXPECT_TRUE(fs::is_empty(in("folder")));
-    EXPECT_TRUE(writeFile(in(std::string(255, 'n')), toBytes("x"))) << "the longest: a suffix would not fit";
+    EXPECT_TRUE(writeFile(in(std::string(255, 'n')), toBytes("x")))
+        << "the longest name, without room for a suffix";
 }
 
 TEST_F(FileIo, DevicesAreWrittenInPlace) {
@@ -210,7 +211,7 @@ TEST_F(FileIo, DevicesAreWrittenInPlace) {
     EXPECT_TRUE(fs::is_character_file("/dev/full"));
 }
 
-TEST_F(FileIo, PipesOfTheShellAreStreamed) {
+TEST_F(FileIo, ShellPipesAreStreamed) {
     const std::vector<std::byte> bytes = pattern(3'000'001);
     int ends[2];
     ASSERT_EQ(::pipe(ends), 0);
@@ -227,7 +228,7 @@ TEST_F(FileIo, PipesOfTheShellAreStreamed) {
     EXPECT_EQ(*read, bytes);
 }
 
-TEST_F(FileIo, NobodyWaitsForAPipeThatHasAName) {
+TEST_F(FileIo, NamedPipesDoNotBlock) {
     ASSERT_EQ(::mkfifo(in("pipe").c_str(), 0600), 0);
     fs::create_symlink("pipe", in("link"));
     for (const char* name : {"pipe", "link"}) {
@@ -276,10 +277,10 @@ TEST_F(FileIo, TheLimitIsInclusiveForFilesAndStreams) {
     expectError(readFile("/dev/zero", 5'000'000), ErrorCode::kLimit);
     EXPECT_FALSE(readFile("/dev/zero", 0));
     EXPECT_TRUE(readFile("/dev/null", 0));
-    EXPECT_GT(readFile("/proc/self/status").value().size(), 100U) << "a file that does not tell its size";
+    EXPECT_GT(readFile("/proc/self/status").value().size(), 100U) << "a file that reports no size";
 }
 
-TEST_F(FileIo, WritersAtOnceLeaveOneWholeFile) {
+TEST_F(FileIo, ConcurrentWritersLeaveOneCompleteFile) {
     std::vector<std::thread> threads;
     for (int i = 0; i < 8; ++i) {
         threads.emplace_back([&, i] {
@@ -297,7 +298,7 @@ TEST_F(FileIo, WritersAtOnceLeaveOneWholeFile) {
     EXPECT_EQ(names(), std::set<std::string>{"a"});
 }
 
-TEST_F(FileIo, PreflightFindsOutputsThatCannotBeWrittenAndMakesFolders) {
+TEST_F(FileIo, PreflightFindsUnwritableOutputsAndCreatesFolders) {
     ASSERT_TRUE(writeFile(in("old.relief"), toBytes("old")));
     const auto refused = [](const Result<void>& result) {
         return !result && result.error().code == ErrorCode::kIo;
@@ -309,7 +310,7 @@ TEST_F(FileIo, PreflightFindsOutputsThatCannotBeWrittenAndMakesFolders) {
     for (const fs::path& path : {fs::path(), in(""), in("missing/out.relief"), in("old.relief/out.relief")}) {
         EXPECT_TRUE(refused(preflightFile(path, "-o"))) << path;
     }
-    EXPECT_FALSE(fs::exists(in("new.relief"))) << "it only looks";
+    EXPECT_FALSE(fs::exists(in("new.relief"))) << "preflight creates no file";
     EXPECT_TRUE(preflightFolder(in("a/b"), "-o"));
     EXPECT_TRUE(fs::is_directory(in("a/b")));
     EXPECT_TRUE(preflightFolder(in("a"), "-o"));

@@ -56,7 +56,7 @@ void touch(std::size_t bytes) {
 }
 
 // Runs in its own process because the heap of this process is already in use.
-TEST(Heap, AsksForLargePagesAndKeepsWhatIsFreed) {
+TEST(Heap, RequestsLargePagesAndKeepsFreedMemory) {
     GTEST_FLAG_SET(death_test_style,
                    "threadsafe");  // restarts the program: a fork would inherit this heap
     const auto work = [] {
@@ -71,11 +71,11 @@ TEST(Heap, AsksForLargePagesAndKeepsWhatIsFreed) {
         ::_exit(kOwnHeap ? (large ? 0 : 1) + (kept ? 0 : 2) : 0);
     };
     EXPECT_EXIT(work(), testing::ExitedWithCode(0), "")
-        << "1: no large pages are asked for; 2: what was freed went back to the system";
+        << "1: no large pages were requested; 2: freed memory was returned to the system";
 }
 
 // If less memory is available, as under ulimit -v, the heap stays unchanged and usable.
-TEST(Heap, TakesNoMoreThanItMay) {
+TEST(Heap, StaysWithinTheMemoryLimit) {
     const auto work = [] {
         std::ifstream sizes("/proc/self/statm");
         std::uint64_t pages = 0;
@@ -90,7 +90,7 @@ TEST(Heap, TakesNoMoreThanItMay) {
         ::_exit((limited ? 0 : 1) + (grown ? 2 : 0) + (block != nullptr ? 0 : 4));
     };
     EXPECT_EXIT(work(), testing::ExitedWithCode(0), "")
-        << "1: no limit could be set; 2: the heap grew beyond it; 4: it serves no more";
+        << "1: cannot set a limit; 2: the heap exceeded it; 4: allocations fail";
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ void expectNear(const std::function<double(double)>& ours,
 
 constexpr double kTwoUlp = 2.0 * std::numeric_limits<double>::epsilon();
 
-TEST(PortableMath, IsAsGoodAsItSays) {
+TEST(PortableMath, KeepsItsErrorBounds) {
     const auto log = [](long double x) { return std::log(x); };
     const auto exp = [](long double x) { return std::exp(x); };
     const auto sin = [](long double x) { return std::sin(x); };
@@ -92,7 +92,7 @@ std::uint64_t bitsOf(const std::function<double(double)>& f, double low, double 
 
 // Taken from GCC 12 on x86-64 with -O2. A difference means that a compiler or processor rounds differently:
 // look for contraction, x87 or -ffast-math before changing a number here.
-TEST(PortableMath, TheBitsAreTheSameEverywhere) {
+TEST(PortableMath, BitsArePortable) {
     EXPECT_EQ(bitsOf(portable::log, 1e-6, 1e6), 0xc2c47b6f2235efc6U);
     EXPECT_EQ(bitsOf(portable::exp, -700.0, 700.0), 0x988ac3a66f2401ccU);
     EXPECT_EQ(bitsOf(portable::sin, -1e5, 1e5), 0x1c92c31377f1482cU);

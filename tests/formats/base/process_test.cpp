@@ -48,7 +48,7 @@ int started(const std::string& program, Process& process) {
     return process.start(start);
 }
 
-TEST(Process, HasItsDescriptorsAndNoOther) {
+TEST(Process, InheritsOnlyItsDescriptors) {
     const Descriptor inheritable(::open("/dev/zero", O_RDONLY));
     ASSERT_TRUE(inheritable);
     EXPECT_EQ(outputOf("readlink /proc/$$/fd/0 /proc/$$/fd/2; ls /proc/$$/fd"),
@@ -56,7 +56,7 @@ TEST(Process, HasItsDescriptorsAndNoOther) {
 }
 
 // Each descriptor's number is the target of another, so none may be overwritten before it is moved.
-TEST(Process, DescriptorsMayTradePlaces) {
+TEST(Process, DescriptorsMaySwap) {
     Process process;
     ProcessStart start;
     Descriptor reading;
@@ -76,7 +76,7 @@ TEST(Process, DescriptorsMayTradePlaces) {
     EXPECT_EQ(process.wait().exit_code, 0);
 }
 
-TEST(Process, SignalsAreAsTheCallerWants) {
+TEST(Process, SignalsFollowTheOptions) {
     const auto lines = [](const ProcessStart& start) {
         // posix_spawn of glibc ignores its two internal signals, 32 and 33.
         return outputOf("grep -E 'Sig(Blk|Ign)' /proc/$$/status | cut -f2 | sed s/0000000180/0000000000/",
@@ -109,7 +109,7 @@ TEST(Process, LeadsAGroup) {
     EXPECT_EQ(outputOf("test $(cut -d' ' -f5 /proc/$$/stat) = $$ && echo leads", start), "leads\n");
 }
 
-TEST(Process, WhatCannotBeRunIsAnError) {
+TEST(Process, UnrunnableProgramsAreErrors) {
     Process process;
     EXPECT_EQ(started("relief-no-such-program", process), ENOENT);
     EXPECT_EQ(started("/nonexistent/program", process), ENOENT);

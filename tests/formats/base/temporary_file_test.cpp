@@ -33,7 +33,7 @@ class TemporaryFiles : public ::testing::Test {
     fs::path folder_ = temporary_.path();
 };
 
-TEST_F(TemporaryFiles, AreRemovedUnlessTheyAreRenamed) {
+TEST_F(TemporaryFiles, AreRemovedUnlessRenamed) {
     {
         TemporaryFile file;
         ASSERT_EQ(file.create(folder_, 0600), 0);
@@ -50,7 +50,7 @@ TEST_F(TemporaryFiles, AreRemovedUnlessTheyAreRenamed) {
     EXPECT_EQ(names(), std::set<std::string>{"a"});
 }
 
-TEST_F(TemporaryFiles, ASignalThatEndsTheProgramRemovesThem) {
+TEST_F(TemporaryFiles, AreRemovedByFatalSignals) {
     for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
         const auto work = [&] {
             ::signal(number, SIG_DFL);
@@ -67,7 +67,7 @@ TEST_F(TemporaryFiles, ASignalThatEndsTheProgramRemovesThem) {
     }
 }
 
-TEST_F(TemporaryFiles, ThoseOfAKilledProcessGoWithTheNextOutput) {
+TEST_F(TemporaryFiles, LeftoversOfAKilledProcessAreRemovedByTheNextOutput) {
     const pid_t killed = ::fork();
     if (killed == 0) {
         TemporaryFile file;
@@ -120,7 +120,7 @@ TEST_F(TemporaryFiles, ThoseOfAKilledProcessGoWithTheNextOutput) {
     EXPECT_EQ(fs::file_size(other / "target"), 4U);
 }
 
-TEST_F(TemporaryFiles, AnIgnoredSignalStaysIgnored) {
+TEST_F(TemporaryFiles, IgnoredSignalsStayIgnored) {
     const auto work = [] {
         ::signal(SIGHUP, SIG_IGN);
         endCleanlyOnSignals();
@@ -130,7 +130,7 @@ TEST_F(TemporaryFiles, AnIgnoredSignalStaysIgnored) {
     EXPECT_EXIT(work(), testing::ExitedWithCode(7), "");
 }
 
-TEST_F(TemporaryFiles, ADescriptorsNameIsWrittenToTheDescriptor) {
+TEST_F(TemporaryFiles, DescriptorNamesAreWrittenToTheDescriptor) {
     const int fd = ::open((folder_ / "log").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
     ASSERT_GE(fd, 0);
     ASSERT_EQ(::write(fd, "first ", 6), 6);

@@ -31,18 +31,18 @@ TEST(TextScanner, LinesEndInThreeWays) {
                              "a b\n\r\nc\n\x1a"}) {
         EXPECT_EQ(linesOf(text), truth) << text;
     }
-    EXPECT_EQ(linesOf(std::string("a b\n\nc\n") + std::string(9, '\0')), truth) << "filled up with zeros";
+    EXPECT_EQ(linesOf(std::string("a b\n\nc\n") + std::string(9, '\0')), truth) << "padded with zeros";
     EXPECT_EQ(linesOf(""), std::vector<Words>{{}});
 }
 
-TEST(TextScanner, CommentsAndJointsAsTheFormatHasThem) {
+TEST(TextScanner, CommentsAndContinuedLinesFollowTheRules) {
     EXPECT_EQ(linesOf("a b#c d\n# e\n#"), (std::vector<Words>{{"a", "b"}, {}, {}}));
     EXPECT_EQ(linesOf("a \\\n b\\\r\nc\\d \\ \t\re\\"), (std::vector<Words>{{"a", "b", "c\\d", "e"}}));
     EXPECT_EQ(linesOf("a#b\\\nc", {}), (std::vector<Words>{{"a#b\\"}, {"c"}}));
     EXPECT_EQ(linesOf("a # b \\\nc"), (std::vector<Words>{{"a"}, {"c"}})) << "a comment is not continued";
 }
 
-TEST(TextScanner, ALineThatIsLeftEarlyEndsWhereItsCommentDoes) {
+TEST(TextScanner, NextLineSkipsTheRestOfALine) {
     TextScanner scanner("v 0 0 # C:\\tmp\\\nv 1 1 \\\n1\nlast", {'#', true});
     EXPECT_EQ(scanner.word(), "v");
     EXPECT_TRUE(scanner.nextLine());
@@ -53,7 +53,7 @@ TEST(TextScanner, ALineThatIsLeftEarlyEndsWhereItsCommentDoes) {
     EXPECT_EQ(scanner.line(), 4U);
 }
 
-TEST(TextScanner, WordsKnowTheirLine) {
+TEST(TextScanner, WordsHaveTheirLineNumber) {
     TextScanner scanner("one \\\ntwo\r\n\rname # of it \nlast", {'#', true});
     EXPECT_EQ(scanner.word(), "one");
     EXPECT_EQ(scanner.line(), 1U);
@@ -68,11 +68,11 @@ TEST(TextScanner, WordsKnowTheirLine) {
     EXPECT_EQ(scanner.anyWord(), "last");
     EXPECT_EQ(scanner.line(), 5U);
     EXPECT_EQ(scanner.anyWord(), "");
-    EXPECT_EQ(scanner.line(), 5U) << "of the last word";
+    EXPECT_EQ(scanner.line(), 5U) << "line of the last word";
     EXPECT_FALSE(scanner.nextLine());
 }
 
-TEST(CsvReader, PassesOverWhatHoldsNothing) {
+TEST(CsvReader, SkipsEmptyLines) {
     CsvReader reader("\xef\xbb\xbf# a comment\r\n\n a ,\tb,,\r\n  \nlast");
     ASSERT_TRUE(reader.next());
     EXPECT_EQ(reader.number(), 3U);
@@ -87,7 +87,7 @@ TEST(CsvReader, PassesOverWhatHoldsNothing) {
     EXPECT_FALSE(CsvReader("").next());
 }
 
-TEST(CsvReader, LinesOfOldMacs) {
+TEST(CsvReader, ReadsClassicMacLineEndings) {
     CsvReader reader("x,y\r1,2\r\r3,4\n5,6\r");
     for (const char* first : {"x", "1", "3", "5"}) {
         ASSERT_TRUE(reader.next());
@@ -98,7 +98,7 @@ TEST(CsvReader, LinesOfOldMacs) {
     EXPECT_FALSE(reader.next());
 }
 
-TEST(CsvReader, ALineOfMillionsOfFieldsIsCutShort) {
+TEST(CsvReader, LinesWithMillionsOfFieldsAreTruncated) {
     const std::string commas(1 << 20, ',');
     CsvReader reader(commas);
     ASSERT_TRUE(reader.next());

@@ -24,7 +24,7 @@ TEST(Numbers, ShortestTextReadsBackExactly) {
     }
 }
 
-TEST(Numbers, ParsersTakeWholeNumbersOnly) {
+TEST(Numbers, ParsersRejectInvalidNumbers) {
     EXPECT_EQ(parseFloat("+1.5e2"), 150.0F);
     EXPECT_EQ(parseFloat("-.5"), -0.5F);
     for (const char* text :
@@ -38,7 +38,7 @@ TEST(Numbers, ParsersTakeWholeNumbersOnly) {
     }
 }
 
-TEST(Numbers, ThoseTooSmallForAFloatAreZero) {
+TEST(Numbers, TinyNumbersBecomeZero) {
     EXPECT_EQ(parseFloat("1e-40"), 1e-40F) << "a subnormal";
     for (const char* text : {"1e-320", "0.1e-320", "1e-99999999999999999999999", "12345e-400", "+7.5E-60"}) {
         EXPECT_EQ(parseFloat(text), 0.0F) << text;
@@ -59,7 +59,7 @@ TEST(Numbers, ThoseTooSmallForAFloatAreZero) {
     }
 }
 
-TEST(Words, NearOnesAreGuessed) {
+TEST(Words, SuggestsSimilarWords) {
     constexpr std::array<std::string_view, 4> kKnown = {"resolution", "threads", "map", "json"};
     EXPECT_EQ(didYouMean("resolutoin", kKnown), "; did you mean 'resolution'?");
     EXPECT_EQ(didYouMean("thread", kKnown), "; did you mean 'threads'?");
@@ -70,16 +70,17 @@ TEST(Words, NearOnesAreGuessed) {
     EXPECT_EQ(didYouMean(std::string(100000, 'x'), kKnown), "");
 }
 
-TEST(Utf8, WhatIsNoneIsReplaced) {
+TEST(Utf8, InvalidSequencesAreReplaced) {
     EXPECT_EQ(cleanUtf8("h\xc3\xa4se.obj"), "h\xc3\xa4se.obj");
     EXPECT_EQ(cleanUtf8("a\x1b\n\x7f\xc2\x85z"), "a\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbdz");
     for (const std::string bad : {"\xff", "\xc0", "\xed\xa0", "\xf5"}) {
         EXPECT_EQ(cleanUtf8(bad).substr(0, 3), "\xef\xbf\xbd") << bad;
     }
-    EXPECT_EQ(cleanUtf8("a\xe2\x80\xae\xe2\x81\xa6z"), "a\xef\xbf\xbd\xef\xbf\xbdz") << "another order";
+    EXPECT_EQ(cleanUtf8("a\xe2\x80\xae\xe2\x81\xa6z"), "a\xef\xbf\xbd\xef\xbf\xbdz")
+        << "bidirectional controls";
     EXPECT_EQ(cleanUtf8("a\xe2\x80\xaf\xe2\x81\xa5z"), "a\xe2\x80\xaf\xe2\x81\xa5z");
     EXPECT_EQ(cleanUtf8("a\xe2\x80\xaez", 9, Bidi::kKeep), "a\xe2\x80\xaez");
-    EXPECT_EQ(cleanUtf8("\xc3\xa4\xc3\xa4", 3), "\xc3\xa4") << "no half characters";
+    EXPECT_EQ(cleanUtf8("\xc3\xa4\xc3\xa4", 3), "\xc3\xa4") << "no partial characters";
 }
 
 TEST(Split, KeepsEmptyParts) {
@@ -89,7 +90,7 @@ TEST(Split, KeepsEmptyParts) {
     EXPECT_EQ(trimmed(" \r"), "");
 }
 
-TEST(Words, LinesAndWordsAreCutOff) {
+TEST(Words, TakesLinesAndWords) {
     std::string_view text = "a b\r\n\n \tlast";
     EXPECT_EQ(takeLine(text), "a b");
     EXPECT_EQ(takeLine(text), "");

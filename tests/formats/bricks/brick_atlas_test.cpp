@@ -49,7 +49,7 @@ class BrickAtlasTest : public testing::Test {
     std::filesystem::path path_ = folder_.path() / "atlas";
 };
 
-TEST_F(BrickAtlasTest, ComesBackAsItWas) {
+TEST_F(BrickAtlasTest, RoundTrips) {
     const BrickAtlas atlas = smallAtlas();
     const BrickAtlas read = required(saved(atlas));
     const std::vector<std::byte> bytes = readFile(path_).value();
@@ -62,7 +62,7 @@ TEST_F(BrickAtlasTest, ComesBackAsItWas) {
     EXPECT_EQ(read.bricks(), 2U);
 }
 
-TEST_F(BrickAtlasTest, LiesAreRefused) {
+TEST_F(BrickAtlasTest, InconsistentHeadersAreRejected) {
     const std::vector<std::function<void(BrickAtlas&)>> lies = {
         [](auto& atlas) { atlas.index[0] = BrickAtlas::kFirstBrick + 2; },
         [](auto& atlas) { atlas.index.pop_back(); },
@@ -86,7 +86,7 @@ TEST_F(BrickAtlasTest, LiesAreRefused) {
     }
 }
 
-TEST_F(BrickAtlasTest, EveryShorterAndLongerFileIsRefused) {
+TEST_F(BrickAtlasTest, ShorterAndLongerFilesAreRejected) {
     ASSERT_TRUE(saved(smallAtlas()));
     std::vector<std::byte> whole = readFile(path_).value();
     for (std::size_t size = 0; size < whole.size(); ++size) {

@@ -42,7 +42,7 @@ class ScenePaths : public testing::Test {
     fs::path folder_ = base_ / "scenes";
 };
 
-TEST_F(ScenePaths, FilesInTheFolderAndBelow) {
+TEST_F(ScenePaths, AcceptsFilesInTheFolderAndBelow) {
     for (const char* text :
          {"a.relief", "./a.relief", "sub/b.relief", "sub/../a.relief", "sub/./../sub/b.relief",
           "missing.relief", "missing/../a.relief", "..a", "a..", "../scenes/a.relief"}) {
@@ -50,7 +50,7 @@ TEST_F(ScenePaths, FilesInTheFolderAndBelow) {
     }
 }
 
-TEST_F(ScenePaths, WhatClimbsOut) {
+TEST_F(ScenePaths, RejectsPathsThatClimbOut) {
     for (const char* text : {"..", "../a", "../scenes_too/c.relief", "sub/../../scenes_too/c.relief",
                              "missing/../../a", "sub/../..", "../../../../../../../../../../etc/passwd"}) {
         expectError(text, "leads out of the scene's folder");
@@ -62,7 +62,7 @@ TEST_F(ScenePaths, WhatClimbsOut) {
     expectError("../a\nb", "\\x0a");
 }
 
-TEST_F(ScenePaths, LinksThatStayIn) {
+TEST_F(ScenePaths, AcceptsLinksThatStayInside) {
     link("a.relief", "to_file");
     link("sub", "to_folder");
     link(folder_ / "sub", "to_folder_absolute");
@@ -74,7 +74,7 @@ TEST_F(ScenePaths, LinksThatStayIn) {
     }
 }
 
-TEST_F(ScenePaths, LinksThatLeadOut) {
+TEST_F(ScenePaths, RejectsLinksThatLeadOut) {
     link("../scenes_too/c.relief", "to_file");
     link("/etc/passwd", "to_etc");
     link(base_ / "scenes_too", "to_folder");
@@ -91,7 +91,7 @@ TEST_F(ScenePaths, LinksThatLeadOut) {
 }
 
 // A file may exist there by the time the path is opened.
-TEST_F(ScenePaths, DanglingLinksThatLeadOut) {
+TEST_F(ScenePaths, RejectsDanglingLinksThatLeadOut) {
     link(base_ / "scenes_too/missing", "dangling");
     link("dangling", "to_dangling");
     link("../nowhere", "relative");
@@ -104,7 +104,7 @@ TEST_F(ScenePaths, DanglingLinksThatLeadOut) {
 }
 
 // The folder's name may be a link, have a trailing slash, be empty, or not exist.
-TEST_F(ScenePaths, EveryWayToNameTheFolder) {
+TEST_F(ScenePaths, AcceptsEveryNameOfTheFolder) {
     fs::create_directory_symlink(folder_, base_ / "alias");
     for (const fs::path& folder :
          {base_ / "alias", folder_ / "", folder_ / ".", folder_ / "sub/..", base_ / "none/"}) {
@@ -117,7 +117,7 @@ TEST_F(ScenePaths, EveryWayToNameTheFolder) {
 }
 
 // A root permits one more folder, and no others; the scene's own folder stays permitted.
-TEST_F(ScenePaths, ARootMayBeNamedToo) {
+TEST_F(ScenePaths, ARootPermitsOneMoreFolder) {
     const fs::path root = base_ / "scenes_too";
     const auto resolved = required(resolveInside(folder_, "../scenes_too/c.relief", "scene", root));
     EXPECT_EQ(resolved, folder_ / "../scenes_too/c.relief");

@@ -76,12 +76,12 @@ std::string error(const std::string& text) {
     return thing ? "" : thing.error().message;
 }
 
-TEST(TomlReader, EveryForm) {
+TEST(TomlReader, ReadsEveryForm) {
     const auto thing = required(
         read("side = [1, 2, 3]\ncount = [2, 4]\nrange = [-1, 0.5]\nspeed = 3\naxis = [0, 0, -2]\nfile = "
              "\"a.obj\"\n"
              "[[part]]\nweight = 2\n[[part]]\nweight = 1e-60\n"));
-    EXPECT_EQ(thing.form, Form::kBox) << "by its side";
+    EXPECT_EQ(thing.form, Form::kBox) << "read from its side length";
     EXPECT_EQ(*thing.side, glm::vec3(1.0F, 2.0F, 3.0F));
     EXPECT_EQ(thing.least, 2U);
     EXPECT_EQ(thing.most, 4U);
@@ -92,7 +92,7 @@ TEST(TomlReader, EveryForm) {
     EXPECT_EQ(thing.file, std::filesystem::path("dir/a.obj"));
     EXPECT_EQ(thing.origin, "f.toml:6:8");
     ASSERT_EQ(thing.parts.size(), 2U);
-    EXPECT_GT(thing.parts[1].weight, 0.0F) << "above zero in the file, above zero as a float";
+    EXPECT_GT(thing.parts[1].weight, 0.0F) << "positive in the file, positive as a float";
     EXPECT_EQ(read("count = 3\n")->most, 3U);
     EXPECT_FALSE(read("")->has_speed);
 }

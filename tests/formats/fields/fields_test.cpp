@@ -41,7 +41,7 @@ void fields(FieldVisitor& visit, const Tree& tree) {
     visit("crowded", tree.leaves.size() > 2, {.help = "More than two leaves"});
 }
 
-TEST(FieldsAsJson, WritesMembersInTheOrderOfTheVisits) {
+TEST(FieldsAsJson, WritesMembersInVisitOrder) {
     EXPECT_EQ(
         jsonOf(Tree{}).dump(),
         R"({"name":"oak","mood":"wild","at":[1.0,2.0,0.5],"leaves":[{"size":0.1,"count":null}],"crowded":false})");
@@ -87,7 +87,7 @@ void fields(FieldVisitor& visit, const Search& search) {
     }
 }
 
-TEST(FieldsAsJson, KindsOfAReportHaveFieldsOfTheirOwn) {
+TEST(FieldsAsJson, ReportKindsHaveTheirOwnFields) {
     EXPECT_EQ(jsonOf(Search{}).dump(), R"({"found":true,"leaf":{"size":2.0},"sizes":[1.5,2.0]})");
     EXPECT_EQ(jsonOf(Search{false, "dry"}).dump(), R"({"found":false,"why":"dry"})");
     const Json kinds = schemaOf(Search{})["anyOf"];
@@ -97,12 +97,12 @@ TEST(FieldsAsJson, KindsOfAReportHaveFieldsOfTheirOwn) {
     const Json& found = kinds[0]["properties"];
     EXPECT_EQ(found["found"]["enum"], Json::array({true}));
     EXPECT_EQ(found["leaf"]["oneOf"][1], Json::parse(R"({"type":"null"})"));
-    EXPECT_EQ(found["names"]["minItems"], 1) << "an empty list is left out";
+    EXPECT_EQ(found["names"]["minItems"], 1) << "empty lists are omitted";
     EXPECT_EQ(found["names"]["items"]["pattern"], "^[a-z]+$");
     EXPECT_EQ(found["sizes"]["maxItems"], 2);
 }
 
-TEST(Words, AreFoundAndOthersAreNot) {
+TEST(Words, AreFoundByName) {
     EXPECT_EQ(fromWord<Mood>("wild"), Mood::kWild);
     EXPECT_EQ(fromWord<Mood>("Wild"), std::nullopt);
     EXPECT_FALSE(FieldRange({0.0, 1.0, false}).holds(0.0));

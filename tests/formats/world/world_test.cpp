@@ -39,7 +39,7 @@ std::string with(const std::string& part, const std::string& other) {
     return at == std::string::npos ? text : text.replace(at, part.size(), other);
 }
 
-TEST(World, IsReadAsItWasWrittenAndEveryLineIsOneThing) {
+TEST(World, RoundTripsWithOneItemPerLine) {
     const std::string text = worldText(smallWorld());
     EXPECT_EQ(text, R"({
   "format": "relief-world",
@@ -58,7 +58,7 @@ TEST(World, IsReadAsItWasWrittenAndEveryLineIsOneThing) {
     EXPECT_EQ(worldText(read), text);
 }
 
-TEST(World, WhatIsNoneIsRefusedWithItsPlaceAndCure) {
+TEST(World, InvalidFilesAreRejectedWithPositionAndFix) {
     struct Case {
         const char* part;
         std::string other;
@@ -117,7 +117,7 @@ TEST(World, HasLimits) {
     EXPECT_TRUE(parseWorld(text));
     const std::size_t last = text.rfind("    {");
     text.insert(last, text.substr(last, text.find('\n', last) - last) + ",\n");
-    EXPECT_FALSE(parseWorld(text)) << "a body more";
+    EXPECT_FALSE(parseWorld(text)) << "one body too many";
     world = smallWorld();
     for (std::size_t i = 1; i <= kWorldCollidersMax; ++i) {
         world.colliders.push_back(world.colliders[0]);
@@ -127,13 +127,13 @@ TEST(World, HasLimits) {
     world.colliders.pop_back();
     EXPECT_TRUE(parseWorld(worldText(world)));
     world.colliders.back().file = "./chair.relief";
-    EXPECT_FALSE(parseWorld(worldText(world))) << "a file twice";
+    EXPECT_FALSE(parseWorld(worldText(world))) << "the same file twice";
     EXPECT_EQ(parseWorld("[" + std::string(8'000'000, '[') + "]").error().code, ErrorCode::kLimit);
     std::string many = "[0";
     for (int i = 0; i < 2'000'000; ++i) {
         many += ",0";
     }
-    EXPECT_EQ(parseWorld(many + "]").error().code, ErrorCode::kLimit) << "before memory is taken for them";
+    EXPECT_EQ(parseWorld(many + "]").error().code, ErrorCode::kLimit) << "before memory is allocated";
 }
 
 /// A folder that contains a world of one collider.
@@ -177,7 +177,7 @@ class WorldFolder : public testing::Test {
     World world_;
 };
 
-TEST_F(WorldFolder, ContainersAreThereAndTheOnesThatWereMeant) {
+TEST_F(WorldFolder, ContainersExistAndMatchTheirHashes) {
     world_.colliders[0].hash[0] = world_.colliders[0].hash[0] == '0' ? '1' : '0';
     expectRefused("does not match its hash");
     SetUp();
@@ -198,7 +198,7 @@ TEST_F(WorldFolder, ContainersAreThereAndTheOnesThatWereMeant) {
 }
 
 /// Also applies to containers that are not read now, because pages embed their bytes.
-TEST_F(WorldFolder, NoContainerIsALinkOutOfIt) {
+TEST_F(WorldFolder, ContainersAreNoLinksOutOfTheFolder) {
     const test::TemporaryFolder elsewhere;
     const fs::path secret = elsewhere.write("secret", "x");
     world_.colliders[0].coarse = world_.colliders[0];
@@ -214,7 +214,7 @@ TEST_F(WorldFolder, NoContainerIsALinkOutOfIt) {
         << loaded.error().message;
 }
 
-TEST_F(WorldFolder, ACoarseColliderIsReadInPlaceOfTheOther) {
+TEST_F(WorldFolder, ReadsCoarseColliders) {
     const Collider fine = collider_;
     collider_.maps = {test::makeMap(*test::makeSphere({0, 0, 0}, 0.5),
                                     test::centeredFrame({0, 0, 0}, glm::dmat3(1.0), {1.01, 1.01, 1.01}),
@@ -238,7 +238,7 @@ TEST_F(WorldFolder, ACoarseColliderIsReadInPlaceOfTheOther) {
         << loaded.error().message;
 }
 
-TEST_F(WorldFolder, TheBodiesAtAPointDecideAsAllOfThem) {
+TEST_F(WorldFolder, BodiesAtAPointSufficeForTheField) {
     world_.bodies = {{0, "here", {0.0F, 0.0F, 0.0F}},
                      {0, "turned", {0.5F, 0.25F, 0.0F}, {0.0F, 0.6F, 0.0F, 0.8F}, 2.0F},
                      {0, "far", {900.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 1.0F, 0.0F}, 0.5F}};
@@ -273,7 +273,7 @@ TEST_F(WorldFolder, TheBodiesAtAPointDecideAsAllOfThem) {
               std::vector<std::uint32_t>{2});
 }
 
-TEST_F(WorldFolder, PatchesAreAskedWhereTheirBoxesAre) {
+TEST_F(WorldFolder, PatchesAreEvaluatedWithinTheirBounds) {
     std::mt19937 random(12);
     collider_.maps = {test::randomPatches(random)};
     collider_.bounds = insideBox(collider_).value();
@@ -299,7 +299,7 @@ TEST_F(WorldFolder, PatchesAreAskedWhereTheirBoxesAre) {
     EXPECT_GT(far, 100);
 }
 
-TEST_F(WorldFolder, GroundBelowTheMeshIsOfItsBody) {
+TEST_F(WorldFolder, GroundBelowTheMeshBelongsToItsBody) {
     collider_.bounds.min.y = 0.4F;  // the mesh is the top of the solid
     writeCollider();
     const WorldField field(required(load()));
