@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// shaders/air/air.glsl in OpenGL 3.3 and OpenGL ES 3.0: against closed forms, and what curl noise promises.
-//
-// Tolerance of sums and pinned numbers: a GL may fuse operations, and takes a few ulp for division and square root. What
-// counts is the noise's place in its patterns: up to 1024 of the fourth octave, whose fraction a fused multiply-add takes
-// with 2^-15 less error; that shifts an octave of speed 0.1 by up to 1e-5. All else, of numbers below 4 and forces below 10,
-// stays below that.
+// shaders/air/air.glsl in OpenGL 3.3 and OpenGL ES 3.0, against closed forms and the guarantees of curl noise.
+// Tolerance of sums and pinned numbers: a GL may fuse operations, and its division and square root may be off by a few
+// ulp. The largest error is in the noise's phase: up to 1024 in the fourth octave, where a fused multiply-add changes
+// the fraction by up to 2^-15. That shifts an octave of speed 0.1 by up to 1e-5. All other errors are smaller, for
+// numbers below 4 and forces below 10.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +31,7 @@ struct Sample {
     glm::vec3 field;
 };
 
-/// Evaluates air.glsl at the points of a texture, one a texel.
+/// Evaluates air.glsl at the points of a texture, one per texel.
 constexpr const char* kQuery = R"(
 uniform highp sampler2D u_points;  // xyz: object space; w: time
 
@@ -62,7 +61,7 @@ class AirGlTest : public GlTest {
         const GlTexture out_field = texture(nullptr);
         const GlFramebuffer framebuffer = required(makeFramebuffer({out_air.name(), out_field.name()}));
         air.attach(program, {});
-        program.use();  // without any air attach() does nothing
+        program.use();  // without air attach() does nothing
         program.set("u_points", 0);
         useTexture(0, input);
         air.bind({});
@@ -80,7 +79,7 @@ class AirGlTest : public GlTest {
     static std::vector<Sample> evaluate(const AirSettings& settings, const std::vector<glm::vec4>& points) {
         return evaluate(required(AirBlock::create(settings)), points);
     }
-    /// The noise's velocities at points and times.
+    /// The noise velocity at points and times.
     static std::vector<glm::dvec3> blown(const CurlNoise& noise, const std::vector<glm::vec4>& points) {
         AirSettings air;
         air.curl_noise = noise;
@@ -90,7 +89,7 @@ class AirGlTest : public GlTest {
         }
         return velocities;
     }
-    /// Half the differences of the velocity from `h` before to `h` behind a point, along x, y and z.
+    /// Half the velocity differences between +h and −h along x, y and z.
     static std::vector<std::array<glm::dvec3, 3>> differences(const CurlNoise& noise,
                                                               const std::vector<glm::vec4>& points, float h) {
         std::vector<glm::vec4> around;
@@ -159,8 +158,8 @@ AirSettings everything() {
     return air;
 }
 
-// None, each kind alone, all but each, and all: each compiles, and the whole is the sum of its parts. Of several attractors and
-// vortices each counts, with its own numbers.
+// No kind, each kind alone, all but one, and all: each combination compiles, and its result is the sum of its parts.
+// With several attractors or vortices, each adds its own contribution.
 TEST_P(AirGlTest, EveryKindOfAirCompilesAloneAndAddsUp) {
     const AirSettings all = everything();
     const std::vector<glm::vec4> points = randomPoints(2000, 2.0F, 128.0F * 0.6F / 0.9F, 2);
@@ -226,7 +225,7 @@ TEST_P(AirGlTest, FlowIsExactOnTrilinearFieldsAndConstantOutside) {
         std::vector<glm::vec4> points = randomPoints(1000, 1.6F, 0.0F, 5);
         points.emplace_back(flow->box_min, 0.0F);
         points.emplace_back(flow->box_max, 0.0F);
-        points.emplace_back(0.0F, -1e30F, 0.0F, 0.0F);  // where the dead are
+        points.emplace_back(0.0F, -1e30F, 0.0F, 0.0F);  // the position of dead particles
         const std::vector<Sample> edge = evaluate(air, points);
         flow->outside = FlowOutside::kZero;
         const std::vector<Sample> zero = evaluate(air, points);
@@ -278,7 +277,7 @@ TEST_P(AirGlTest, AttractorsFallOffAsTheySay) {
 
 TEST_P(AirGlTest, VorticesTurnRightHandedRoundTheirAxis) {
     const glm::vec3 center(0.1F, -0.2F, 0.3F);
-    const glm::vec3 axis(1.0F, 2.0F, -2.0F);  // of length 3
+    const glm::vec3 axis(1.0F, 2.0F, -2.0F);  // length 3
     std::vector<glm::vec4> points = randomPoints(5000, 2.0F, 0.0F, 9);
     points.emplace_back(center + axis, 0.0F);
     for (const int falloff : {0, 1, 2}) {
@@ -311,7 +310,7 @@ TEST_P(AirGlTest, UpdateChangesWhatTheSameProgramsSay) {
     air.vortices.clear();
     air.curl_noise->octaves = 1;
     AirSettings without_flow = air;
-    without_flow.flow = nullptr;  // an update leaves the flow as it is
+    without_flow.flow = nullptr;  // an update does not change the flow
     ASSERT_TRUE(block.update(without_flow));
     EXPECT_EQ(block.defines(), defines);
     const std::vector<Sample> updated = evaluate(block, points);
@@ -330,9 +329,10 @@ TEST_P(AirGlTest, UpdateChangesWhatTheSameProgramsSay) {
 
 RELIEF_INSTANTIATE_GL_TESTS(AirGlTest);
 
-constexpr double kUnitRms = 1.45944383;  // as curl_noise.cpp says
-/// No speed exceeds so many amplitudes. With all numbers at ±15, blended with another pattern of the same, a corner's share is
-/// at most √2 · 15 √3 · t² (|driving| + |turning|), in whatever direction; the greatest sum over the corners is 4.314 kUnitRms.
+constexpr double kUnitRms = 1.45944383;  // as in curl_noise.cpp
+/// Bound of the speed, in amplitudes. With all numbers at ±15, blended with another such pattern, a corner contributes
+/// at most √2 · 15 √3 · t² (|driving| + |turning|) in any direction. The largest sum over the corners is 4.314
+/// kUnitRms.
 const double kNoiseSpeedMax = 4.4 * std::sqrt(2.0) * 15.0 / std::sqrt(85.0);
 
 /// One octave of amplitude 1 at rest, whose lattice has the object's unit.
@@ -340,7 +340,7 @@ CurlNoise unitLattice(std::uint32_t seed) {
     return {1.0F, curlUnits({.scale = 1.0F}), 1, 0.0F, seed};
 }
 
-/// The place of the skewed coordinates q.
+/// The position with the skewed coordinates q.
 glm::vec4 unskewed(const glm::dvec3& q) {
     return {glm::vec3(q - (q.x + q.y + q.z) / 6.0), 0.0F};
 }
@@ -349,9 +349,9 @@ class CurlNoiseGlTest : public AirGlTest {
   protected:
     using Numbers = std::vector<std::array<double, 6>>;
 
-    /// The two vectors of lattice points: near one the velocity is t² ((4t/3 - 1/2) b + (b·d) d + a × d) with
-    /// t = 1/2 - |d|². So at it the velocity is b / 24; and its curl is a / 2, of which central differences over h
-    /// miss 4 h².
+    /// The two vectors of each lattice point. Near a lattice point the velocity is t² ((4t/3 - 1/2) b + (b·d) d + a ×
+    /// d) with t = 1/2 - |d|². So the velocity at the point is b / 24, and its curl is a / 2. Central differences over
+    /// h have an error of 4 h².
     static Numbers cornerNumbers(const CurlNoise& noise, const std::vector<glm::ivec3>& lattice) {
         constexpr float kStep = 0.02F;
         std::vector<glm::vec4> points;
@@ -373,9 +373,9 @@ class CurlNoiseGlTest : public AirGlTest {
     static double odd(double number) { return 2.0 * std::floor(0.5 * number) + 1.0; }
 };
 
-// Central differences over 0.02 of the finest cell are off by h²/6 of a third derivative, some 1e-3 of the
-// gradient, and by roundings of some 1e-4 of it. A field with divergence, or with one term of the curl wrong,
-// has as much of it as of anything else.
+// Central differences over 0.02 of the finest cell have an error of h²/6 of a third derivative, about 1e-3 of the
+// gradient, and rounding errors of about 1e-4. A field with divergence, or with a wrong term in the curl, would have a
+// divergence as large as the other derivatives.
 TEST_P(CurlNoiseGlTest, HasNoDivergence) {
     for (const int octaves : {1, 2, 4}) {
         const CurlNoise noise{1.5F, 0.8F, octaves, 0.4F, 7};
@@ -391,11 +391,10 @@ TEST_P(CurlNoiseGlTest, HasNoDivergence) {
     }
 }
 
-// The amplitude is the root mean square of the speed, whatever the octaves, the seed and the time, and no
-// direction is preferred.
+// The amplitude is the root mean square of the speed for any octaves, seed and time, and no direction is preferred.
 TEST_P(CurlNoiseGlTest, HasTheAmplitudeItSaysAndNoPreferredDirection) {
     for (const int octaves : {1, 2, 3, 4}) {
-        for (const float t : {0.0F, 0.75F}) {  // a pattern, and half way to the next
+        for (const float t : {0.0F, 0.75F}) {  // a pattern, and halfway to the next
             const CurlNoise noise{2.0F, 0.5F, octaves, 1.0F / 3.0F, static_cast<std::uint32_t>(octaves)};
             std::vector<glm::vec4> points = randomPoints(60'000, 100.0F, 0.0F, 2);
             for (glm::vec4& p : points) {
@@ -419,7 +418,7 @@ TEST_P(CurlNoiseGlTest, HasTheAmplitudeItSaysAndNoPreferredDirection) {
     }
 }
 
-// Pinned: the noise of a seed is part of a scene's result.
+// Pinned, because the noise of a seed is part of a scene's result.
 TEST_P(CurlNoiseGlTest, IsThatOfItsSeed) {
     Pcg32 random(6);
     std::vector<glm::ivec3> lattice;
@@ -443,7 +442,7 @@ TEST_P(CurlNoiseGlTest, IsThatOfItsSeed) {
             EXPECT_NEAR(at[i][m], kNumbers[i][m], m < 3 ? 0.06 : 1e-3) << i << " " << m;
         }
     }
-    // All octaves, far into their patterns.
+    // All octaves, late in their patterns.
     const std::vector<glm::vec4> points = {
         {0.3F, -0.7F, 1.9F, 0.4F}, {-5.1F, 2.2F, 0.6F, 33.3F}, {1.5F, 8.25F, -3.5F, 77.7F}};
     const glm::dvec3 pinned[3] = {
@@ -455,13 +454,13 @@ TEST_P(CurlNoiseGlTest, IsThatOfItsSeed) {
     }
 }
 
-// Where the simplices meet, other corners have a share in the velocity: at faces within a cell's cube, where two
-// fractions are equal, and at those between cubes. A wrong order of corners, or a share that does not end at the
-// face opposite to its corner, makes the velocity jump; a share that ends too abruptly makes it bend.
+// At the faces between simplices, other corners start to contribute: at faces within a cell's cube, where two fractions
+// are equal, and at those between cubes. The velocity jumps if the order of corners is wrong or a contribution does not
+// end at the face opposite its corner. It has a kink if a contribution ends too abruptly.
 TEST_P(CurlNoiseGlTest, HasNoJumpAndNoKinkAtTheFacesOfSimplices) {
     Pcg32 random(8);
     constexpr std::size_t kPoints = 4000;
-    for (int face = 0; face < 7; ++face) {  // the last kind: anywhere
+    for (int face = 0; face < 7; ++face) {  // the last kind is anywhere
         std::vector<glm::vec4> points;
         for (std::size_t i = 0; i < kPoints; ++i) {
             glm::dvec3 q;
@@ -481,11 +480,11 @@ TEST_P(CurlNoiseGlTest, HasNoJumpAndNoKinkAtTheFacesOfSimplices) {
         const std::vector<glm::dvec3> v = blown(unitLattice(3), points);
         double bend = 0.0;
         for (std::size_t i = 0; i < v.size(); i += 5) {
-            ASSERT_LT(glm::length(v[i + 1] - v[i + 2]), 0.01) << face;  // no derivative exceeds 30 or so
+            ASSERT_LT(glm::length(v[i + 1] - v[i + 2]), 0.01) << face;  // derivatives stay below about 30
             const glm::dvec3 second = v[i + 3] - 2.0 * v[i] + v[i + 4];
             bend += glm::dot(second, second) / static_cast<double>(kPoints);
         }
-        // A kink would be some 0.01 times a derivative, of which the root mean square is 7.
+        // A kink would be about 0.01 times a derivative, whose root mean square is 7.
         EXPECT_LT(std::sqrt(bend), 0.01) << face;
     }
 }
@@ -494,7 +493,7 @@ TEST_P(CurlNoiseGlTest, ChangesSmoothlyInTimeAndRepeatsAfterItsPeriod) {
     const CurlNoise noise{1.0F, 0.5F, 3, 0.25F, 5};  // a pattern lasts 2 s
     std::vector<glm::vec4> points;
     for (const glm::vec4& random : randomPoints(300, 10.0F, 0.0F, 4)) {
-        // Before and after the moments at which patterns of some octave follow each other; then two patterns, and the ends of
+        // Before and after the times at which patterns of some octave change; then two pattern lengths, and the ends of
         // the period.
         for (const float t :
              {0.499F, 0.501F, 0.999F, 1.001F, 1.999F, 2.001F, 5.999F, 6.001F, 0.0F, 2.0F, 255.9999F}) {
@@ -514,13 +513,13 @@ TEST_P(CurlNoiseGlTest, ChangesSmoothlyInTimeAndRepeatsAfterItsPeriod) {
     EXPECT_NEAR(correlation, 0.0, 0.15) << "after a pattern's time another should blow";
 }
 
-// Far away floats are coarser than the noise's cells, and a fused multiply-add lands in another one; but no speed
-// is greater there.
+// Far away, floats are coarser than the noise's cells, and a fused multiply-add may select another cell; but the speed
+// stays bounded.
 TEST_P(CurlNoiseGlTest, IsBoundedFarAway) {
     std::vector<glm::vec4> points = randomPoints(20'000, 1.0F, 100.0F, 4);
     Pcg32 random(14);
     for (glm::vec4& p : points) {
-        // From 1 to 2^33 lattice units in each axis, some beyond all numbers.
+        // From 1 to 2^33 lattice units along each axis, some beyond the integer range.
         for (int axis = 0; axis < 3; ++axis) {
             p[axis] = std::ldexp(p[axis], static_cast<int>(random.between(-10.0F, 24.0F)));
             p[axis] = random.between(0.0F, 1.0F) < 0.02F ? std::copysign(3e38F, p[axis]) : p[axis];

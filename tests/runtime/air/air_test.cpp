@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Air and fields on the CPU: the noise's clock, Stokes drag, and every wrong setting.
+// Air and fields on the CPU: the noise's clock, Stokes drag, and every invalid setting.
 #include "runtime/air/air.h"
 #include "runtime/particles/step_pass.h"
 
@@ -21,7 +21,7 @@ TEST(CurlNoise, ItsTimeRepeatsAfterItsPeriod) {
     EXPECT_EQ(curlTime(noise, 1e6), 0.0F);
 }
 
-// A drop of 0.1 mm across in air: k = 9 viscosity / (2 density radius²).
+// A drop 0.1 mm in diameter in air: k = 9 viscosity / (2 density radius²).
 TEST(Air, StokesRateOfADrop) {
     const double radius = 5e-5;
     const double mass = 1000.0 * 4.0 / 3.0 * 3.14159265358979 * radius * radius * radius;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rival of relief-bench on the GPU against the volume on the CPU: would it be wrong, a comparison with it would be worth
-// nothing.
+// Compares the baseline of relief-bench on the GPU with its volume on the CPU: a comparison with a wrong baseline would
+// be worthless.
 #include "runtime/bench/brick_step.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::uint32_t kParticles = 64 * 1024;
 
-/// A volume as both sides have it.
+/// A volume on the CPU and on the GPU.
 struct Rival {
     BrickAtlas atlas;
     Field cpu;
@@ -30,7 +30,7 @@ float distanceAt(const Rival& rival, const glm::vec3& p) {
     return rival.cpu(p)->distance;
 }
 
-/// The particles' textures, a texel a particle.
+/// The particles' textures, one texel per particle.
 struct State {
     std::vector<float> position;
     std::vector<float> velocity;
@@ -56,12 +56,12 @@ class BrickStepGlTest : public testing::TestWithParam<StepPath> {
   protected:
     void SetUp() override {
         context_ = required(GlContext::create(GlApi::kGl33Core));
-        // Slanted, so that the axes of grid, texture and box are not alike.
+        // Rotated, so that no axes of grid, texture and box are parallel.
         const glm::dmat3 turn = test::rotation({1, 2, 3}, 40.0);
         TriangleMesh mesh = test::joined({test::makeTorusMesh(1.0, 0.35, 96, 48),
                                           test::makeBoxMesh({0.1, 0.2, 0.9}, {0.9, 0.3, 0.2}, turn)});
         query_ = std::make_unique<MeshQuery>(required(MeshQuery::build(std::move(mesh))));
-        Collider box;  // a scene is a box for it alone
+        Collider box;  // only provides the box of a scene
         box.bounds = query_->mesh().bounds;
         scene_ = makeBenchScene(std::move(box), kParticles, kBenchLifetime);
     }
@@ -78,12 +78,12 @@ class BrickStepGlTest : public testing::TestWithParam<StepPath> {
         return {dense_->atlas(), fieldOf(*dense_), static_cast<float>(grid.lattice.spacing.x)};
     }
 
-    /// A first step of all, then fifteen more.
+    /// One step from birth, then fifteen more.
     void expectTheCpusSides(const Rival& rival) {
         auto step = BrickStep::create(rival.atlas, scene_, GetParam());
         ASSERT_TRUE(step) << step.error().message;
         EXPECT_GE(step->bytes(), rival.atlas.bytes);
-        // But for places of the atlas that no brick takes.
+        // Except for atlas slots without a brick.
         EXPECT_LE(step->bytes(), rival.atlas.bytes + rival.atlas.bytes / 100);
         step->begin(scene_);
         expectTheCpusReactions(rival, State(*step));
@@ -104,7 +104,7 @@ class BrickStepGlTest : public testing::TestWithParam<StepPath> {
         EXPECT_GT(inside, 100U);
     }
 
-    /// The weights of a texture unit may have 8 bits: an error of as much of a voxel along each axis.
+    /// Texture unit weights may have only 8 bits: an error of that fraction of a voxel along each axis.
     static float margin(const Rival& rival) { return 0.012F * rival.voxel; }
 
     void expectTheCpusReactions(const Rival& rival, const State& after) {
@@ -132,7 +132,7 @@ class BrickStepGlTest : public testing::TestWithParam<StepPath> {
             } else {
                 ++caught;
                 ASSERT_EQ(after.contact(i), Contact::kCaught) << i << ": " << end.distance;
-                // Without a brick, and where all codes are clamped, there is no normal.
+                // There is no normal without a brick, or where all codes are clamped.
                 const float vn = glm::dot(v, end.normal);
                 if (end.distance > -0.6F * rival.atlas.range && std::abs(vn) > 0.05F * glm::length(v)) {
                     ++pushed;
@@ -145,18 +145,18 @@ class BrickStepGlTest : public testing::TestWithParam<StepPath> {
         EXPECT_GT(hit, 500U);
         EXPECT_GT(caught, 1'000U);
         EXPECT_GT(pushed, 300U);
-        // At the borders of voxels slopes leap.
+        // Gradients jump at voxel borders.
         EXPECT_LE(off, pushed / 50);
     }
 
-    std::unique_ptr<GlContext> context_;  // outlives what it made
+    std::unique_ptr<GlContext> context_;  // outlives its objects
     std::unique_ptr<MeshQuery> query_;
     std::unique_ptr<BrickVolume> bricks_;
     std::unique_ptr<DistanceVolume> dense_;
     BenchScene scene_;
 };
 
-// Unreal's bricks, and a dense volume.
+// Bricks as in Unreal Engine, and a dense volume.
 TEST_P(BrickStepGlTest, ParticlesEndOnTheCpusSide) {
     expectTheCpusSides(bricks(8));
     expectTheCpusSides(dense());
@@ -165,8 +165,8 @@ TEST_P(BrickStepGlTest, ParticlesEndOnTheCpusSide) {
 TEST_P(BrickStepGlTest, ParticlesAmongTightBricksEndOnTheCpusSide) {
     Rival rival = bricks(3);
     expectTheCpusSides(rival);
-    // More of them than sixteen bits name.
-    constexpr std::uint32_t kIdle = 66'000;  // ahead of those in use
+    // More bricks than 16 bits can index.
+    constexpr std::uint32_t kIdle = 66'000;  // before those in use
     BrickAtlas& atlas = rival.atlas;
     const std::size_t idle = kIdle * atlas.nodesOfBrick();
     atlas.codes.insert(atlas.codes.begin(), idle, std::int16_t{0});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The surface of a collider from its field: near closed forms, closed, outwards.
+// The surface extracted from a collider's field: near closed forms, closed, oriented outwards.
 #include "runtime/births/collider_surface.h"
 
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ double volumeOf(const ColliderSurface& surface) {
     return volume;
 }
 
-/// Every side of a triangle is that of another one, the other way round.
+/// Every edge of a triangle is the reversed edge of another triangle.
 bool isClosed(const ColliderSurface& surface) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
     for (const glm::uvec3& t : surface.triangles) {
@@ -61,7 +61,7 @@ TEST(ColliderSurface, IsThatOfABall) {
     const ColliderSurface surface =
         surfaceOf(analytic::frontBackCollider(analytic::sphere({1, 2, 3}, 0.5), 256));
     EXPECT_TRUE(isClosed(surface));
-    // Texels are planes: 1/256 of the side wide, they stand off from the ball by a thousandth where it is steep.
+    // Texels are planes, 1/256 of the side wide. They deviate from the ball by up to a thousandth at steep angles.
     for (const glm::vec3& p : surface.positions) {
         ASSERT_NEAR(glm::length(glm::dvec3(p) - glm::dvec3(1, 2, 3)), 0.5, 3e-3);
     }
@@ -78,7 +78,7 @@ TEST(ColliderSurface, KeepsTheEdgesOfABox) {
     const ColliderSurface surface = surfaceOf(analytic::frontBackCollider(analytic::box(-half, half), 256));
     EXPECT_TRUE(isClosed(surface));
     const double area = 8 * (half.x * half.y + half.y * half.z + half.z * half.x);
-    // A texel at the rim, 1/254 of a side, may be free or not.
+    // A texel at the rim, 1/254 of a side, may be full or empty.
     EXPECT_NEAR(areaOf(surface) / area, 1.0, 8e-3);
     EXPECT_NEAR(volumeOf(surface) / (8 * half.x * half.y * half.z), 1.0, 3e-2);
     for (const glm::vec3& p : surface.positions) {
@@ -90,7 +90,7 @@ TEST(ColliderSurface, KeepsTheEdgesOfABox) {
 TEST(ColliderSurface, AMaterialHasItsPartOfTheArea) {
     const glm::dvec3 half(0.5, 0.3, 0.2);
     Collider box = analytic::frontBackCollider(analytic::box(-half, half), 128);
-    // Felt above x = 0.
+    // The half with x > 0 is felt.
     box.materials.list = {{"oak"}, {"felt"}};
     box.materials.origin = glm::vec3(-1.0F);
     box.materials.size = 2.0F;
@@ -99,7 +99,7 @@ TEST(ColliderSurface, AMaterialHasItsPartOfTheArea) {
     ColliderSurface felt = surfaceOf(box);
     const double all = areaOf(felt);
     felt.triangles = materialTriangles(felt, box.materials, "felt").value();
-    // The cells of the grid that hold the border may go to either side.
+    // Grid cells on the border may belong to either side.
     EXPECT_NEAR(areaOf(felt), 0.5 * all, 4.0 * (half.y + half.z) / kSurfaceCells);
     EXPECT_TRUE(std::all_of(felt.triangles.begin(), felt.triangles.end(), [&](const glm::uvec3& t) {
         return felt.positions[t.x].x > -1.1F / kSurfaceCells;
@@ -122,10 +122,10 @@ TEST(ColliderSurface, RefusesWhatHasNone) {
     EXPECT_FALSE(colliderSurface(empty));
     empty.bounds = {glm::vec3(0.0F), glm::vec3(std::numeric_limits<float>::infinity())};
     EXPECT_FALSE(colliderSurface(empty));
-    // Bounds that the ball is nowhere in.
+    // Bounds that do not touch the ball.
     empty.bounds = {glm::vec3(5.0F), glm::vec3(6.0F)};
     EXPECT_FALSE(colliderSurface(empty));
-    // It lies between the corners of the grid.
+    // The ball lies between grid corners.
     empty.bounds = {glm::vec3(-10.1F), glm::vec3(1e6F)};
     EXPECT_FALSE(colliderSurface(empty));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Births on surfaces that move and bend: against closed forms, for fixed seeds.
+// Births on moving and deforming surfaces, against closed forms for fixed seeds.
 #include "runtime/births/emitter_surface.h"
 #include "runtime/births/emitter_motion.h"
 
@@ -23,7 +23,7 @@ namespace {
 constexpr int kCount = 50'000;
 constexpr double kPi = std::numbers::pi;
 
-/// A grid of `u` times `v` quads, whose vertex (i, j) is at place(i / u, j / v).
+/// A grid of `u` × `v` quads, whose vertex (i, j) is at place(i / u, j / v).
 struct Grid {
     std::vector<glm::vec3> positions;
     std::vector<glm::uvec3> triangles;
@@ -74,7 +74,7 @@ TEST(EmitterSurface, LiesInTheFacesOfABoxAndPointsOutwards) {
     EXPECT_LT(test::chiSquare(counts, {2.0 * 0.1, 0.5 * 0.1, 0.5 * 2.0}), test::kChiSquareMax);
 }
 
-// A straight pipe that is bent into a quarter of a torus: its outer side is stretched, R + r cos φ.
+// A straight pipe bent into a quarter of a torus: its outer side is stretched by R + r cos φ.
 TEST(EmitterSurface, IsUniformOnABentPipe) {
     constexpr double kBend = 1.0;
     constexpr double kRadius = 0.5;
@@ -110,11 +110,11 @@ TEST(EmitterSurface, IsUniformOnABentPipe) {
         << "areas at rest would be seen";
 }
 
-// Points of a turning body go with ω × r; what a straight line makes of the arc is within the header's bounds.
+// Points of a rotating body move with ω × r. The error of the linear path stays within the header's bounds.
 TEST(EmitterSurface, MovesAsATurningBodyDoes) {
     const AnimatedMesh box = movingBox({0.5F, 0.3F, 0.2F});
     const glm::vec3 axis = glm::normalize(glm::vec3(1.0F, 2.0F, -1.0F));
-    constexpr double kTurn = 3.0;  // radians a second
+    constexpr double kTurn = 3.0;  // radians per second
     EmitterSurface surface = surfaceOf(box.triangles, box.positions);
     for (const double dt : {1.0 / 30, 1.0 / 60, 1.0 / 240}) {
         const auto turned = [&](double time) {
@@ -146,7 +146,7 @@ TEST(EmitterSurface, MovesAsATurningBodyDoes) {
 TEST(EmitterSurface, WeightsAreADensityThatIsLinear) {
     const std::vector<glm::vec3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 0, 0}, {6, 0, 0}, {5, 1, 0}};
     const std::vector<glm::uvec3> two{{0, 1, 2}, {3, 4, 5}};
-    // The shares of a corner that alone has a weight are those of a beta distribution, 6 x (1 − x).
+    // If only one corner has a weight, its barycentric coordinate has a beta distribution, 6 x (1 − x).
     for (std::size_t corner = 0; corner < 3; ++corner) {
         std::vector<float> weights(6, 0.0F);
         weights[corner] = 0.3F;
@@ -160,7 +160,7 @@ TEST(EmitterSurface, WeightsAreADensityThatIsLinear) {
         EXPECT_LT(test::kolmogorov(shares, [](double x) { return x * x * (3.0 - 2.0 * x); }),
                   test::kKolmogorovMax);
     }
-    // A triangle of thrice the mean weight has thrice the births.
+    // A triangle with three times the mean weight has three times the births.
     std::size_t near = 0;
     for (const EmitterSurface::Place& place :
          drawn(surfaceOf(two, corners, {1.0F, 0.5F, 0.3F, 0.1F, 0.2F, 0.3F}))) {
@@ -187,7 +187,7 @@ TEST(EmitterSurface, RefusesWhatIsNoSurface) {
     EXPECT_TRUE(refused(one, {0.0F, 0.0F, 0.0F}, corners));
     EXPECT_TRUE(refused(one, {}, {{0, 0, 0}, {1, 0, 0}, {kNan, 1, 0}}));
     EXPECT_TRUE(refused(one, {}, {{0, 0, 0}, {1, 0, 0}, {kInfinity, 1, 0}}));
-    // Tiny and huge ones are none the worse.
+    // Tiny and huge surfaces work as well.
     for (const float scale : {1e-18F, 1e15F}) {
         EmitterSurface surface = surfaceOf(one, {corners[0], scale * corners[1], scale * corners[2]});
         Pcg32 random(1);
@@ -196,8 +196,6 @@ TEST(EmitterSurface, RefusesWhatIsNoSurface) {
         EXPECT_GT(place.position.x, 0.0F);
     }
 }
-
-// --- as an emitter has it
 
 EmitterSettings settingsOf(EmitterSurface surface) {
     EmitterSettings settings;
@@ -224,7 +222,7 @@ TEST(EmitterSurface, AnEmitterThrowsAlongTheNormalAndTakesOnItsVelocity) {
     ASSERT_EQ(births.size(), 300U);
     ASSERT_EQ(emitter.placeVelocities().size(), births.size());
     EmitterMotion motion;
-    // Scaled and turned as its body is, whose own speed comes on top.
+    // Scaled and rotated like its body, whose own velocity is added.
     const glm::quat quarter = glm::angleAxis(float(kPi) / 2, glm::vec3(0, 1, 0));
     motion.body = {{0.0, {{0, 0, 0}, quarter, 3.0F}}, {1.0, {{0, 5, 0}, quarter, 3.0F}}};
     motion.inherit = 0.5F;
@@ -235,7 +233,7 @@ TEST(EmitterSurface, AnEmitterThrowsAlongTheNormalAndTakesOnItsVelocity) {
         const glm::vec3 at_end = own[i].position + own[i].age * glm::vec3(1, 0, 2);
         const glm::vec3 from = glm::abs(at_end - glm::vec3(0.1F, 0, 0.2F)) - glm::vec3(0.5F, 0.3F, 0.2F);
         EXPECT_NEAR(std::max({from.x, from.y, from.z}), 0.0F, 1e-5F) << "on the box of its own moment";
-        // x goes to −z and z to x.
+        // x maps to −z, and z to x.
         const glm::vec3 thrown = births[i].velocity - quarter * own[i].velocity;
         EXPECT_LT(glm::length(thrown - 0.5F * glm::vec3(3 * 2.0F, 5.0F, -3 * 1.0F)), 1e-4F);
     }
@@ -249,7 +247,7 @@ TEST(EmitterSurface, WithoutAnAreaNothingIsBorn) {
     ASSERT_TRUE(Emitter::check(settings));
     Emitter emitter(settings, 1);
     std::vector<Birth> births;
-    // Flat as a line, then without numbers: due births find no room, and later ones are born.
+    // Degenerate to a line, then to non-finite numbers: births that are due are refused, later ones are born.
     for (const float all : {1.0F, std::numeric_limits<float>::infinity()}) {
         emitter.moveSurface(box.positions, std::vector<glm::vec3>(8, glm::vec3(all)), 0.1);
         EXPECT_EQ(emitter.emit(0.1, 1000, births), 300U);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lists of points: both kinds of files, every encoding, and what is no such file.
+// Point lists: both file types, every encoding, and invalid files.
 #include "runtime/births/point_list.h"
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ TEST(PointList, CsvWithAndWithoutNormals) {
 TEST(PointList, WrongCsvNamesItsLine) {
     expectError("x,y,z\nu,v,w\n1,2,3\n", "p:2: not a point; write x,y,z");
     expectError("1,2,3\nx,y,z\n", "p:2: not a point of 3 numbers");
-    expectError("1,2\n3,4,5\n", "p:1: ");  // numbers, and so no line of words
+    expectError("1,2\n3,4,5\n", "p:1: ");  // numbers, so no header line
     expectError("\n1,2,3\n1,2,3,0,1,0\n", "p:3: ");
     for (const char* line : {"1,2,3,", "1,,3", "1,2,3x", "1,2,nan", "1,2,inf", "1,2,1.1e9"}) {
         expectError("1,2,3\n" + std::string(line) + "\n", "p:2: ");

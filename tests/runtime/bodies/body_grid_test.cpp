@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The broad phase against a look at every box.
+// The broad phase against a test of every box.
 #include "runtime/bodies/body_grid.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ glm::vec3 inCube(Pcg32& random, float half) {
     return {random.between(-half, half), random.between(-half, half), random.between(-half, half)};
 }
 
-/// From the centre of a box, in its half edges: inside where all are from −1 to 1.
+/// Coordinates relative to the centre of a box, in half edges: from −1 to 1 inside.
 glm::vec3 inBox(const BodyBox& box, const glm::vec3& p) {
     return glm::inverse(box.half) * (p - box.center);
 }
@@ -29,7 +29,7 @@ bool holds(const BodyBox& box, const glm::vec3& p) {
     return box.unbounded || std::max({at.x, at.y, at.z}) <= 1.0F;
 }
 
-/// As shaders/bodies/bodies.glsl does it.
+/// The same lookup as in shaders/bodies/bodies.glsl.
 std::vector<std::uint32_t> found(const BodyGrid& grid, const glm::vec3& p) {
     std::vector<std::uint32_t> bodies;
     for (const BodyGrid::Level& level : grid.levels) {
@@ -52,7 +52,8 @@ glm::mat3 randomTurn(Pcg32& random) {
         glm::quat(random.signedUniform(), random.signedUniform(), random.signedUniform(), 0.1F)));
 }
 
-/// At any turn. \param spread  of the logarithms of sizes.
+/// With random rotations.
+/// \param spread  of the logarithms of sizes.
 std::vector<BodyBox> randomBoxes(std::uint32_t count, float half, float spread, Pcg32& random) {
     std::vector<BodyBox> boxes;
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -76,7 +77,7 @@ TEST(BodyGrid, FindsTheBodiesWhoseBoxesHoldAPoint) {
             const BodyGrid grid = BodyGrid::of(boxes, spread < 1.0F ? 0.25F : 1.4F);
             EXPECT_LE(grid.levels.size(), kGridLevelsMax);
             for (int i = 0; i < 600; ++i) {
-                // Everywhere, within a box, and in its very corners.
+                // Anywhere, within a box, and exactly at its corners.
                 const BodyBox& box = boxes[random.next() % boxes.size()];
                 const glm::vec3 at = inCube(random, 1.0F);
                 const glm::vec3 p = i % 3 == 0   ? inCube(random, 1.2F * half)
@@ -88,7 +89,7 @@ TEST(BodyGrid, FindsTheBodiesWhoseBoxesHoldAPoint) {
                         expected.push_back(one.body);
                     }
                 }
-                // A cell has more than its boxes.
+                // A cell lists more bodies than those whose boxes contain the point.
                 const std::vector<std::uint32_t> asked = found(grid, p);
                 ASSERT_TRUE(std::ranges::includes(asked, expected)) << p.x << ' ' << p.y << ' ' << p.z;
                 ASSERT_EQ(std::ranges::adjacent_find(asked), asked.end());
@@ -129,7 +130,7 @@ TEST(BodyGrid, AsksFewOfMany) {
 }
 
 TEST(BodyGrid, ALongBodyIsInCellsAlongIt) {
-    // A needle through a cube of 40 cells a side: its box along the axes has 64,000.
+    // A needle through a cube of 40³ cells: its axis-aligned box contains 64,000.
     BodyBox needle;
     const glm::vec3 way = glm::normalize(glm::vec3(1.0F));
     const glm::vec3 across = glm::normalize(glm::vec3(1.0F, -1.0F, 0.0F));

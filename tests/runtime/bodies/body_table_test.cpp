@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The words of a world's bodies, and what of them changes when bodies move.
+// The words of a world's bodies, and which of them change when bodies move.
 #include "runtime/bodies/body_table.h"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ bool rests(const BlockBody& block) {
     return block.response.w == 0.0F;
 }
 
-/// A map whose space is the object's, shared by all.
+/// One map shared by all bodies, whose space is the object's.
 std::vector<BlockMap> oneMap() {
     BlockMap map{};
     for (int i = 0; i < 3; ++i) {
@@ -63,7 +63,7 @@ TEST(BodyTable, ABodyThatStopsIsAtRestAStepLater) {
     EXPECT_TRUE(table.setPoses(poses));
     EXPECT_FALSE(rests(blockOf(table, 2)));
     EXPECT_TRUE(rests(blockOf(table, 1)));
-    EXPECT_TRUE(table.isNew());  // it has left the grid of those at rest
+    EXPECT_TRUE(table.isNew());  // it has left the grid of resting bodies
     static_cast<void>(table.takeChanges());
 
     EXPECT_FALSE(table.setPoses({}));  // it stops
@@ -81,7 +81,7 @@ TEST(BodyTable, ABodyThatStopsIsAtRestAStepLater) {
     for (const BodyTable::Rows& changed : table.takeChanges()) {
         rows += changed.end - changed.first;
     }
-    EXPECT_LE(rows, 4U);  // of some hundred
+    EXPECT_LE(rows, 4U);  // of about a hundred
 }
 
 TEST(BodyTable, PlacedMapsAndMovesFollowThePoses) {
@@ -101,7 +101,7 @@ TEST(BodyTable, PlacedMapsAndMovesFollowThePoses) {
         EXPECT_LT(glm::distance(through(body.move, toWorld(from, p)), toWorld(to, p)), 1e-5F);
         EXPECT_LT(glm::distance(through(body.row, toWorld(to, p)), p), 1e-5F);
         EXPECT_LT(glm::distance(through(map.row, toWorld(to, p)), p), 1e-5F);
-        // Columns take a step of the map to the world.
+        // The columns map a step in map space to the world.
         const glm::vec3 step =
             glm::mat3(glm::vec3(map.column[0]), glm::vec3(map.column[1]), glm::vec3(map.column[2])) * p;
         EXPECT_LT(glm::distance(step, toWorld(to, p) - to.position), 1e-5F);
@@ -114,7 +114,7 @@ TEST(BodyTable, TheTextureIsNoHigherThanWide) {
         const std::size_t width = std::size_t{1} << table.log2Width();
         EXPECT_EQ(table.words().size() % width, 0U);
         EXPECT_LE(table.words().size() / width, width);
-        EXPECT_LE(width, 2048U);  // that OpenGL ES 3.0 promises
+        EXPECT_LE(width, 2048U);  // guaranteed by OpenGL ES 3.0
         EXPECT_EQ(table.block().size(), 1U + kWorldLevels);
     }
 }

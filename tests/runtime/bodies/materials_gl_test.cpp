@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Materials of contacts on the GPU: thousands of drops on a checkerboard whose squares are known in closed form, what they make of
-// the speed and the life of particles, and numbers of names over several colliders.
+// Contact materials on the GPU: thousands of drops on a checkerboard with closed-form squares, the effect of materials
+// on the speed and life of particles, and material numbers across several colliders.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -17,9 +17,9 @@ namespace relief {
 namespace {
 
 constexpr int kLevels = 4;
-constexpr float kSquare = 0.05F;  ///< side of a cell of the last level
+constexpr float kSquare = 0.05F;  ///< side of a cell of the finest level
 
-/// A tree whose cells are split throughout, each with the material of its middle.
+/// A fully split tree, in which each cell has the material of its centre.
 Materials materialsBy(std::vector<Material> list, const std::function<std::size_t(const glm::vec3&)>& at) {
     Materials made;
     made.list = std::move(list);
@@ -95,7 +95,7 @@ TEST_P(MaterialsGlTest, DropsNameTheSquareThatTheyHit) {
             int counted = 0;
             for (const ParticleEvent& hit : takeEvents().events) {
                 const glm::vec3 object = toObject(pose, hit.position);
-                // Away from the lines, on top.
+                // On top, away from the lines.
                 if (hit.body != 0 || object.y < 0.19F || toLine(object.x) < 0.004F ||
                     toLine(object.z) < 0.004F) {
                     continue;
@@ -121,7 +121,7 @@ TEST_P(MaterialsGlTest, HitsOnOneMaterialMayBeListedAlone) {
     ASSERT_TRUE(setEvents(*particles_, lists));
     Pcg32 random(12);
     spawnMany(3000, [&](std::uint32_t i) {
-        // On the board, beside it on the ground, and old ones that die.
+        // On the board, beside it on the ground, and old particles that die.
         glm::vec3 from = randomIn(random, {-0.39F, 0.21F, -0.29F}, {0.39F, 0.21F, 0.29F});
         from = i % 3 == 0 ? glm::vec3(from.x + 1.0F, -0.04F, from.z) : from;
         return Birth{from, {0.0F, -3.0F, 0.0F}, i % 7 == 0 ? 0.5F * kDt : 100.0F};
@@ -159,7 +159,7 @@ TEST_P(MaterialsGlTest, NamesAreOneOverColliders) {
     ASSERT_TRUE(particles_->setGround(-5.0F));
     ASSERT_TRUE(setEvents(*particles_, EventOptions{}));
     struct Case {
-        glm::vec3 from;  // beside a black square's middle
+        glm::vec3 from;  // beside the centre of a black square
         int body, material;
     };
     const Case cases[] = {{{0.0F, 0.0F, 0.0F}, 0, -1},
@@ -182,7 +182,7 @@ TEST_P(MaterialsGlTest, NamesAreOneOverColliders) {
     }
 }
 
-// Factors of the particle's and of the body's own.
+// The responses multiply those of the particle type and of the body.
 TEST_P(MaterialsGlTest, ResponsesMultiply) {
     board_.materials.list = {{"black", 0.5F, 0.0F}, {"white", 1.0F, 0.75F}};
     make({.capacity = 4});
@@ -202,11 +202,11 @@ TEST_P(MaterialsGlTest, ResponsesMultiply) {
     EXPECT_NEAR(after[1].velocity.x, 0.1F * 0.5F * 0.25F, 1e-3F);
 }
 
-// A contact takes its loss, and that of the type, from the lifetime: a particle that stopped dies that much earlier, one that slides
-// loses as much in each step.
+// A contact reduces the lifetime by the losses of the material and the type. A particle that stopped dies that much
+// earlier; a sliding particle loses as much in each step.
 TEST_P(MaterialsGlTest, ContactsCostLife) {
     board_.materials.list = {{"black", 1.0F, 0.0F, 3.0F}, {"white", 1.0F, 0.0F, 500.0F}};
-    constexpr int kLife = 600;  // steps of a life of ten seconds
+    constexpr int kLife = 600;  // steps in a lifetime of ten seconds
     const auto expectSteps = [&](OnCollision reaction, float type_loss, float square, int lived) {
         SCOPED_TRACE(lived);
         make({.capacity = 4});

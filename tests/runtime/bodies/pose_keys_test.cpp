@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ways through the world: straight lines, even turns, and the velocities that belong to them, by differences.
+// Pose keys: straight lines, constant rotation, and the velocities of both, checked by differences.
 #include "runtime/bodies/pose_keys.h"
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ TEST(PoseKeys, MotionInClosedForm) {
     EXPECT_EQ(motionAt(way(), 1.0).velocity, glm::vec3(2.0F, 0.0F, 0.0F)) << "at a key it goes on from there";
 }
 
-// A quarter of a turn and its like by a quaternion of the other sign are one rotation.
+// A quarter turn by either of its two quaternions is the same rotation.
 TEST(PoseKeys, TurnsTheShorterWayRound) {
     auto keys = way();
     keys[1].pose.rotation = -keys[1].pose.rotation;
@@ -54,7 +54,7 @@ TEST(PoseKeys, TurnsTheShorterWayRound) {
     EXPECT_NEAR(glm::angle(poseAt(keys, 2.0).rotation), 0.25F * kPi, 1e-5F);
 }
 
-// No way is the shorter one: it goes as the angles do, whatever they are rounded to.
+// Neither direction is shorter: the rotation follows the angles, however they are rounded.
 TEST(PoseKeys, HalfATurnGoesAsTheAnglesDo) {
     for (const glm::vec3& axis : {glm::vec3(0.0F, 1.0F, 0.0F), glm::vec3(0.3F, 1.0F, -0.5F)}) {
         for (const auto& [from, to] :
@@ -73,7 +73,7 @@ TEST(PoseKeys, HalfATurnGoesAsTheAnglesDo) {
     }
 }
 
-// Whatever the turn: velocity + turn × arm is how toWorld() of a point changes.
+// For any rotation, velocity + turn × arm is the change of a point's toWorld().
 TEST(PoseKeys, MotionIsTheDifferenceOfPoses) {
     const auto keys = way();
     constexpr double kShort = 1e-3;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A world for tests of what places it.
+// A world for tests of placed bodies.
 #pragma once
 
 #include "formats/world/world.h"
 
 namespace relief::test {
 
-/// Three bodies of two colliders, of which the second is turned and scaled.
+/// Three bodies of two colliders; the second body is rotated and scaled.
 inline World threeBodies() {
     World world;
     world.colliders = {{{"floor.relief", "", 0}, "floor", {glm::vec3(-9.0F), glm::vec3(9.0F)}, {}},
@@ -23,7 +23,7 @@ inline World threeBodies() {
     return world;
 }
 
-/// Another tile of a body, in the same place, which becomes body `at`.
+/// Adds another tile of a body, in the same place, as body `at`.
 inline void addTile(World& world, std::size_t of, const char* file, std::size_t at) {
     WorldBody tile = world.bodies[of];
     world.colliders.push_back(world.colliders[tile.collider]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A world of a file as bodies for the GPU.
+// Converts a world file into bodies for the GPU.
 #include "runtime/bodies/world_bodies.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ TEST(WorldBodies, BodiesPosesAndBoxAreThoseOfTheWorld) {
     const Bounds box = worldBounds(loaded.world);
     EXPECT_EQ(box.min, glm::vec3(-9.0F));
     EXPECT_EQ(box.max, glm::vec3(9.0F));
-    // A quarter and a bit about y, twice as large: a corner of the door.
+    // Rotated by slightly more than 90° about y, and scaled by 2: a corner of the door.
     const glm::vec3 corner = toWorld(poses[1], glm::vec3(1.0F, 2.0F, 0.0F));
     EXPECT_NEAR(corner.x, 3.0F + 2.0F * 0.28F, 1e-6F);
     EXPECT_NEAR(corner.y, 4.5F, 1e-6F);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Worlds of many bodies: the broad phase gives what asking every body gives, bit by bit, and what moves is found where it is.
+// Worlds of many bodies: the broad phase is bit-identical to testing every body, and finds moving bodies where they
+// are.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -19,10 +20,10 @@
 namespace relief {
 namespace {
 
-/// A reach at which every box holds every point, so that all bodies are asked.
+/// A reach at which every box contains every point, so that all bodies are tested.
 constexpr float kEverywhere = 1e6F;
 
-/// Colliders whose boxes are known, and one of which the first map abstains beyond its own.
+/// Colliders with known boxes. The first map of one of them abstains outside its own box.
 class Colliders {
   public:
     Colliders() {
@@ -50,7 +51,7 @@ Pose randomPose(Pcg32& random, float half) {
             std::exp(random.between(-2.0F, 1.5F))};
 }
 
-/// Of every collider at least one body, so that all worlds have the same shader; or of one map of patches each, which are
+/// At least one body of every collider, so that all worlds have the same shader. Or bodies of one patch map each,
 /// placed in the world.
 std::vector<ColliderBody> randomWorld(const Colliders& colliders, Pcg32& random, bool placed, float half) {
     const std::uint32_t count =
@@ -74,11 +75,11 @@ std::vector<Pose> posesOf(const std::vector<ColliderBody>& bodies) {
     return poses;
 }
 
-// Worlds of every kind of collider, and worlds of patches that are placed, of which the CPU gives the field as well.
+// Worlds of every kind of collider, and worlds of placed patch maps, whose field the CPU computes as well.
 TEST_P(WorldFieldGlTest, FewAreAskedAndAllDecide) {
     const Colliders colliders;
     Pcg32 random(21);
-    std::map<std::string, FieldQuery> queries;  // by what they are compiled for
+    std::map<std::string, FieldQuery> queries;  // by their defines
     std::size_t inside = 0;
     std::size_t known = 0;
     std::size_t apart = 0;
@@ -128,7 +129,7 @@ TEST_P(WorldFieldGlTest, FewAreAskedAndAllDecide) {
             }
             const bool far = best == kFarOutside;
             known += far ? 0 : 1;
-            // Distances differ if a rounding decides between two cells.
+            // Distances differ if rounding selects another cell.
             const bool equal = far ? !(few[i].distance < kFarOutside)
                                    : std::abs(few[i].distance - best) < 1e-4F * (1.0F + std::abs(best));
             apart += equal ? 0 : 1;
@@ -139,7 +140,7 @@ TEST_P(WorldFieldGlTest, FewAreAskedAndAllDecide) {
     EXPECT_LT(apart, known / 200);
 }
 
-// Its response tells which of two bodies in one place it was.
+// The response shows which of two coincident bodies was hit.
 TEST_P(WorldGlTest, OfEqualBodiesTheFirstDecides) {
     const Collider box = boxCollider();
     for (const float first : {0.25F, 0.75F}) {
@@ -161,7 +162,7 @@ TEST_P(WorldGlTest, ParticlesAreThoseOfEveryBody) {
         Pcg32 random(4);
         std::vector<ColliderBody> bodies;
         for (std::uint32_t i = 0; i < 60; ++i) {
-            const std::uint32_t shape = kind < 2 ? i : 2 + i % 2;  // of patches, which are placed
+            const std::uint32_t shape = kind < 2 ? i : 2 + i % 2;  // patch maps, which are placed
             bodies.push_back({&colliders[shape], randomPose(random, 3.0F), 0.5F, 0.2F});
         }
         std::vector<std::vector<ParticleState>> ends;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whatever is passed to a function of relief.h is answered by an error that names it, and leaves the rest as it was: every
-// argument NULL, freed, of another kind, out of range; every field of every structure no number; every size but the right one.
+// Every invalid argument of a function of relief.h gives an error that names it, and changes nothing else: every
+// argument NULL, freed, of another kind, or out of range; every field of every structure not finite; every wrong size.
 #include <epoxy/egl.h>
 #include <gtest/gtest.h>
 
@@ -52,7 +52,7 @@ class CApi : public testing::Test {
   protected:
     void TearDown() override { EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR)); }
 
-    /// Calls; the stage makes anew what that frees.
+    /// Calls the function, and recreates the objects of the stage that it freed.
     Outcome call(Arguments arguments) {
         const Outcome outcome = arguments.function.call(arguments);
         if (arguments.function.frees() && arguments.other != 0) {
@@ -66,7 +66,7 @@ class CApi : public testing::Test {
         EXPECT_NE(call({stage_, function}), Outcome::kFailure) << function.name << ": " << relief_error();
         EXPECT_EQ(relief_error_count(), before) << function.name << ": " << relief_error();
     }
-    /// \param says  what the message has besides the function's name.
+    /// \param says  expected in the message, besides the function's name.
     void expectRefused(const Arguments& arguments, const std::string& says) {
         const std::string what = arguments.function.name + ", " + says;
         const std::uint64_t before = relief_error_count();
@@ -86,7 +86,7 @@ class CApi : public testing::Test {
             }
         }
     }
-    /// The functions that read this structure, and where.
+    /// Calls f with each function that reads this structure, and the argument's index.
     template <class F>
     void eachReader(const Structure& structure, const F& f) {
         eachArgument([&](const Function& function, std::size_t i, const Argument& argument) {
@@ -154,7 +154,7 @@ TEST_F(CApi, EveryHandleMayBeFreedOrNone) {
                 stage_.forget(number);
             }
         }
-        stage_.revive();  // in the place of the one that was freed
+        stage_.revive();  // reuses the slot of the freed object
         EXPECT_NE(stage_.handle(argument.type), number);
         expectRefused({stage_, function, i, number}, argument.name + kDead);
         expectGood(function);
@@ -208,7 +208,7 @@ TEST_F(CApi, EveryNumberOfEveryStructureIsLookedAt) {
                             expectRefused({stage_, function}, name);
                         }
                     } else {
-                        std::memset(number, 0xff, field.bytes);  // -1, or the largest
+                        std::memset(number, 0xff, field.bytes);  // -1, or the largest value
                         expectRefused({stage_, function}, name);
                         number[field.bytes - 1] = std::byte{0x7f};
                         expectRefused({stage_, function}, name);
@@ -234,7 +234,8 @@ TEST_F(CApi, EveryNumberAmongTheArgumentsIsLookedAt) {
                 expectRefused({stage_, function, i, 0, wrong}, argument.name + " is ");
             }
         } else if (argument.type == "const float*" && argument.name != "points") {
-            float* first = const_cast<float*>(stage_.good<const float*>(argument.name));  // the stage's own
+            float* first =
+                const_cast<float*>(stage_.good<const float*>(argument.name));  // points into the stage
             for (const float wrong : {kNan, kInfinity, -kInfinity}) {
                 const float right = std::exchange(*first, wrong);
                 expectRefused({stage_, function}, argument.name + "[0] is ");
@@ -269,7 +270,7 @@ TEST_F(CApi, WhatIsWrittenWhereACallFailsIsNoNumber) {
     }
     EXPECT_STREQ(relief_collider_unit(nullptr), "");
     EXPECT_STREQ(relief_textures_glsl(nullptr), "");
-    // And what is not there is not looked at.
+    // With a count of zero, NULL arrays are valid.
     const std::uint64_t before = relief_error_count();
     relief_collider_query(stage_.collider, nullptr, 0, nullptr);
     EXPECT_EQ(relief_particles_spawn(stage_.particles, nullptr, 0), 0U);
@@ -295,7 +296,7 @@ TEST_F(CApi, WithoutAContextNothingOfTheGlIsTouched) {
     }
     ASSERT_TRUE(eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context));
     for (const Function& function : kFunctions) {
-        expectGood(function);  // what was to be freed is still there
+        expectGood(function);  // failed calls freed nothing
     }
 }
 
@@ -305,7 +306,7 @@ TEST_F(CApi, AFailureIsHandedOnWithItsCause) {
     const std::string cause = relief_error();
     EXPECT_NE(cause.find(kMissing), std::string::npos) << cause;
 
-    // The whole chain, which nobody looks at: its end knows how it began.
+    // Nobody checks this chain of calls: the last one still reports the first cause.
     relief_collider* collider = relief_collider_load(kMissing);
     relief_textures* textures = relief_textures_create(collider);
     relief_particles* particles = relief_particles_create(textures, &stage_.options);
@@ -315,17 +316,17 @@ TEST_F(CApi, AFailureIsHandedOnWithItsCause) {
     EXPECT_EQ(relief_picture_create(textures, collider), nullptr);
     EXPECT_EQ(relief_error(), cause);
 
-    // Once it has been read, NULL is a choice again.
+    // After the error was read, NULL is valid again.
     particles = relief_particles_create(textures, &stage_.options);
     EXPECT_NE(particles, nullptr) << relief_error();
     relief_particles_free(particles);
-    // Or once one of the kind was made.
+    // Also after an object of this kind was created.
     EXPECT_EQ(relief_textures_create(nullptr), nullptr);
     relief_textures_free(relief_textures_create(stage_.collider));
     particles = relief_particles_create(nullptr, &stage_.options);
     EXPECT_NE(particles, nullptr) << relief_error();
     relief_particles_free(particles);
-    // Another thread's failures are its own.
+    // Errors are per thread.
     std::thread([&] {
         EXPECT_STREQ(relief_error(), "");
         EXPECT_EQ(relief_error_count(), 0U);
@@ -336,8 +337,7 @@ TEST_F(CApi, AFailureIsHandedOnWithItsCause) {
     relief_particles_free(particles);
 }
 
-// Particles and pictures keep what they need: those whose collider and textures are gone move and look like those whose
-// are not, bit for bit.
+// Particles and pictures keep their dependencies alive: with freed collider and textures, results are bit-identical.
 TEST_F(CApi, ThingsMayBeFreedInAnyOrder) {
     relief_textures* doomed = relief_textures_create(stage_.collider);
     relief_particles* orphan = relief_particles_create(doomed, &stage_.options);
@@ -346,7 +346,7 @@ TEST_F(CApi, ThingsMayBeFreedInAnyOrder) {
     relief_textures_free(doomed);
     relief_collider_free(stage_.collider);
     stage_.collider = nullptr;
-    // New textures of the context take the names that would be free.
+    // New textures would reuse names freed too early.
     relief_collider* flat = relief_collider_load(stage_.good<const char*>("path"));
     relief_textures* others[8];
     for (relief_textures*& one : others) {
@@ -436,7 +436,7 @@ TEST_F(CApi, AWorldIsThatOfItsBodies) {
     ASSERT_EQ(relief_particles_spawn(particles, stage_.births, kItems), kItems);
     const std::uint32_t body = 3;
     for (int step = 0; step < 180; ++step) {
-        const bool moves = step < 60;  // it goes aside, and nothing is below the last particle
+        const bool moves = step < 60;  // the body moves aside, so nothing is below the last particle
         const relief_pose to{{6.0F + 0.05F * static_cast<float>(step), 0.0F, 0.0F}, {0.0F, 0.0F, 0.0F, 1.0F}};
         ASSERT_EQ(relief_textures_set_poses(stage_.world_textures, moves ? &body : nullptr,
                                             moves ? &to : nullptr, moves ? 1 : 0),
@@ -475,7 +475,7 @@ TEST_F(CApi, ACharacterBends) {
     stage_.options.capacity = 512;
     stage_.options.gravity[1] = -3.0F;
     relief_particles* particles = relief_particles_create(textures, &stage_.options);
-    // In the plane in which it bends, above its upper half as it lies down.
+    // In the plane in which the tube bends, above its upper half once that is horizontal.
     std::vector<relief_birth> births(500);
     for (std::size_t i = 0; i < births.size(); ++i) {
         births[i] = {{-1.2F + 0.002F * static_cast<float>(i), 2.2F, 3.0F}, {}, 9.0F, 0};
@@ -491,7 +491,7 @@ TEST_F(CApi, ACharacterBends) {
     }
     std::vector<relief_particle> states(births.size());
     ASSERT_EQ(relief_particles_read(particles, states.data(), states.size()), 500);
-    // At rest it stands upright, and nothing would meet them.
+    // At rest the tube is upright, and no particle would hit it.
     EXPECT_GT(std::ranges::count_if(states, [](const relief_particle& one) { return one.collisions > 0; }),
               200);
 
@@ -508,7 +508,7 @@ TEST_F(CApi, ACharacterBends) {
     relief_textures_free(textures);
 }
 
-// A collider comes when a ball reaches it, and one that is missing is told once.
+// A collider is uploaded when a ball reaches it. A missing one is reported once.
 TEST_F(CApi, AWorldIsStreamed) {
     std::mt19937 random(5);
     const test::TemporaryFolder folder;
@@ -587,7 +587,7 @@ TEST_F(CApi, ThreadsDoNotDisturbEachOther) {
                 }
                 relief_collider_free(own);
                 faults += relief_error_count() != static_cast<std::uint64_t>(round) ? 1 : 0;
-                EXPECT_EQ(relief_collider_map_count(own), 0U);  // which is an error
+                EXPECT_EQ(relief_collider_map_count(own), 0U);  // an error
             }
         });
     }

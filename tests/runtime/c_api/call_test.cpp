@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The handles' table by itself.
+// Unit test of the handle table.
 #include "runtime/c_api/call.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ TEST(Handles, NoneIsGivenOutTwiceAndOldOnesStayFreed) {
     HandleTable table;
     std::set<std::uintptr_t> all;
     std::vector<std::uintptr_t> live;
-    // More than a few blocks at once, then thousands in the places of a few.
+    // More than a few blocks at once, then thousands of handles that reuse a few slots.
     for (int i = 0; i < 1000; ++i) {
         live.push_back(table.add(HandleKind::kCollider, std::make_shared<int>(i)));
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Births on the surfaces of a character and of a collider, through C.
+// Births on the surfaces of an animated collider and a static collider through the C API.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ class CApiEmitter : public testing::Test {
     Stage stage_;
 };
 
-// Sparks of a character that bends and goes aside, of the group that its upper joint moves.
+// Sparks from the group of the upper joint of a character that bends and moves.
 TEST_F(CApiEmitter, SparksComeOffACharacter) {
     constexpr float kDt = 0.02F;
     stage_.options.capacity = 4096;
@@ -55,7 +55,7 @@ TEST_F(CApiEmitter, SparksComeOffACharacter) {
     ASSERT_EQ(relief_particles_read(particles, sparks.data(), sparks.size()), 1000);
     for (const relief_particle& spark : sparks) {
         EXPECT_EQ(spark.type, 7U);
-        // The upper half turns towards -x about a height of 1: ω × r at its end, and the body's own.
+        // The upper half rotates towards -x about height 1: ω × r at its end, plus the body's velocity.
         const double up = spark.position[1] - kDt * spark.velocity[1] - 1.0;
         EXPECT_GT(up, -1.0 / 3.0 - 0.05) << "a triangle of the group";
         EXPECT_NEAR(spark.velocity[0], 2.0 - std::acos(0.0) * up, up < 0.34 ? 1.0 : 0.01);
@@ -64,7 +64,7 @@ TEST_F(CApiEmitter, SparksComeOffACharacter) {
     relief_particles_free(particles);
 }
 
-// Dust of a box that goes aside and stands turned: on its faces, with the body's velocity.
+// Dust from a rotated box that moves: on its faces, with the body's velocity.
 TEST_F(CApiEmitter, DustComesOffACollider) {
     constexpr float kDt = 0.02F;
     constexpr int kCount = 4000;
@@ -98,14 +98,14 @@ TEST_F(CApiEmitter, DustComesOffACollider) {
         const glm::dvec3 moved(place.position[0] + 0.5 * double{kDt}, place.position[1], place.position[2]);
         const glm::dvec3 p = glm::conjugate(turned) *
                              (glm::dvec3(one.position[0], one.position[1], one.position[2]) - moved) /
-                             2.0;  // the scale of that body
+                             2.0;  // the scale of the body
         double off = 1.0;
         for (int i = 0; i < 3; ++i) {
             off = std::min(off, std::abs(std::abs(p[i]) - half[i]));
         }
         EXPECT_LT(off, 1e-3);
     }
-    // Of textures of a single collider it lies where its object space does.
+    // In textures of a single collider, the surface lies in object space.
     relief_emitter* again = relief_emitter_create_on(stage_.collider, nullptr, &options);
     EXPECT_EQ(relief_particles_emit(particles, again, stage_.textures, 0, kDt), kCount);
     relief_emitter_free(again);
@@ -145,7 +145,7 @@ TEST_F(CApiEmitter, ErrorsOfEmittersAreNamed) {
     relief_emitter* own = relief_emitter_create(stage_.animation, nullptr, nullptr, &options);
     EXPECT_EQ(relief_particles_emit(stage_.particles, own, stage_.world_textures, 0, 1.0F), -1);
     expectError("body is 0");
-    // Of a step of next to no length nothing is wrong, and none of it infinite.
+    // A step with a tiny dt is valid, and gives no infinite numbers.
     EXPECT_GE(relief_particles_emit(stage_.particles, own, stage_.animated_textures, 0, 1e-40F), 0)
         << relief_error();
     relief_emitter_free(own);

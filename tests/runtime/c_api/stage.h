@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Good arguments for every function of relief.h, and one of them exchanged for another. call_table.py makes the tables of
-// relief.h itself, so that what is new there is tested without being named here.
+// Valid arguments for every function of relief.h, one of which a test can replace. call_table.py generates the tables
+// from relief.h, so new functions are tested without being listed here.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -33,14 +33,14 @@
 namespace relief::c_api {
 
 inline constexpr std::size_t kItems = 4;  // births, points, …
-inline constexpr std::size_t kWrong = 2;  // the one of them that is made wrong
+inline constexpr std::size_t kWrong = 2;  // the item that is made invalid
 
-/// The last error names this.
+/// Expects the last error to contain this.
 inline void expectError(const std::string& part) {
     EXPECT_NE(std::string(relief_error()).find(part), std::string::npos) << relief_error();
 }
 
-/// A collider, textures, particles, a picture and a world that work, and memory for all that is read and written.
+/// Working objects: a collider, textures, particles, a picture and a world; and memory for all inputs and outputs.
 class Stage {
   public:
     Stage() {
@@ -85,7 +85,7 @@ class Stage {
     Stage(const Stage&) = delete;
     Stage& operator=(const Stage&) = delete;
 
-    /// Makes anew what has been freed, which is NULL.
+    /// Recreates objects that were freed (NULL).
     void revive() {
         collider = collider != nullptr ? collider : relief_collider_load(path_.c_str());
         textures = textures != nullptr ? textures : relief_textures_create(collider);
@@ -108,7 +108,7 @@ class Stage {
                     picture != nullptr && world != nullptr && world_textures != nullptr)
             << relief_error();
     }
-    /// Good values of everything that a test may have changed.
+    /// Resets everything that a test may have changed to valid values.
     void fill() {
         options = {};
         options.size = sizeof(options);
@@ -147,7 +147,7 @@ class Stage {
         view.width = view.height = 16;
     }
 
-    /// What a function takes at an argument of this type and name.
+    /// A valid value for an argument of this type and name.
     template <class T>
     T good(const std::string& name) {
         if constexpr (std::is_same_v<T, const char*>) {
@@ -194,7 +194,8 @@ class Stage {
             return pointer(T{});
         }
     }
-    /// Where the structures of this name lie that good() gives, at the one that is made wrong; null: no function reads them.
+    /// The address of the invalid item in the structures of this name that good() returns; null if no function reads
+    /// them.
     std::byte* structure(const std::string& name) {
         void* found = name == "relief_particles_options" ? static_cast<void*>(&options)
                       : name == "relief_birth"           ? &births[kWrong]
@@ -206,7 +207,7 @@ class Stage {
                                                          : nullptr;
         return static_cast<std::byte*>(found);
     }
-    /// The handle of the kind that an argument's type names, as a number.
+    /// The handle of an argument's type, as a number.
     [[nodiscard]] std::uintptr_t handle(const std::string& type) const {
         const auto names = [&](const char* kind) { return type.find(kind) != std::string::npos; };
         return names("animation")   ? reinterpret_cast<std::uintptr_t>(animation)
@@ -217,7 +218,7 @@ class Stage {
                : names("world")     ? reinterpret_cast<std::uintptr_t>(world)
                                     : reinterpret_cast<std::uintptr_t>(picture);
     }
-    /// It has been freed: revive() makes another.
+    /// Call after the object was freed; revive() creates another.
     void forget(std::uintptr_t handle) {
         const auto drop = [handle](auto*& one) {
             one = reinterpret_cast<std::uintptr_t>(one) == handle ? nullptr : one;
@@ -235,14 +236,14 @@ class Stage {
     relief_animation* animation = nullptr;
     relief_emitter* emitter = nullptr;
     relief_emitter_options emitter_options;
-    relief_textures* animated_textures = nullptr;  // of a world of it alone
+    relief_textures* animated_textures = nullptr;  // of a world that contains only the animation
     relief_particles_options options;
     relief_birth births[kItems];
     std::uint32_t bodies[kItems];
     std::uint32_t bodies_found[kItems];
     relief_pose poses[kItems];
     relief_ball balls[kItems];
-    relief_pose pose;  // that is read
+    relief_pose pose;  // output
     relief_picture_options picture_options;
     relief_view view;
     relief_particle states[kItems];
@@ -257,7 +258,7 @@ class Stage {
     float high[3];
 
   private:
-    /// As many boxes as there are items, two units apart; the second is turned and twice as large, the last named as the first.
+    /// One box per item, two units apart. The second is rotated and scaled by 2; the last has the name of the first.
     void writeWorld(const Collider& box) {
         World file;
         file.colliders = {
@@ -296,7 +297,7 @@ class Stage {
 
 enum class Outcome : std::uint8_t { kNothing, kSuccess, kFailure };
 
-/// Frees at once what a call has made.
+/// Frees the result of a call at once.
 struct Release {
     static void of(relief_collider* made) { relief_collider_free(made); }
     static void of(relief_textures* made) { relief_textures_free(made); }
@@ -310,16 +311,16 @@ struct Release {
 template <class T>
 Outcome outcomeOf(const T& returned) {
     if constexpr (std::is_same_v<T, relief_counts>) {
-        return Outcome::kNothing;  // 0 may be either
+        return Outcome::kNothing;  // 0 is ambiguous
     } else if constexpr (std::is_same_v<T, const char*>) {
-        return returned != nullptr ? Outcome::kNothing : Outcome::kFailure;  // "" may be either
+        return returned != nullptr ? Outcome::kNothing : Outcome::kFailure;  // "" is ambiguous
     } else if constexpr (std::is_pointer_v<T>) {
         Release::of(returned);
         return returned != nullptr ? Outcome::kSuccess : Outcome::kFailure;
     } else if constexpr (std::is_signed_v<T>) {
         return returned >= 0 ? Outcome::kSuccess : Outcome::kFailure;
     } else {
-        return returned > 0 ? Outcome::kSuccess : Outcome::kNothing;  // 0 may be either
+        return returned > 0 ? Outcome::kSuccess : Outcome::kNothing;  // 0 is ambiguous
     }
 }
 
@@ -342,13 +343,13 @@ struct Function {
     [[nodiscard]] bool frees() const { return name.ends_with("_free"); }
 };
 
-/// The stage's, but for one.
+/// The stage's arguments, one of which is replaced.
 struct Arguments {
     Stage& stage;
     const Function& function;
     std::size_t other = ~std::size_t{0};
-    std::uint64_t whole = 0;  // of the other: what it is as a pointer or an integer
-    float real = 0.0F;        // as a float
+    std::uint64_t whole = 0;  // the replacement as a pointer or an integer
+    float real = 0.0F;        // the replacement as a float
 
     template <class T>
     T get(std::size_t i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colliders made from closed-form shapes, so that tests of the runtime need no mesh and no baker, and have the truth at every
-// point. tests/formats/analytic_shapes.h makes their texels.
+// Colliders made from closed-form shapes, so that runtime tests need neither a mesh nor a baker, and know the truth at
+// every point. tests/formats/analytic_shapes.h makes the texels.
 #pragma once
 
 #include <algorithm>
@@ -37,7 +37,7 @@ inline Shape box(const Vec& low, const Vec& high) {
             }};
 }
 
-/// Shapes that do not overlap, as one.
+/// The union of shapes that do not overlap.
 inline Shape unite(const std::vector<Shape>& shapes) {
     struct Union : test::Shape {
         explicit Union(const std::vector<analytic::Shape>& all) : shapes(all) {}
@@ -69,13 +69,13 @@ inline Shape unite(const std::vector<Shape>& shapes) {
     return shape;
 }
 
-/// Where an orthographic map looks: along +axis or −axis.
+/// The direction of an orthographic map: along +axis or −axis.
 struct View {
     int axis = 2;
     bool positive = true;
 };
 
-/// An orthographic map of `format` tightly round the shape's bounds, one empty texel round it.
+/// An orthographic map of `format` that fits the shape's bounds, with a border of one empty texel.
 inline DepthMap orthographicMap(const Shape& shape, MapFormat format, Compare compare, const View& view,
                                 std::uint32_t size) {
     const int axes[3] = {(view.axis + 1) % 3, (view.axis + 2) % 3, view.axis};
@@ -85,7 +85,7 @@ inline DepthMap orthographicMap(const Shape& shape, MapFormat format, Compare co
     for (int i = 0; i < 3; ++i) {
         const int a = axes[i];
         const double inner = high[a] - low[a];
-        // Across: one texel of border on each side. Along: a hundredth, so that no depth is 0 or 1.
+        // Across: a border of one texel on each side. Along: a hundredth, so that no depth is 0 or 1.
         const double margin = i == 2 ? 0.01 * inner : inner / (size - 2.0);
         const bool forward = i < 2 || view.positive;
         frame.origin[a] = forward ? low[a] - margin : high[a] + margin;
@@ -95,7 +95,7 @@ inline DepthMap orthographicMap(const Shape& shape, MapFormat format, Compare co
     return test::makeMap(*shape.solid, frame, format, compare, size, size);
 }
 
-/// A depth cube round `center`, whose half sides are `half`. kLess: the centre lies in free space.
+/// A depth cube around `center` with half sides `half`. kLess: the centre lies in free space.
 inline DepthMap cubeMap(const Shape& shape, Compare compare, const Vec& center, const Vec& half,
                         std::uint32_t size) {
     DepthMap map = test::makeMap(*shape.solid, {center, glm::dmat3(1.0), half}, compare, size);

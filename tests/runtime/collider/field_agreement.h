@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The GPU's answers at many points against the CPU's.
-//
-// Tolerance. Both sides evaluate the same formulas in floats, but not in the same order (the shader's rows
-// are in texels, and it divides by a normal's length last), and a GL may fuse or reorder operations and be
-// off by some units in the last place in its square roots and divisions. So distances may differ by kRelative
-// of the distance's own scale (that of the map's volume), and normals by kNormal. A point closer than kBorder
-// texels to a texel's edge may fall to the neighbour: it counts as agreeing if it agrees with the CPU's
-// answer at one of the surrounding points kBorder texels away, and such points are counted.
-// The normal of a patch changes along it, by a rounding of the point more than kNormal where the patch is curved. A GPU that
-// fuses multiplications and additions rounds the point otherwise; its answers by patches may also differ by the bound of
+// Compares the GPU's samples at many points with the CPU's.
+// Tolerance: both sides evaluate the same formulas in floats, but in different orders. The shader's rows are in texels,
+// and it divides by a normal's length last. A GL may fuse or reorder operations, and its square roots and divisions may
+// be off by a few ulp. So distances may differ by kRelative of the scale of the map's volume, and normals by kNormal. A
+// point within kBorder texels of a texel's edge may fall into the neighbour. It agrees if it matches the CPU's sample
+// at one of the surrounding points kBorder texels away; such points are counted.
+// The normal of a patch changes along it. On a curved patch, rounding of the point changes it by more than kNormal. A
+// GPU that fuses multiply-adds rounds the point differently, so its patch samples may also differ by the bound of
 // patch_rounding.h. A software renderer fuses nothing and gets no such allowance.
 #pragma once
 
@@ -41,7 +39,7 @@ inline bool agrees(const FieldSample& a, const FieldSample& b) {
             glm::length(a.normal - b.normal) <= kNormal);
 }
 
-/// The votes of a GPU's map of patches that rounding leaves possible; none if the map is of another kind.
+/// The possible votes of a GPU's patch map, given rounding; none if the map is of another kind.
 inline std::vector<rounding::RoundedVote> possibleVotes(const Collider& collider, const glm::vec3& p,
                                                         const FieldSample& gpu) {
     if (gpu.map < 0 || isSoftwareRenderer()) {
@@ -52,7 +50,7 @@ inline std::vector<rounding::RoundedVote> possibleVotes(const Collider& collider
                                              : std::vector<rounding::RoundedVote>{};
 }
 
-/// What one map of a collider votes.
+/// The vote of one map of a collider.
 inline FieldSample evaluateAlone(const Collider& collider, const glm::vec3& p, int map) {
     Collider alone;
     alone.bounds = collider.bounds;
@@ -62,7 +60,7 @@ inline FieldSample evaluateAlone(const Collider& collider, const glm::vec3& p, i
     return own;
 }
 
-/// True if two maps vote alike at p, but for rounding, and the GPU chose the other: its answer is that map's own.
+/// True if two maps vote equally at p, up to rounding, and the GPU chose the other one, with that map's sample.
 inline bool tied(const Collider& collider, const glm::vec3& p, const FieldSample& gpu,
                  const rounding::RoundedVote* vote) {
     const FieldSample cpu = evaluate(collider, p);
@@ -74,12 +72,13 @@ inline bool tied(const Collider& collider, const glm::vec3& p, const FieldSample
     return vote != nullptr || agrees(gpu, evaluateAlone(collider, p, gpu.map));
 }
 
-/// Of the 27 points of a cube of side 2, the middle among them.
+/// Point k of the 27 points of a cube of side 2 around the origin.
 inline glm::vec3 neighbour(int k) {
     return {static_cast<float>(k % 3 - 1), static_cast<float>(k / 3 % 3 - 1), static_cast<float>(k / 9 - 1)};
 }
 
-/// Agreement with the CPU's answer at p, or at one of the 26 neighbours `step` away; there a tie counts, too.
+/// Whether the GPU agrees with the CPU's sample at p, or at one of the 26 neighbours `step` away, where ties count as
+/// well.
 enum class Agreement { kExact, kAtBorder, kNone };
 inline Agreement compareAt(const Collider& collider, const glm::vec3& p, const FieldSample& gpu, float step) {
     const FieldSample cpu = evaluate(collider, p);
@@ -99,7 +98,7 @@ inline Agreement compareAt(const Collider& collider, const glm::vec3& p, const F
     const bool own_vote = gpu.map >= 0 && agrees(gpu, evaluateAlone(collider, p, gpu.map));
     for (int k = 0; k < 27; ++k) {
         const FieldSample near = evaluate(collider, p + step * neighbour(k));
-        // Either another map leaves the decision to the GPU's there, or the distance has moved with the point, too.
+        // The GPU's map also decides at the neighbour, or the distance changes with the point as well.
         if (near.map == gpu.map &&
             (rounded || own_vote ||
              (std::abs(near.distance - gpu.distance) <= 4.0F * step + kRelative * 2.0F &&

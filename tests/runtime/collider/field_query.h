@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Evaluates a collider at many points on the GPU, with the very shader code that the simulation runs: the proof that
-// shaders/collider/collider.glsl is formats/collider.cpp.
+// Evaluates a collider at many points on the GPU with the shader code of the simulation, to prove that
+// shaders/collider/collider.glsl matches formats/collider.cpp.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@
 
 namespace relief {
 
-/// With RELIEF_QUERY_INSIDE by reliefSolid: the distance then is −1 inside and 1 outside.
+/// With RELIEF_QUERY_INSIDE it uses reliefSolid; the distance is then −1 inside and 1 outside.
 inline constexpr const char* kFieldQuery = R"(
 uniform highp sampler2D u_points;  // xyz: object space
 layout(location = 0) out vec4 o_normal_distance;
@@ -40,30 +40,29 @@ void main() {
 
 class FieldQuery {
   public:
-    /// Uploads the collider.
-    /// Fails as WorldTextures::create and makeProgram do.
+    /// Uploads the collider. Fails as WorldTextures::create and makeProgram do.
     [[nodiscard]] static Result<FieldQuery> create(const Collider& collider);
 
-    /// Uses textures that are there already: of one collider, or of bodies in their world, some of which may be
-    /// live. They must outlive this. Fails as makeProgram does.
+    /// Uses existing textures, of one collider or of a world's bodies, some of which may be live. They must outlive
+    /// this. Fails as makeProgram does.
     /// \param defines  lines for the shader.
     [[nodiscard]] static Result<FieldQuery> create(const WorldTextures& textures,
                                                    const std::string& defines = {});
-    /// Goes over to other textures of the same defines().
+    /// Switches to other textures with the same defines().
     void use(const WorldTextures& textures) { textures_ = &textures; }
 
-    /// One sample a point, in order. Waits for the GPU.
-    /// Errors: kLimit (no room on the GPU), kUnsupported, kFailure.
+    /// One sample per point, in order. Waits for the GPU.
+    /// Errors: kLimit (out of GPU memory), kUnsupported, kFailure.
     [[nodiscard]] Result<std::vector<FieldSample>> evaluate(std::span<const glm::vec3> points) const;
 
   private:
     static constexpr GLsizei kWidth = 1024;
-    static constexpr std::size_t kBatch = std::size_t{kWidth} * 1024;  // points evaluated with one draw
+    static constexpr std::size_t kBatch = std::size_t{kWidth} * 1024;  // points per draw call
     static constexpr WorldTextures::Binding kBinding{1, 0};            // unit 0 holds the points
 
     FieldQuery() = default;
 
-    std::unique_ptr<WorldTextures> own_;  // null: the caller's
+    std::unique_ptr<WorldTextures> own_;  // null: the caller's textures are used
     const WorldTextures* textures_ = nullptr;
     GlProgram program_;
 };
@@ -126,7 +125,8 @@ inline Result<std::vector<FieldSample>> FieldQuery::evaluate(std::span<const glm
     return samples;
 }
 
-/// The field of textures that are there already. \param defines  lines for the shader.
+/// The field of existing textures.
+/// \param defines  lines for the shader.
 inline std::vector<FieldSample> fieldOf(const WorldTextures& textures, std::span<const glm::vec3> points,
                                         const std::string& defines = {}) {
     const auto query = required(FieldQuery::create(textures, defines));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// shaders/collider/collider.glsl against formats/collider.cpp, point by point. The maps are random bytes in random
-// frames: the two must agree on whatever lies in a texture, not only on what a baker writes.
+// shaders/collider/collider.glsl against formats/collider.cpp, point by point. Maps are random bytes in random frames:
+// the two must agree on any texture content, not only on output of the baker.
 
 #include <algorithm>
 #include <array>
@@ -35,7 +35,7 @@ constexpr Kind kKinds[] = {
     {MapFormat::kFrontBackHalf, Compare::kBoth, 35, 30}, {MapFormat::kFrontBackFixed, Compare::kBoth, 30, 35},
 };
 
-/// A map of random surfaces in a random, rotated, anisotropic frame round the origin.
+/// A map of random surfaces in a random, rotated, anisotropic frame around the origin.
 DepthMap randomMap(const Kind& kind, std::mt19937& random) {
     const auto [format, compare, width, height] = kind;
     std::uniform_real_distribution<float> unit(0.0F, 1.0F);
@@ -78,11 +78,11 @@ DepthMap randomMap(const Kind& kind, std::mt19937& random) {
                 }
                 const std::span<std::byte> bytes = map.texelAt(face, i, j);
                 if (texel.front && format == MapFormat::kFloat32) {
-                    // As far from length 1 as a reader lets pass: it counts as it is.
+                    // As far from length 1 as a reader accepts: it is used unnormalized.
                     texel.front->normal *= 1.0F + 1.8e-3F * (unit(random) - 0.5F);
                 }
                 encodeTexel(format, texel, bytes);
-                // What no baker writes: an index that reads as 254.
+                // An index that no baker writes; it reads as 254.
                 if (texel.front && format != MapFormat::kFloat32 && unit(random) < 0.1F) {
                     bytes[unit(random) < 0.5F ? 0 : 1] = std::byte{255};
                 }
@@ -134,12 +134,12 @@ TEST_P(FieldQueryGlTest, AnyMixtureOfMapsAgreesWithTheCpu) {
                 kind.format == MapFormat::kCube8 ? kind.width : static_cast<std::uint32_t>(3 + random() % 60);
             collider.maps.push_back(randomMap(kind, random));
         }
-        // Forty maps have forty times the borders.
+        // Forty maps have forty times as many borders.
         expectAgreement(collider, randomPoints(6'000, random), 1.0F / 60.0F, 5e-3);
     }
 }
 
-/// A random tree in a turned frame of 2.5 units a root, round the origin.
+/// A random tree in a rotated frame around the origin, with roots of 2.5 units.
 DepthMap turnedPatches(std::mt19937& random) {
     std::uniform_real_distribution<double> angle(0.0, 360.0);
     DepthMap map = test::randomPatches(random);
@@ -153,7 +153,7 @@ DepthMap turnedPatches(std::mt19937& random) {
     return map;
 }
 
-// Twenty kinds of company: none, planar maps alone, a cube alone, both; the patches first, last or between.
+// Twenty combinations: with no other maps, only planar maps, only a cube, or both; patches first, last or between.
 TEST_P(FieldQueryGlTest, PatchesAgreeWithTheCpuAloneAndAmongOtherMaps) {
     std::mt19937 random(test::seedFrom(31));
     int asked = 0, by_patches = 0;
@@ -161,11 +161,11 @@ TEST_P(FieldQueryGlTest, PatchesAgreeWithTheCpuAloneAndAmongOtherMaps) {
         Collider collider;
         const unsigned company = repeat % 5;
         for (unsigned i = 0; i < company; ++i) {
-            // Every format of the ten in turn; a cube alone where company is one.
+            // Each of the ten formats in turn; only a cube if cubes are included.
             const Kind& kind =
                 kKinds[company == 1 ? 5 + repeat / 5 % 2 : (3 * repeat + i) % std::size(kKinds)];
             DepthMap map = randomMap(kind, random);
-            if (repeat % 2 == 0) {  // as large as the tree
+            if (repeat % 2 == 0) {  // same size as the tree
                 map.object_per_map *= 5.0F;
                 for (glm::vec4& row : map.object_to_map.row) {
                     row = glm::vec4(glm::vec3(row) / 5.0F, row.w);
@@ -186,7 +186,7 @@ TEST_P(FieldQueryGlTest, PatchesAgreeWithTheCpuAloneAndAmongOtherMaps) {
             by_patches += cpu.map == place ? 1 : 0;
         }
     }
-    // Both decide often.
+    // Both often decide.
     EXPECT_GT(by_patches, asked / 5);
     EXPECT_LT(by_patches, asked - asked / 5);
 }
@@ -198,7 +198,7 @@ TEST_P(FieldQueryGlTest, TexelBordersFallToEitherSideAndCornersOfCubesToo) {
         collider.maps.push_back(randomMap(kind, random));
         SCOPED_TRACE(nameOf(collider.maps[0]));
         DepthMap& map = collider.maps[0];
-        // Identity frame, so that the borders are representable numbers.
+        // Identity frame, so that the borders are exactly representable.
         map.object_per_map = glm::vec3(1.0F);
         map.object_to_map = {};
         std::vector<glm::vec3> points;
@@ -248,7 +248,7 @@ TEST_P(FieldQueryGlTest, TheEarlyOutAgreesWithTheCpu) {
         for (int i = 0; i < 1 + repeat % 6; ++i) {
             collider.maps.push_back(randomMap(kKinds[random() % std::size(kKinds)], random));
             if (repeat % 2 == 0) {
-                collider.maps.back().encloses = false;  // more points that no map sees outside
+                collider.maps.back().encloses = false;  // more points without an outside vote
                 collider.maps.back().empty_is_outside = false;
             }
         }
@@ -290,7 +290,7 @@ TEST_P(FieldQueryGlTest, TooManyMapsAndTooLargeMapsAreNamedErrors) {
     EXPECT_EQ(FieldQuery::create(collider).error().code, ErrorCode::kLimit);
 }
 
-/// A map may be longer than the GL's textures are wide, and the bytes on the GPU are the maps' own.
+/// A map may have more texels per row than GL textures allow, and the GPU uses only the maps' own bytes.
 TEST_P(FieldQueryGlTest, MapsOfAnyShapeLieTogetherWithoutAGap) {
     std::mt19937 random(20);
     Collider collider;
@@ -300,7 +300,7 @@ TEST_P(FieldQueryGlTest, MapsOfAnyShapeLieTogetherWithoutAGap) {
         collider.maps.push_back(randomMap({format, compare, 3, 777}, random));
     }
     collider.maps.push_back(randomMap({MapFormat::kCube8, Compare::kLess, 19, 19}, random));
-    // A column is no more than a hundred roundings of x wide.
+    // A column is at most a hundred roundings of x wide.
     expectAgreement(collider, randomPoints(10'000, random), 1e-3F, 4e-2);
     const auto textures = WorldTextures::create(collider);
     ASSERT_TRUE(textures);

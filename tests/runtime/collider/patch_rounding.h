@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The distance and the normal that a map of patches has at a point, each with a bound of what rounding may add to it.
-//
-// The formulas of formats/patch_tree.cpp and shaders/collider/patches.glsl are evaluated once more, in doubles, and every
-// operation adds the error of one rounding to floats, 2^-24 of its result, to those of its operands. The bound holds whether
-// or not a multiplication and an addition are fused, since that only leaves out a rounding. The transform to map space has the
-// largest share: a rounding of a coordinate p is p / cell in the units of the leaf, and the gradient of a patch of 5² heights
-// changes within a quarter of that. Where a rounding may change a decision (cell, square of heights, patch of a pair), the
-// answer of either side counts.
+// The distance and normal of a patch map at a point, each with a bound of its rounding error.
+// Evaluates the formulas of formats/patch_tree.cpp and shaders/collider/patches.glsl again in doubles. Every operation
+// adds the error of one rounding to float, 2^-24 of its result, to the errors of its operands. The bound also holds if
+// a multiply-add is fused, because that only omits a rounding. The transform to map space dominates: a rounding of a
+// coordinate p is p / cell in leaf units, and the gradient of a patch of 5² heights changes within a quarter of that.
+// If rounding may change a decision (cell, square of heights, patch of a pair), the result of either side is accepted.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +20,7 @@
 
 namespace relief::rounding {
 
-/// A number, and how far from it floats may be.
+/// A number and a bound of its float error.
 struct Rounded {
     double value = 0.0;
     double error = 0.0;
@@ -43,7 +41,7 @@ inline Rounded operator*(const Rounded& a, const Rounded& b) {
     return rounded(a.value * b.value,
                    std::abs(a.value) * b.error + std::abs(b.value) * a.error + a.error * b.error);
 }
-/// By a power of two, or −1: exact.
+/// By a power of two or −1, which is exact.
 inline Rounded scaled(double factor, const Rounded& a) {
     return {factor * a.value, std::abs(factor) * a.error};
 }
@@ -57,7 +55,8 @@ struct RoundedVote {
     RoundedVec normal{0.0, 0.0, 0.0};
 };
 
-/// \param q      in the leaf's unit cube. \param aside  the point whose square of heights is taken.
+/// \param q      in the leaf's unit cube.
+/// \param aside  the point whose square of heights is used.
 inline RoundedVote patchVote(PatchTexels texels, const PatchRecord& record, const RoundedVec& q,
                              const glm::dvec3& aside) {
     const PatchFrame frame{static_cast<std::uint8_t>(record.low >> 5U & 3U),
@@ -116,7 +115,7 @@ inline RoundedVote patchVote(PatchTexels texels, const PatchRecord& record, cons
     }
     const Rounded square = dot(vote.normal, vote.normal);
     const double inverse = 1.0 / std::sqrt(square.value);
-    // GLSL: inversesqrt() to two units in the last place, four roundings.
+    // GLSL: inversesqrt() is off by up to two ulp, four roundings.
     const Rounded per_length =
         rounded(inverse, 0.5 * inverse * square.error / (square.value - square.error), 4.0);
     const double sign = (record.low & 16U) != 0 ? -1.0 : 1.0;
@@ -127,8 +126,8 @@ inline RoundedVote patchVote(PatchTexels texels, const PatchRecord& record, cons
     return vote;
 }
 
-/// The votes that rounding leaves possible where p is in a leaf with patches, object units; the first is the CPU's. Empty
-/// where every possible leaf is without them.
+/// The possible votes at p, given rounding, if p is in a leaf with patches, in object units; the CPU's vote is first.
+/// Empty if no possible leaf has patches.
 inline std::vector<RoundedVote> patchVotes(const DepthMap& map, const glm::vec3& p) {
     const auto transformed = [&](const glm::vec4& r) {
         const auto term = [](float factor, float coordinate) {
@@ -146,13 +145,13 @@ inline std::vector<RoundedVote> patchVotes(const DepthMap& map, const glm::vec3&
         vote.distance = scaled(cell, vote.distance) * root;
         RoundedVec normal{0.0, 0.0, 0.0};
         for (int k = 0; k < 3; ++k) {
-            // Two roundings for a column of the inverse, five for 1 / root (GLSL: 2.5 units in the last place), one for both.
+            // Two roundings for a column of the inverse, five for 1 / root (GLSL: 2.5 ulp), one for their product.
             const auto axis = [&](int i) { return rounded(double{rows[i][k]} * root, 0.0, 8.0); };
             normal[static_cast<std::size_t>(k)] = dot({axis(0), axis(1), axis(2)}, vote.normal);
         }
         votes.push_back({vote.distance, normal});
     };
-    // The CPU's own place first.
+    // The CPU's own point first.
     for (int k = 0; k < 27; ++k) {
         const std::array<int, 3> way{(k + 1) % 3 - 1, (k / 3 + 1) % 3 - 1, (k / 9 + 1) % 3 - 1};
         glm::vec3 at = cpu;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What options take, and what they say of what they do not take.
+// Option values, and the errors of invalid ones.
 #include "runtime/command_line/option_values.h"
 
 #include <gtest/gtest.h>
@@ -54,7 +54,7 @@ Values taken(const std::string& option, const std::string& word) {
     return values.value_or(Values{});
 }
 
-/// The error of a command line.
+/// The error message of a command line.
 std::string error(const std::vector<std::string>& arguments) {
     const Result<Values> values = parsed(arguments);
     EXPECT_TRUE(values || values.error().code == ErrorCode::kUsage);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Depth maps rendered from meshes whose every texel is known in closed form, against the CPU's encoders.
+// Depth maps rendered from meshes with closed-form texels, against the CPU's encoders.
 #include "runtime/depth_maps/depth_map_renderer.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ struct Mesh {
     std::vector<glm::uvec3> triangles;
 };
 
-/// z = height(x, y) over a rectangle, of n × n squares; normals +z.
+/// z = height(x, y) over a rectangle of n × n squares; normals along +z.
 Mesh sheet(const glm::vec2& low, const glm::vec2& high, std::uint32_t n,
            const std::function<float(float, float)>& height) {
     Mesh mesh;
@@ -49,13 +49,13 @@ Mesh sheet(const glm::vec2& low, const glm::vec2& high, std::uint32_t n,
     return mesh;
 }
 
-/// An axis-aligned box round the origin, normals outwards, each face one square.
+/// An axis-aligned box around the origin, normals outwards, one square per face.
 Mesh box(const glm::vec3& half) {
     const AnimatedMesh mesh = movingBox(half);
     return {mesh.positions, mesh.triangles};
 }
 
-/// Looks along +z through [−1, 1]³, so that map depth is (z + 1)/2.
+/// Views along +z through [−1, 1]³, so that map depth is (z + 1)/2.
 DepthMap alongZ(std::uint32_t size) {
     DepthMap map;
     map.format = MapFormat::kFrontBackFixed;
@@ -92,10 +92,10 @@ double centre(std::uint32_t i, std::uint32_t size) {
 TEST_P(DepthMapRendererGlTest, APlaneIsWrittenToTheBit) {
     constexpr std::uint32_t kSize = 16;
     constexpr float kZ = 0.25F;
-    // Half of the image: edges between texels' centres, so that coverage is beyond doubt.
+    // Half of the image, with edges between texel centres, so that coverage is unambiguous.
     GpuMesh mesh = upload(sheet({-0.5F, -0.25F}, {0.5F, 0.75F}, 3, [](float, float) { return kZ; }));
     const DepthMap map = render(mesh, alongZ(kSize));
-    // 0.625 is between two codes, 40958 and 40959: planes move towards their viewer.
+    // 0.625 lies between two codes, 40958 and 40959: planes are rounded towards their viewer.
     const Surface front{40958.0F / 65534.0F, {0.0F, 0.0F, -1.0F}};
     const Surface back{40959.0F / 65534.0F, {0.0F, 0.0F, 1.0F}};
     std::vector<std::byte> want(texelSize(map.format));
@@ -123,7 +123,7 @@ TEST_P(DepthMapRendererGlTest, TiltedPlanesHaveTheirDepthAndNormal) {
                 const double depth = 0.5 * (height(centre(x, kSize), centre(y, kSize)) + 1.0);
                 const Texel texel = decodeTexel(map.format, map.texelAt(0, x, y));
                 ASSERT_TRUE(texel.front && texel.back) << x << " " << y;
-                // Outwards by a step of the code at most, and what the corners' floats are rounded by.
+                // At most one code step outwards, plus the float rounding of the corners.
                 constexpr double kHalfStep = 0.5 / 65534.0;
                 ASSERT_NEAR(texel.front->depth, depth - kHalfStep, kHalfStep + 1e-6) << x << " " << y;
                 ASSERT_NEAR(texel.back->depth, depth + kHalfStep, kHalfStep + 1e-6) << x << " " << y;
@@ -135,15 +135,14 @@ TEST_P(DepthMapRendererGlTest, TiltedPlanesHaveTheirDepthAndNormal) {
 }
 
 TEST_P(DepthMapRendererGlTest, SteepPlanesFaceTheViewerAndAllKeepTheirWord) {
-    // One steep sheet, seen at every cosine from 0.5 down to 0.002: what is stored says 0 at the surface
-    // point.
+    // One steep sheet at every cosine from 0.5 down to 0.002: the stored distance at the surface point is 0.
     constexpr std::uint32_t kSize = 64;
     int faced = 0;
     for (const double slope : {1.7, 10.0, 25.0, 31.0, 33.0, 60.0, 200.0}) {
         const double width = 0.9 / slope;
         GpuMesh mesh = upload(sheet({static_cast<float>(-width), -1.0F}, {static_cast<float>(width), 1.0F}, 2,
                                     [&](float x, float) { return static_cast<float>(slope * double{x}); }));
-        // Eight times finer to the right, so that the sheet has texels.
+        // Eight times finer along x, so that the sheet covers texels.
         DepthMap map = alongZ(kSize);
         map.object_to_map.row[0] = {4.0F, 0.0F, 0.0F, 0.5F};
         map.object_per_map.x = 0.25F;
@@ -162,7 +161,7 @@ TEST_P(DepthMapRendererGlTest, SteepPlanesFaceTheViewerAndAllKeepTheirWord) {
                 ++covered;
                 const auto said = vote(map, on);
                 ASSERT_TRUE(said);
-                // A step of the code, along the normal at most.
+                // At most one code step along the normal.
                 ASSERT_NEAR(said->distance, 0.0F, 1e-4F) << slope << " " << x << " " << y;
                 const float cosine = std::abs(texel.front->normal.z);
                 ASSERT_GE(cosine, kPlaneCosineMin) << slope;
@@ -192,7 +191,7 @@ TEST_P(DepthMapRendererGlTest, RaysThatStartInsideLeaveTexelsEmpty) {
 }
 
 TEST_P(DepthMapRendererGlTest, ScaleDoesNotMatter) {
-    // Powers of two, so that nothing rounds another way.
+    // Powers of two, so that rounding does not change.
     std::vector<std::byte> first;
     for (const int power : {0, -40, 45}) {
         Mesh scaled = sheet({-1.0F, -1.0F}, {1.0F, 1.0F}, 9, [](float x, float y) { return 0.5F * x * y; });
@@ -222,7 +221,7 @@ TEST_P(DepthMapRendererGlTest, VerticesMoveAndTheSurfacesMotionIsKnown) {
     GpuMesh made = upload(after);
     const std::uint64_t revision = moved.revision();
     EXPECT_FALSE(render(moved, frame).texels == render(made, frame).texels);
-    // From a buffer of the GPU, behind other things in it.
+    // From a GPU buffer, after other data in it.
     const GlBuffer buffer = makeBuffer();
     glBindBuffer(GL_ARRAY_BUFFER, buffer.name());
     const std::size_t bytes = after.positions.size() * sizeof(glm::vec3);
@@ -265,7 +264,7 @@ TEST_P(DepthMapRendererGlTest, VerticesMoveAndTheSurfacesMotionIsKnown) {
 }
 
 TEST_P(DepthMapRendererGlTest, EveryTriangleOwnsItsSlot) {
-    // A fan: one vertex of all triangles; and triangles without any vertex of their own.
+    // A fan, in which all triangles share a vertex; and triangles without a vertex of their own.
     Mesh fan;
     fan.positions.emplace_back(0.0F, 0.0F, 0.5F);
     for (int i = 0; i <= 12; ++i) {
@@ -280,7 +279,7 @@ TEST_P(DepthMapRendererGlTest, EveryTriangleOwnsItsSlot) {
     GpuMesh mesh = upload(fan);
     EXPECT_EQ(mesh.triangleCount(), 36U);
     EXPECT_LE(mesh.slotCount(), 36U + 14U);
-    // Each texel has the normal of a triangle that holds its centre, or comes within 1/100 texel of it.
+    // Each texel has the normal of a triangle that contains its centre, or is within 1/100 texel of it.
     const DepthMap map = render(mesh, alongZ(63));
     int covered = 0;
     for (std::uint32_t i = 0; i < 63 * 63; ++i) {

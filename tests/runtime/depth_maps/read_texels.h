@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The last map of a renderer, read back.
+// Reads back the last map of a renderer.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace relief {
 
-/// As a container has them.
+/// In the layout of a container.
 inline std::vector<std::byte> readTexels(const DepthMapRenderer& renderer) {
     const PassState state;
     std::vector<GLuint> words(std::size_t{4} * renderer.width() * renderer.height());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The list of what happened in a step: closed forms, counts that must agree with the particles' own, and nothing of it
-// where nobody asks. step_path_gl_test.cpp compares the paths.
+// The event list of a step: closed forms, counts that must agree with the particles, and no effect if nobody requests
+// it. step_path_gl_test.cpp compares the step paths.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,8 +19,8 @@ namespace {
 
 class EventsGlTest : public CollisionTest {};
 
-// A ball of radius r at height h over the floor, at rest. After n steps of semi-implicit Euler its height is
-// h - g dt² n (n + 1) / 2 and its speed g dt n; within a step its way is straight. It stops where it touches.
+// A ball of radius r at height h above the floor, initially at rest. After n steps of semi-implicit Euler its height is
+// h - g dt² n (n + 1) / 2 and its speed is g dt n; its path is straight within a step. It stops on contact.
 TEST_P(EventsGlTest, ADroppedBallHitsOnceAtThePlaceTimeAndSpeedOfTheClosedForm) {
     constexpr double kG = 9.81;
     constexpr double kH = 1.7;
@@ -72,7 +72,7 @@ TEST_P(EventsGlTest, ADroppedBallHitsOnceAtThePlaceTimeAndSpeedOfTheClosedForm) 
     }
 }
 
-// A plate that moves against the particle: speed is relative to it, and the meeting point lies where both are at once.
+// A plate that moves against the particle: speed is relative to the plate, and the hit is where both meet.
 TEST_P(EventsGlTest, AHitOnAMovingBodyIsRelativeToIt) {
     const Collider box = boxCollider();  // its top is at 0.2
     make({.capacity = 4});
@@ -104,11 +104,11 @@ TEST_P(EventsGlTest, AHitOnAMovingBodyIsRelativeToIt) {
 struct Played {
     std::vector<StepEvents> events;
     std::vector<ParticleState> state;
-    std::map<std::uint32_t, std::uint32_t> caught;  // steps in which each id was found inside and turned out
+    std::map<std::uint32_t, std::uint32_t> caught;  // steps in which each id was pushed out from inside
     std::unique_ptr<WorldTextures> textures;        // of the particles
 };
 
-/// Particles on a box and a floor, some of which die; among them those of many rows and levels.
+/// Particles on a box and a floor, some of which die. They span many rows and levels.
 Played played(ParticleSystem& particles, std::uint32_t count, int steps, OnCollision reaction, bool ask,
               bool count_caught = false) {
     Played out;
@@ -139,7 +139,7 @@ Played played(ParticleSystem& particles, std::uint32_t count, int steps, OnColli
                 out.caught[particle.id] += particle.contact == Contact::kCaught ? 1 : 0;
             }
         }
-        // Late: some steps after, when indices have passed to others.
+        // Reads back some steps later, when indices have been reused.
         while (eventsInFlight(particles) > (step + 1 < steps ? 4 : 0)) {
             out.events.push_back(required(waitEvents(particles)).value());
         }
@@ -148,8 +148,9 @@ Played played(ParticleSystem& particles, std::uint32_t count, int steps, OnColli
     return out;
 }
 
-// Every step in contact is a hit, but for those that found the particle inside: with all hits listed, lasting ones too,
-// the sums agree particle by particle. What a hit kills is dead once: hit and death in one event, and no death of age later.
+// Every step in contact is a hit, except if the particle was found inside. With all hits listed, including lasting
+// contacts, the sums agree for each particle. A particle killed by a hit dies once: hit and death are one event, with
+// no later death of age.
 TEST_P(EventsGlTest, HitsAreTheCollisionsOfEachParticle) {
     for (const OnCollision reaction : {OnCollision::kBounce, OnCollision::kDie}) {
         const bool kills = reaction == OnCollision::kDie;
@@ -190,8 +191,8 @@ TEST_P(EventsGlTest, HitsAreTheCollisionsOfEachParticle) {
     }
 }
 
-// The extent shrinks with those who die, and the clock may be set back in the same step: their events are still there,
-// with their time, place, id and type.
+// The extent shrinks when particles die, and the clock may be set back in the same step. Their events keep time,
+// position, id and type.
 TEST_P(EventsGlTest, TheLastOfTheirRowsDieInFullView) {
     constexpr std::uint32_t kMany = 2500;
     const auto dt = static_cast<double>(kDt);
@@ -240,7 +241,7 @@ TEST_P(EventsGlTest, AskingChangesNoParticle) {
     EXPECT_FALSE(requestEvents(*particles_, 0));
 }
 
-// So many that every level of counts is needed, all in one step.
+// Enough hits in one step to need every level of counts.
 TEST_P(EventsGlTest, AQuarterOfAMillionHitsAreAllThere) {
     constexpr std::uint32_t kMany = (1U << 18) + 1000;
     make({.capacity = kMany});
@@ -260,8 +261,8 @@ TEST_P(EventsGlTest, AQuarterOfAMillionHitsAreAllThere) {
     }
 }
 
-// Alone or with others in one request, a list holds what its options ask for, in the order of indices; a short one holds
-// the lowest indices and counts what is missing.
+// Alone or with others in one request, a list contains the events that match its options, in index order. A short list
+// keeps the lowest indices and counts the dropped events.
 TEST_P(EventsGlTest, EachListKeepsWhatItsOptionsAskFor) {
     const auto run = [&](std::span<const EventOptions> lists) {
         make({.capacity = 70'000});

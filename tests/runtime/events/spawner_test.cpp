@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Births by hits and deaths, in closed form.
+// Births caused by hits and deaths, in closed form.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -61,7 +61,7 @@ TEST(Spawner, AHitMakesWhatItSays) {
         EXPECT_EQ(birth.type, 1U);
         EXPECT_EQ(birth.age, 0.0F);
         EXPECT_TRUE(birth.lifetime >= 0.5F && birth.lifetime <= 0.75F);
-        // Half of the velocity along the surface, (1, 2, 0), and on top 2…3 and a quarter of 4 about the normal.
+        // Half of the velocity along the surface, (1, 2, 0), plus 2…3 and a quarter of 4 along the normal.
         const glm::vec3 thrown = birth.velocity - glm::vec3(0.5F, 1.0F, 0.0F);
         const float speed = glm::length(thrown);
         EXPECT_TRUE(speed >= 2.9999F && speed <= 4.0001F) << speed;
@@ -104,7 +104,7 @@ TEST(Spawner, OnlyWhatIsAskedForCounts) {
     EXPECT_EQ(own[0].position.x, 9.0F);
 }
 
-// Births and refusals are all that were due, whatever the limits; the same seed gives the same.
+// Births and refusals add up to all that were due, for any limits. The same seed gives the same births.
 TEST(Spawner, NothingIsLostAboveTheLimits) {
     SpawnSettings settings{.of = {}, .material = {}, .count_min = 2, .count_max = 6};
     std::vector<ParticleEvent> hits;
@@ -130,7 +130,7 @@ TEST(Spawner, NothingIsLostAboveTheLimits) {
     EXPECT_EQ(Spawner(settings, 9).spawn(step, {}, 4321, some), 5000U - 4321U);
 }
 
-// A list that ends behind the last event that can be used.
+// A list that ends after the last usable event.
 TEST(Spawner, AListOfWhatItHeedsMayBeShort) {
     SpawnSettings settings{.of = 1, .min_speed = 2.0F, .material = 4, .count_max = 3, .most = 20};
     Spawner by_all(settings, 9);
@@ -195,7 +195,7 @@ TEST(Spawner, DeathsOfAgeThrowAllRoundOrAlongTheWay) {
     EXPECT_LT(glm::length(thrown() - glm::vec3(0.0F, 1.0F, 0.0F)), 1e-6F);
 }
 
-// An event of a particle that is lost makes nothing that is: it counts as refused.
+// A lost particle's event causes no births: they count as refused.
 TEST(Spawner, WhatIsLostHasNoChildren) {
     const SpawnSettings settings{.of = {}, .material = {}, .count_min = 3, .count_max = 3, .inherit = 1.0F};
     for (const float wrong : {std::nanf(""), std::numeric_limits<float>::infinity()}) {

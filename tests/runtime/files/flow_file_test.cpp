@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Flows from files, and what hostile files are refused with.
+// Flow files, and the errors of hostile ones.
 #include "runtime/files/flow_file.h"
 
 #include <gtest/gtest.h>
@@ -55,7 +55,7 @@ TEST_F(FlowFileTest, ARawVolumeRunsAlongXFirst) {
         EXPECT_EQ(flow.nodes.at(node), glm::vec3(values[node * components], values[node * components + 1],
                                                  components == 3 ? values[node * components + 2] : 0.0F));
 
-        // A byte more, a byte less.
+        // One byte too many, one too few.
         values.push_back(0.0F);
         for (const std::size_t size :
              {values.size() * sizeof(float) - 3, values.size() * sizeof(float) - 5}) {

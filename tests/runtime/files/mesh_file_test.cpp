@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mesh files by hand, good and hostile; and the normals made for them.
+// Hand-written mesh files, valid and hostile; and the normals computed for them.
 #include "runtime/files/mesh_file.h"
 
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ TEST(ObjMesh, ColorsBehindEveryVertex) {
     }
 }
 
-// ImportText has the reader's other errors.
+// ImportText covers the reader's other errors.
 TEST(ObjMesh, Hostile) {
     const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
     expectError(obj(three + "f 1 2\n"), "a.obj: it has no faces");
@@ -111,7 +111,7 @@ TEST(PlyMesh, AsciiWithOtherElements) {
     EXPECT_EQ(mesh.triangles, (Triangles{0, 1, 2, 0, 1, 2, 0, 2, 3}));
 }
 
-/// A number's bytes in either order.
+/// A number's bytes in either byte order.
 template <class T>
 void put(std::string& out, T value, bool big) {
     char bytes[sizeof(T)];
@@ -140,7 +140,7 @@ std::string binaryPly(bool big) {
     return text;
 }
 
-// ImportPly has the reader's other errors.
+// ImportPly covers the reader's other errors.
 TEST(PlyMesh, Hostile) {
     const std::string xyz =
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
@@ -159,7 +159,7 @@ TEST(PlyMesh, Hostile) {
                                       {"3 0 1", "before the counts"}}) {
         expectError(ply(face + text), names);
     }
-    // A count that the file does not hold allocates nothing of that size, and a crowd of empty faces ends at once.
+    // A count beyond the file's size allocates nothing of that size, and many empty faces fail fast.
     std::string many = face;
     many.replace(many.find("vertex 3"), 8, "vertex 20000000");
     expectError(ply(many), "before the counts");
@@ -197,8 +197,8 @@ TEST(MeshFile, ByExtension) {
     std::filesystem::remove(path);
 }
 
-// A cube's corners have three normals each, a flat square's one, and a gentle roof's ridge the mean of both
-// sides.
+// A cube's corners have three normals each, a flat square's corners one, and the ridge of a flat roof has the mean of
+// both sides.
 TEST(MeshNormals, CreasesAreKeptAndCurvesAreSmoothed) {
     PictureMesh cube;
     for (int i = 0; i < 8; ++i) {
@@ -228,7 +228,7 @@ TEST(MeshNormals, CreasesAreKeptAndCurvesAreSmoothed) {
     EXPECT_EQ(withNormals(roof, 0.1F).positions.size(), 8U);
 }
 
-// A tube bends by a quarter: rims stay sharp, and along its side normals turn with the place that they are of.
+// A tube bends by 90°: rims stay sharp, and normals along its side rotate with their positions.
 TEST(MeshNormals, AMovingMeshKeepsItsCreasesAndTurnsItsNormals) {
     constexpr std::uint32_t kRound = 24;
     constexpr std::uint32_t kRings = 9;
@@ -276,8 +276,8 @@ TEST(MeshNormals, AMovingMeshKeepsItsCreasesAndTurnsItsNormals) {
     }
 }
 
-// Three walls, each 50 degrees on from the one before: the first and the last are parted at their common corners, and both go on
-// smoothly into the one between.
+// Three walls, each at 50° to the previous one: the first and the last are split at their common corners, and both are
+// smooth towards the middle one.
 TEST(MeshNormals, AMovingMeshIsAsSmoothAsAtRest) {
     PictureMesh walls;
     walls.positions = {{0.0F, 1.0F, 0.0F}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reader of PNG that the browser has, against libpng.
+// The PNG reader of the web build against libpng.
 #include <gtest/gtest.h>
 #include <png.h>
 
@@ -10,7 +10,7 @@
 
 namespace relief {
 
-/// runtime/web/png_web.cpp, under another name beside libpng's.
+/// The function of runtime/web/png_web.cpp, renamed to coexist with the libpng version.
 Result<RgbaPicture> decodePngWeb(std::span<const std::byte> bytes, std::string_view name);
 
 namespace {
@@ -18,7 +18,7 @@ namespace {
 constexpr std::uint32_t kWidth = 61;
 constexpr std::uint32_t kHeight = 43;
 
-/// Smooth, so that every filter is worth choosing, with some noise.
+/// Smooth samples, so that every filter is used, with some noise.
 std::vector<std::uint8_t> samples(std::size_t bytes) {
     std::mt19937 random(7);
     std::vector<std::uint8_t> out(bytes);
@@ -28,7 +28,8 @@ std::vector<std::uint8_t> samples(std::size_t bytes) {
     return out;
 }
 
-/// By libpng's own encoder. \param format  PNG_FORMAT_…
+/// Encoded by libpng.
+/// \param format  PNG_FORMAT_…
 std::vector<std::byte> encoded(png_uint_32 format) {
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
@@ -94,7 +95,7 @@ TEST(PngWeb, RefusesWhatIsNoWholePng) {
     std::vector<std::byte> bytes = encoded(PNG_FORMAT_RGB);
     EXPECT_FALSE(decodePngWeb({}, "a.png"));
     EXPECT_FALSE(decodePngWeb(std::span(bytes).first(50), "a.png"));
-    bytes[17] = std::byte{1};  // as wide as no picture
+    bytes[17] = std::byte{1};  // wider than any picture
     EXPECT_FALSE(decodePngWeb(bytes, "a.png"));
 }
 

@@ -17,7 +17,8 @@
 
 namespace relief {
 
-/// Sets everything that a pass sets, or that could spoil one, to something else: a careless pass draws nothing, or nonsense.
+/// Sets everything that a pass sets, or that could break one, to another value: a careless pass draws nothing or
+/// garbage.
 class CallerState {
   public:
     CallerState() {

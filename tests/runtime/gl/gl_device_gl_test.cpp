@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Platforms and devices that a context comes from, present and missing; and what goes without a context.
+// Platforms and devices that provide a context, present and missing; and errors without a context.
 #include "runtime/gl/gl_context.h"
 
 #include <epoxy/egl.h>
@@ -48,7 +48,7 @@ TEST_P(GlDeviceTest, ThePlatformIsNamed) {
 
 TEST_P(GlDeviceTest, MissingPlatformsAreNamed) {
     const auto platform = epoxy_eglGetPlatformDisplayEXT;
-    static_cast<void>(eglGetDisplay(EGL_DEFAULT_DISPLAY));  // libepoxy finds it at the first call
+    static_cast<void>(eglGetDisplay(EGL_DEFAULT_DISPLAY));  // libepoxy resolves it at the first call
     const auto real_display = epoxy_eglGetDisplay;
     epoxy_eglGetPlatformDisplayEXT = noPlatform;
     epoxy_eglGetDisplay = noDisplay;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Faults put into the GL: libepoxy's entry points are pointers, replaced for a while by functions that fail.
+// GL fault injection: libepoxy's entry points are pointers, temporarily replaced with functions that fail.
 #include "runtime/air/particle_air.h"
 #include "runtime/bodies/world_textures.h"
 #include "runtime/events/event_recorder.h"
@@ -36,8 +36,8 @@
 namespace relief {
 namespace {
 
-/// Replaces an entry point while it lives. The GL must have been called through it before: libepoxy puts the
-/// driver's function into the pointer at the first call.
+/// Replaces an entry point during its lifetime. The GL must have been called through the entry point before: libepoxy
+/// stores the driver's function in the pointer at the first call.
 template <class Function>
 class Replaced {
   public:
@@ -51,7 +51,7 @@ class Replaced {
     Function original_;
 };
 
-// What the replacements share with the test that runs: they are plain functions.
+// State shared by the replacements, which are plain functions, and the running test.
 int allocations = 0;
 int failing_allocation = -1;
 std::string failed_call;
@@ -127,7 +127,7 @@ GLenum waitFails(GLsync /*sync*/, GLbitfield /*flags*/, GLuint64 /*nanoseconds*/
     return GL_WAIT_FAILED;
 }
 
-/// Counts allocations while it lives, and lets the one numbered failing_allocation fail.
+/// Counts allocations during its lifetime. The one numbered failing_allocation fails.
 class CountedAllocations {
   public:
     CountedAllocations() { start(-1); }
@@ -182,7 +182,7 @@ void expectFails(const Result<void>& done, ErrorCode code, const std::string& pa
     EXPECT_EQ(done.error().message.find('\n'), std::string::npos) << "one line";
 }
 
-/// Everything that takes room on the GPU, once. What it needs of others is made before `work` is called.
+/// An operation that allocates GPU memory. Its prerequisites are created before `work` is called.
 struct Work {
     template <class Make>
     Work(std::string its_name, Make make)
@@ -197,7 +197,7 @@ class GlFaultTest : public GlTest {
         const std::array<Birth, 1> births{Birth{{0.0F, 2.0F, 0.0F}, glm::vec3(0.0F), 100.0F, 0}};
         particles_.spawn(births);
         particles_.step(0.01F);
-        // Every entry point that is replaced below, through to the driver.
+        // Calls every entry point that is replaced below once, so that libepoxy resolves it.
         auto one = required(ParticleSystem::create({.capacity = 1}));
         EXPECT_TRUE(setAir(one, air()));
         EXPECT_TRUE(ParticleSystem::create({.capacity = 1, .path = StepPath::kCompute}));
@@ -256,7 +256,7 @@ class GlFaultTest : public GlTest {
             {"atlas", [=] { return SpriteAtlas::create(atlas, 128, 128, 2, 2); }},
         };
     }
-    /// What is small on every GL, and never beyond a limit.
+    /// Operations that are small on every GL and stay within all limits.
     std::vector<Work> smallWork() {
         const PictureMesh mesh = tetrahedron();
         const auto live = [=]() -> Result<LiveCollider> {
@@ -281,7 +281,7 @@ class GlFaultTest : public GlTest {
                 {"animated mesh", [] { return SkinPass::create(animatedTriangle()); }},
                 {"picture of meshes", picture}};
     }
-    /// The particle fills the middle of the picture.
+    /// The particle fills the centre of the picture.
     Result<void> drawParticles(const std::optional<ColliderView>& collider, StepPath path) {
         glBindFramebuffer(GL_FRAMEBUFFER, frame_.target().framebuffer);
         const std::array<GLfloat, 4> black{0.0F, 0.0F, 0.0F, 1.0F};
@@ -302,7 +302,7 @@ class GlFaultTest : public GlTest {
     ParticleSystem particles_ = required(ParticleSystem::create({.capacity = 100}));
 };
 
-// The first allocation fails, then the second alone, …: each is an error of its own, until all succeed.
+// Only the first allocation fails, then only the second, and so on. Each returns an error, until all succeed.
 TEST_P(GlFaultTest, EveryAllocationThatFailsIsNamed) {
     std::vector<Work> all = allWork();
     for (Work& small : smallWork()) {
@@ -326,7 +326,7 @@ TEST_P(GlFaultTest, EveryAllocationThatFailsIsNamed) {
     }
 }
 
-// The room for tiles is the one allocation that may fail without an error: the GL then draws the particles.
+// Tile memory is the only allocation that may fail without an error: the GL then draws the particles.
 TEST_P(GlFaultTest, ParticlesAreDrawnWhereTilesHaveNoRoom) {
     ASSERT_TRUE(drawParticles(std::nullopt, StepPath::kFragment));
     const std::vector<std::uint8_t> drawn = frame_.read();
@@ -355,7 +355,7 @@ TEST_P(GlFaultTest, ParticlesAreDrawnWhereTilesHaveNoRoom) {
 
 TEST_P(GlFaultTest, EveryTextureAboveTheLimitIsNamedWithBothNumbers) {
     const Replaced integers(epoxy_glGetIntegerv, &getInteger);
-    texture_side = 31;  // of the smallest of them, 32x32 pixels, and of all others
+    texture_side = 31;  // below the smallest texture, 32x32 pixels, and all others
     for (const Work& one : allWork()) {
         SCOPED_TRACE(one.name);
         const Result<void> done = one.work();
@@ -383,7 +383,7 @@ TEST_P(GlFaultTest, AResetIsNamedWhereverSomethingIsReadBack) {
     EXPECT_TRUE(query->evaluate(points));
 }
 
-// A lost context may answer every question for errors with yes.
+// A lost context may return errors forever.
 TEST_P(GlFaultTest, ErrorsWithoutEndEnd) {
     const Replaced errors(epoxy_glGetError, &endlessError);
     forgetGlErrors();
@@ -411,7 +411,7 @@ TEST_P(GlFaultTest, FramebuffersAndShadersThatTheDriverRefuses) {
         const Replaced status(epoxy_glGetShaderiv, &shaderStatus);
         expectFails(outcome(Frame::create(8, 8)), ErrorCode::kFailure, "base/quad.vert");
     }
-    // The driver's own words.
+    // The driver's message is included.
     const auto program = makeProgram("base/quad.vert", "bench/copy_state.frag", "no GLSL at all\n");
     expectFails(outcome(program), ErrorCode::kFailure, "quad.vert does not compile: ");
     expectFails(outcome(program), ErrorCode::kFailure, "syntax error");

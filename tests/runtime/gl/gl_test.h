@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A current OpenGL context for each test, once for OpenGL 3.3 core and once for OpenGL ES 3.0. A test fails,
-// and is not skipped, if there is no context: Mesa's llvmpipe gives one on every machine.
+// A current OpenGL context for each test, once for OpenGL 3.3 core and once for OpenGL ES 3.0. Without a context a test
+// fails; it is never skipped. Mesa's llvmpipe provides one on every machine.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ inline GlApi apiOf(GlApi api) {
     return api;
 }
 
-/// The contexts that the tests of a program share, one for each API, so that drivers start and compile once.
+/// The contexts shared by a program's tests, one per API, so that drivers start and compile only once.
 class SharedGlContexts : public testing::Environment {
   public:
     [[nodiscard]] static SharedGlContexts& instance() {
@@ -35,7 +35,7 @@ class SharedGlContexts : public testing::Environment {
         return *shared;
     }
 
-    /// Makes the context of an API current, with the state of a new one. nullptr: a failed assertion says why.
+    /// Makes the context of an API current, with the state of a new context. Returns nullptr after a failed assertion.
     [[nodiscard]] const GlContext* use(GlApi api) {
         std::unique_ptr<GlContext>& context = contexts_[api];
         if (!context) {
@@ -54,12 +54,12 @@ class SharedGlContexts : public testing::Environment {
         return context.get();
     }
 
-    /// For tests that need a process without a context. The next use() creates another.
+    /// For tests that need a process without a context. The next use() creates a new one.
     void drop() { contexts_.clear(); }
     void TearDown() override { drop(); }
 
   private:
-    /// Undoes what tests themselves set; passes of the product restore their state.
+    /// Resets state set by tests; passes of the library restore their own.
     static void resetState(GlApi api) {
         while (glGetError() != GL_NO_ERROR) {
         }
@@ -120,11 +120,11 @@ class SharedGlContexts : public testing::Environment {
     std::map<GlApi, std::unique_ptr<GlContext>> contexts_;
 };
 
-/// Of tests whose parameter names an API, by apiOf().
+/// For tests whose parameter has an API, returned by apiOf().
 template <class Param>
 class GlTestOf : public testing::TestWithParam<Param> {
   protected:
-    /// The context is current before members of derived fixtures are made.
+    /// The context is current before members of derived fixtures are constructed.
     GlTestOf() : context_(SharedGlContexts::instance().use(apiOf(this->GetParam()))) {
         if (context_ == nullptr) {
             throw std::runtime_error("no context");

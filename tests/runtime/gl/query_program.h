@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Programs of the tests that evaluate a shader of Relief's at the texels of a picture.
+// Programs for tests that evaluate one of Relief's shaders at the texels of a picture.
 #pragma once
 
 #include <string>
@@ -13,7 +13,8 @@
 
 namespace relief {
 
-/// For GlProgram::drawScreen(). \param file  in shaders/, which `text`, a main(), follows.
+/// For GlProgram::drawScreen().
+/// \param file  in shaders/, followed by `text`, a main().
 inline Result<GlProgram> makeQueryProgram(std::string_view file, std::string_view text,
                                           const std::string& defines = {}) {
     const std::string head = std::string(isGles() ? "#version 300 es\n" : "#version 330 core\n") + defines +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How maps are laid out to be drawn to.
+// Layout of maps that are drawn on the GPU.
 #include "runtime/layout/map_layout.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ TEST(TexelLayout, RectanglesLieApartBelowWhatIsPacked) {
         layout.addRectangle(size[0], size[1]);
     }
     ASSERT_TRUE(layout.finish(4096));
-    EXPECT_EQ(layout.width(), 1024);  // 512 wide it would be higher
+    EXPECT_EQ(layout.width(), 1024);  // at width 512 it would be higher
     EXPECT_LE(layout.height(), layout.width());
     std::vector<int> used(static_cast<std::size_t>(layout.width()) *
                           static_cast<std::size_t>(layout.height()));
@@ -37,7 +37,7 @@ TEST(TexelLayout, RectanglesLieApartBelowWhatIsPacked) {
             }
         }
     }
-    EXPECT_FALSE(layout.finish(512));  // the narrowest that holds it is wider
+    EXPECT_FALSE(layout.finish(512));  // needs a wider texture
     TexelLayout none;
     ASSERT_TRUE(none.finish(64));
     EXPECT_EQ(none.height(), 0);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colliders that clips move: vertices and fields against the CPU's poses, and the motion that particles are met with.
+// Colliders animated by clips: vertices and fields against the CPU's poses, and the velocity of surfaces that hit
+// particles.
 #include "runtime/bodies/world_textures.h"
 #include "runtime/live/animated_collider.h"
 
@@ -62,7 +63,8 @@ class AnimatedColliderGlTest : public CollisionTest {
         ASSERT_TRUE(set) << set.error().message;
         show();
     }
-    /// Shows a pose. \return the fraction of points near its mesh that the maps have on the wrong side.
+    /// Shows a pose.
+    /// \return the fraction of wrong points near its mesh.
     double wrongIn(const MeshPose& pose, std::size_t count) {
         showPose(pose);
         const std::vector<glm::uvec3>& triangles = animated_->mesh().triangles;
@@ -88,7 +90,7 @@ class AnimatedColliderGlTest : public CollisionTest {
         EXPECT_LT(inside, count * 3 / 4);
         return static_cast<double>(wrong) / static_cast<double>(count);
     }
-    /// A particle at rest once a clip of a box has met it.
+    /// A particle, initially at rest, after a box animated by a clip has hit it.
     ParticleState metBy(const char* clip, const glm::vec3& half, const glm::vec3& position,
                         const ParticleType& type) {
         makeAnimated(shared(movingBox(half)));
@@ -130,7 +132,7 @@ TEST_P(AnimatedColliderGlTest, VerticesAreThoseOfTheCpu) {
                     << clip.name << " " << time << " " << i;
                 ASSERT_LE(glm::length(pairs[2 * i] - cpu[i]), 2e-6F) << i;
             }
-            // The ends of the tube turn with their joints.
+            // The ends of the tube rotate with their joints.
             const auto angle = static_cast<float>(clip.name == "bend" ? time * std::acos(0.0) : 0.0);
             EXPECT_LE(glm::length(pairs.back() - glm::vec3(-std::sin(angle), std::cos(angle), 0.0F)), 1e-5F);
             EXPECT_LE(glm::length(pairs[1] - glm::vec3(0, 1, 0)), 1e-5F);
@@ -138,11 +140,11 @@ TEST_P(AnimatedColliderGlTest, VerticesAreThoseOfTheCpu) {
     }
 }
 
-// Against the winding number of the posed triangles, far out of the box at rest. RELIEF_ANIMATED names a container of one's own:
-// every frame of every clip, at 30 a second.
+// Against the winding number of the posed triangles, including points far outside the rest box. RELIEF_ANIMATED names a
+// container to test instead: every frame of every clip, at 30 frames per second.
 TEST_P(AnimatedColliderGlTest, InsideIsThatOfThePosedMesh) {
     const Pose body{{3.0F, -1.0F, 0.5F}, glm::angleAxis(0.7F, glm::normalize(glm::vec3(1, 2, 3))), 1.5F};
-    // The tube is a twenty-fifth of the box thick, and half a texel is lost at its silhouettes.
+    // The tube is 1/25 of the box thick, and half a texel is lost at its silhouettes.
     makeAnimated(shared(bendingTube()), body, {.resolution = 768, .room = {}});
     EXPECT_LE(wrongIn(clipPose(animated_->mesh(), "bend", 0.31), 3000), 0.02);
     EXPECT_LE(wrongIn(clipPose(animated_->mesh(), "grow", 1.0), 3000), 0.02);
@@ -161,9 +163,9 @@ TEST_P(AnimatedColliderGlTest, InsideIsThatOfThePosedMesh) {
     }
 }
 
-// Closed forms. A box goes along +x with 1 unit a second: all the motion is that of the box of its maps. Another turns about y
-// with a right angle a second, and its middle stays: the motion is that of its texels, ω × p at p, which carries the end +x
-// towards −z.
+// Closed forms. A box moves along +x with 1 unit per second: all its motion is that of the box of its maps. Another box
+// rotates by 90° per second about y around its fixed centre: the motion is that of its texels, ω × p at p, which
+// carries the end at +x towards −z.
 TEST_P(AnimatedColliderGlTest, AClipThrowsWhatItMeets) {
     const ParticleState pushed = metBy("go", {0.2F, 0.3F, 0.3F}, {0.3F, 0.05F, 0.1F}, {.restitution = 0.5F});
     EXPECT_NEAR(pushed.velocity.x, 1.5F, 0.02F);

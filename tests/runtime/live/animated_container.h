@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A container of an animated mesh, for the tests of what plays it.
+// A container of an animated mesh, for tests that play clips.
 #pragma once
 
 #include "formats/collider.h"
@@ -8,7 +8,7 @@
 
 namespace relief {
 
-/// A tube whose upper half, by triangles, is of another material.
+/// A tube whose upper half, by triangles, has another material.
 inline AnimatedMesh dressedTube(const char* lower, const char* upper) {
     AnimatedMesh mesh = bendingTube(12, 8);
     mesh.materials = {lower, upper};
@@ -19,7 +19,7 @@ inline AnimatedMesh dressedTube(const char* lower, const char* upper) {
     return mesh;
 }
 
-/// Its maps at rest are empty: what plays draws its own.
+/// Its maps at rest are empty, because animated colliders draw their own.
 inline Collider animatedContainer(const AnimatedMesh& mesh) {
     Collider collider = *animatedFrames(poseExtent(mesh).room, 16);
     for (DepthMap& map : collider.maps) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colliders that deform: their maps against the CPU's field of the same texels and against closed forms, the
-// motion that a particle is met with, and a mesh that never stops.
+// Deforming colliders: their maps against the CPU's field of the same texels and against closed forms, the velocity of
+// surfaces that hit particles, and meshes in constant motion.
 #include "runtime/bodies/world_textures.h"
 #include "runtime/live/live_collider.h"
 
@@ -27,7 +27,7 @@ struct Mesh {
     std::vector<glm::uvec3> triangles;
 };
 
-/// \param levels  so often each triangle is cut into four.
+/// \param levels  number of times that each triangle is split into four.
 Mesh box(const glm::vec3& half, int levels = 0) {
     const AnimatedMesh whole = movingBox(half);
     Mesh mesh{whole.positions, whole.triangles};
@@ -111,8 +111,8 @@ std::vector<glm::vec3> randomPoints(std::size_t count, float half) {
     return points;
 }
 
-// What the shader reads from the rectangles is what the CPU says of the same maps rendered one by one and
-// read back; and it is a sphere.
+// The shader's field of the live rectangles matches the CPU's field of the same maps, rendered one by one and read
+// back. The shape is a sphere.
 TEST_P(LiveColliderGlTest, MapsAreThoseOfAStaticBakeOfTheMesh) {
     const Mesh mesh = sphere(0.5F);
     auto gpu_mesh = GpuMesh::create(mesh.positions, mesh.triangles);
@@ -135,19 +135,19 @@ TEST_P(LiveColliderGlTest, MapsAreThoseOfAStaticBakeOfTheMesh) {
             (cpu.distance >= 1e29F || std::abs(cpu.distance - live[i].distance) < 1.2F / 65534.0F);
         other += same ? 0 : 1;
         inside += live[i].inside() ? 1 : 0;
-        // To a texel's sagitta, where no silhouette is near.
+        // To within a texel's sagitta, away from silhouettes.
         const float truth = glm::length(points[i]) - 0.5F;
         if (std::abs(truth) > 0.02F) {
             EXPECT_EQ(live[i].inside(), truth < 0.0F) << i << " " << truth;
         }
     }
-    EXPECT_LE(other, 20U);  // on the border of two texels the CPU may take the other
+    EXPECT_LE(other, 20U);  // the CPU may select the other texel at a border
     EXPECT_GT(inside, 2000U);
 }
 
-// Closed form: a plate that rises with speed w meets a particle at rest, which leaves with (1 + e) w.
+// Closed form: a plate that rises with speed w hits a particle at rest, which leaves with (1 + e) w.
 TEST_P(LiveColliderGlTest, ARisingPlateThrowsWhatItMeets) {
-    constexpr float kSpeed = 0.6F;  // a hundredth of a unit a step
+    constexpr float kSpeed = 0.6F;  // 0.01 units per step
     struct Case {
         float restitution;
         Integrator integrator;
@@ -168,7 +168,7 @@ TEST_P(LiveColliderGlTest, ARisingPlateThrowsWhatItMeets) {
             particles_->step(kDt);
             EXPECT_EQ(state().at(0).collisions > 0, step == 6) << step;
         }
-        // Without its motion the same plate has caught the particle and moves it nowhere.
+        // Without motion, the same plate catches the particle and does not move it.
         const ParticleState after = state().at(0);
         EXPECT_EQ(after.contact, shows_motion ? Contact::kCollided : Contact::kCaught);
         EXPECT_NEAR(after.velocity.y, shows_motion ? (1.0F + restitution) * kSpeed : 0.0F, 0.01F * kSpeed);
@@ -176,7 +176,7 @@ TEST_P(LiveColliderGlTest, ARisingPlateThrowsWhatItMeets) {
     }
 }
 
-// The same with a pose: the plate stands upright, twice as large, and pushes along −x.
+// The same with a pose: the plate is upright, scaled by 2, and pushes along −x.
 TEST_P(LiveColliderGlTest, ThePoseTurnsTheMotionToo) {
     makeLive(plate_, cube(0.6F), 128,
              {{0.3F, 1.0F, 0.0F}, turn({0.0F, 0.0F, 1.0F}, glm::radians(90.0F)), 2.0F});
@@ -220,8 +220,9 @@ TEST_P(LiveColliderGlTest, WhatStoppedGoesWithTheSurface) {
     EXPECT_LE(glm::length(state().at(0).position - begin - way), 1e-4F);
 }
 
-// Drops at rest in the way of a box that is shifted, grows or turns by its vertices. Each update draws its silhouette into other
-// texels, up to half a texel off; every drop that the box passes over by more than a texel's diagonal is a hit all the same.
+// Drops at rest in the path of a box that is translated, scaled or rotated by its vertices. Each update draws its
+// silhouette into other texels, up to half a texel off. Every drop that the box passes over by more than a texel's
+// diagonal is still hit.
 TEST_P(LiveColliderGlTest, WhatTheSurfacePassesOverIsHit) {
     constexpr int kSteps = 12;
     constexpr std::uint32_t kDrops = 2048;
@@ -275,7 +276,7 @@ TEST_P(LiveColliderGlTest, WhatTheSurfacePassesOverIsHit) {
     }
 }
 
-// Positions from a span, and from a caller's own buffer at an offset, are the same, whatever the caller's state, which is kept.
+// Positions from a span equal those from a caller's buffer with an offset, for any caller state, which is kept.
 TEST_P(LiveColliderGlTest, PositionsComeFromTheCallersBuffer) {
     const Mesh mesh = sphere(0.3F);
     const std::vector<glm::vec3> points = randomPoints(5000, 0.6F);
@@ -303,7 +304,7 @@ TEST_P(LiveColliderGlTest, PositionsComeFromTheCallersBuffer) {
     }
 }
 
-// A live body beside a static one, of another layout and of the same: each is where it would be alone.
+// A live body beside a static one, with another layout and with the same: each has the field that it has on its own.
 TEST_P(LiveColliderGlTest, StandsBesideStaticBodies) {
     const Mesh mesh = sphere(0.3F);
     auto live = LiveCollider::create(mesh.positions, mesh.triangles, liveFrames(cube(0.5F), 64).value());

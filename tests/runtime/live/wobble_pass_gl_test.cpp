@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A wobble by transform feedback against its formula; the caller's state.
+// The wobble by transform feedback against its formula; the caller's state.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -36,7 +36,7 @@ Points somePoints(std::size_t count) {
 
 constexpr Wobble kSome{.amplitude = 0.2F, .frequency = 0.9F, .phase = 0.4F, .wavelength = 0.8F};
 
-/// The angle of the sine along an axis, by the formula of wobble_pass.h.
+/// The sine's phase along an axis, by the formula of wobble_pass.h.
 double phaseAt(int axis, double time, float coordinate) {
     const double rates[3] = {1.0, 1.25, 0.8};
     return 2.0 * std::numbers::pi *
@@ -80,11 +80,11 @@ TEST_P(WobblePassGlTest, FollowsItsFormulaAndKeepsTheCallersState) {
             moved = std::max(moved, glm::length(gpu[i] - points.positions[i]));
         }
     }
-    EXPECT_GT(moved, 0.05F);  // it does something
+    EXPECT_GT(moved, 0.05F);  // the vertices do move
 }
 
 TEST_P(WobblePassGlTest, NormalsAreThoseOfTheMovedSurface) {
-    // The plane z = 0 becomes z = f(x, y) = amplitude/3 · Σ sin(…), of normal (-df/dx, -df/dy, 1).
+    // The plane z = 0 becomes z = f(x, y) = amplitude/3 · Σ sin(…), with normal (-df/dx, -df/dy, 1).
     Points points;
     std::vector<glm::vec3> wanted;
     const double time = 0.3;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arguments that are refused: the CPU decides alone, so one API is enough.
+// Rejected arguments. Only the CPU validates, so one API is enough.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -52,7 +52,7 @@ TEST_P(ArgumentsGlTest, SystemsOutOfRange) {
         EXPECT_TRUE(refused(ParticleSystem::create(onPath(options))));
     }
     ASSERT_TRUE(particles_->setCollider(nullptr));
-    ASSERT_TRUE(particles_->step(0.1F));  // nobody there
+    ASSERT_TRUE(particles_->step(0.1F));  // no particles
     EXPECT_EQ(particles_->counts().alive, 0U);
 }
 
@@ -132,7 +132,7 @@ TEST_P(ArgumentsGlTest, Events) {
     EXPECT_FALSE(requestEvents(*particles_, 0)) << "more lists than there is room for";
 }
 
-// Events tell the names of 254 materials apart.
+// Events can distinguish 254 material names.
 TEST_P(ArgumentsGlTest, MoreMaterialsThanEventsCanTellApart) {
     std::vector<Collider> colliders(2, boxCollider());
     std::vector<ColliderBody> bodies;
@@ -145,7 +145,7 @@ TEST_P(ArgumentsGlTest, MoreMaterialsThanEventsCanTellApart) {
     }
     collideWith(WorldTextures::create(bodies));
     EXPECT_TRUE(refused(setEvents(*particles_, EventOptions{}), ErrorCode::kLimit));
-    EXPECT_TRUE(particles_->step(kDt));  // as it was
+    EXPECT_TRUE(particles_->step(kDt));  // unchanged and usable
     EXPECT_FALSE(requestEvents(*particles_, 1));
 }
 

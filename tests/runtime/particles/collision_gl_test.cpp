@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Collision beyond the paper's single body: poses, motion, types, Verlet, swept steps, rest. Closed forms,
-// in OpenGL 3.3 and in OpenGL ES 3.0. particle_system_gl_test.cpp has the CPU's step particle by particle.
+// Collision beyond the paper's single body: poses, motion, types, Verlet, swept steps, rest. Closed forms in OpenGL 3.3
+// and OpenGL ES 3.0. particle_system_gl_test.cpp compares with the CPU's step for each particle.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ std::string nameOf(Integrator integrator, float sweep = 0.0F) {
 
 class CollisionGlTest : public CollisionTest {
   protected:
-    /// One particle of each type at a place, at rest.
+    /// One particle of each type at a position, at rest.
     void spawnEach(std::uint32_t types, const glm::vec3& place) {
         spawnMany(types, [&](std::uint32_t i) { return Birth{place, glm::vec3(0.0F), 1000.0F, i}; });
     }
@@ -43,8 +43,8 @@ class CollisionGlTest : public CollisionTest {
 };
 RELIEF_INSTANTIATE_STEP_TESTS(CollisionGlTest);
 
-// A ball that flies at a box touches its faces, edges and corners with its own surface: beyond an edge of the
-// maps' volumes no map sees anything, and yet the edge is there.
+// A ball that flies at a box touches its faces, edges and corners with its own surface. No map has data beyond an edge
+// of the volumes, but the edge must still be hit.
 TEST_P(CollisionGlTest, BallsTouchEdgesAndCorners) {
     constexpr float kRadius = 0.1F;
     make({.capacity = 4000});
@@ -71,8 +71,8 @@ TEST_P(CollisionGlTest, BallsTouchEdgesAndCorners) {
     EXPECT_LE(nearerThan(0.7F * kRadius), 4) << "a texel's rim may hide one";
 }
 
-// A ball that lies a little in a floor and rolls into a wall bounces off the wall as its type says: what it touches
-// elsewhere does not make it one that the wall has caught, which would come back as fast as it came.
+// A ball that lies slightly below a floor and rolls into a wall bounces off the wall according to its type. Its floor
+// contact must not mark it as caught by the wall, which would return it at full speed.
 TEST_P(CollisionGlTest, ABallOnAFloorBouncesOffAWall) {
     constexpr float kRadius = 0.1F;
     const Collider corner =
@@ -86,7 +86,7 @@ TEST_P(CollisionGlTest, ABallOnAFloorBouncesOffAWall) {
         const ColliderBody body{&corner, pose};
         collideWith(posed ? WorldTextures::create(std::span(&body, 1)) : WorldTextures::create(corner));
         setType({.radius = pose.scale * kRadius, .restitution = 0.5F});
-        // 0.01 in the floor, and at the wall after a step and a half.
+        // 0.01 below the floor, and at the wall after a step and a half.
         const glm::vec3 at(0.5F - kRadius - 1.5F * 0.03F, kRadius - 0.01F, 0.05F);
         EXPECT_TRUE(particles_->setForces({}));
         spawnOne({pose.position + turned(at), turned({0.03F / kDt, 0.0F, 0.0F}), 100.0F, 0});
@@ -118,7 +118,7 @@ TEST_P(CollisionGlTest, EachTypeReactsInItsOwnWay) {
         EXPECT_EQ(after[1].velocity, glm::vec3(0.0F));
         EXPECT_EQ(after[1].contact, Contact::kStopped);
         EXPECT_LT(glm::length(after[2].velocity - glm::vec3(0.5F, 0.0F, 0.0F)), 1e-5F);
-        // The place of the dead is free again at the end of its lifetime, and no sooner.
+        // A dead particle's index is free again at the end of its lifetime, not earlier.
         EXPECT_EQ(particles_->counts().alive, 4U);
         step(12);
         EXPECT_EQ(state().at(1).position, after[1].position);
@@ -153,7 +153,7 @@ TEST_P(CollisionGlTest, ATypeGoesThroughWhatItDoesNotCollideWith) {
             const float ground = -1.0F + radius;
             constexpr float kFalls = -5.0F;
             constexpr float kAny = 0.0F;
-            // What is inside of a body that it does not meet is not caught.
+            // Particles inside an excluded body are not caught.
             const std::array<float, 12> wanted{top,    ground, top,  kFalls, ground, ground,
                                                kFalls, kFalls, kAny, ground, kAny,   kFalls};
             const std::vector<float> y = heights();
@@ -167,7 +167,7 @@ TEST_P(CollisionGlTest, ATypeGoesThroughWhatItDoesNotCollideWith) {
     }
 }
 
-// Three shelves above each other, and a mask for each of their sets: what falls stops at the highest of its own.
+// Three shelves above each other, and a mask for each subset: particles stop at the highest shelf in their mask.
 TEST_P(CollisionGlTest, MasksOfSeveralBodies) {
     const Collider box = boxCollider();
     std::vector<ColliderBody> bodies;
@@ -184,7 +184,7 @@ TEST_P(CollisionGlTest, MasksOfSeveralBodies) {
     collideWith(WorldTextures::create(bodies));
     ASSERT_TRUE(particles_->setTypes(types));
     EXPECT_TRUE(particles_->setForces({{0.0F, -9.81F, 0.0F}, {}, 0.0F}));
-    EXPECT_TRUE(particles_->setGround(-1.0F));  // nobody's
+    EXPECT_TRUE(particles_->setGround(-1.0F));  // in no mask
     spawnEach(8, {0.1F, 2.5F, 0.0F});
     step(150);
     const std::vector<float> y = heights();
@@ -214,8 +214,8 @@ TEST_P(CollisionGlTest, ARunMayBeginBeforeTimeZero) {
     EXPECT_NEAR(of[0][0].age, of[1][0].age, 1e-6F);
 }
 
-// Snow on a turning, travelling body stays where it is on that body, even on the last of many: the number of the body
-// comes through the texture of either integrator.
+// Snow on a rotating, moving body keeps its position on that body, even on the last of many: the body index passes
+// through the texture of either integrator.
 TEST_P(CollisionGlTest, WhatStoppedOnABodyGoesWithIt) {
     const Collider box = boxCollider();
     const auto poseAt = [](float t) {
@@ -250,7 +250,7 @@ TEST_P(CollisionGlTest, WhatStoppedOnABodyGoesWithIt) {
             for (std::size_t i = 0; i < after.size(); ++i) {
                 ASSERT_EQ(after[i].contact, Contact::kStopped);
                 ASSERT_EQ(after[i].collisions, 1U);
-                // 60 steps of a few roundings each.
+                // 60 steps with a few roundings each.
                 ASSERT_LT(glm::length(toObject(poses.back(), after[i].position) -
                                       toObject(poseAt(0.0F), before[i].position)),
                           1e-4F);
@@ -278,8 +278,8 @@ TEST_P(CollisionGlTest, WhatStoppedOnABodyThatIsGoneStays) {
     EXPECT_EQ(state().at(0).velocity, glm::vec3(0.0F));
 }
 
-// The surface's own velocity enters the reaction: a wall that moves at w gives a particle at rest (1 + ε) w. It also
-// overtakes what slides along it, which a sweep may not keep from being carried for the whole of the step.
+// The surface velocity is part of the reaction: a wall that moves at w gives a particle at rest (1 + ε) w. The wall
+// also overtakes particles that slide along it; a sweep must carry them for the whole step.
 TEST_P(CollisionGlTest, AMovingWallPushes) {
     constexpr float kSpeed = 1.2F;
     const Collider box = boxCollider();
@@ -314,8 +314,7 @@ TEST_P(CollisionGlTest, AMovingWallPushes) {
     }
 }
 
-/// A closed hollow box: walls of 0.02 about a cavity of half side 0.48, seen from without and from its
-/// middle.
+/// A closed hollow box: walls of 0.02 around a cavity of half side 0.48, seen from outside and from its centre.
 Collider hollowBox() {
     constexpr double kOut = 0.5;
     constexpr double kIn = 0.48;
@@ -334,8 +333,8 @@ Collider hollowBox() {
     return collider;
 }
 
-// Nothing gets through a closed body that is thicker than the sweep, at any speed; without a sweep most does.
-// With RELIEF_SOAK in the environment a million particles take a thousand steps.
+// No particle passes through a closed body that is thicker than the sweep's step, at any speed. Without a sweep most
+// do. With RELIEF_SOAK in the environment a million particles run a thousand steps.
 TEST_P(CollisionGlTest, ASweptStepNeverTunnels) {
     const bool soak = std::getenv("RELIEF_SOAK") != nullptr;
     const std::uint32_t count = soak ? 1'000'000 : 2000;
@@ -358,8 +357,8 @@ TEST_P(CollisionGlTest, ASweptStepNeverTunnels) {
         for (int i = 0; i < steps; ++i) {
             step();
             if (i % 64 == 0) {
-                // Without it the first read after 700 steps and more gave zeros on an NVIDIA driver (580),
-                // and the second the truth; why is not known.
+                // Without this, the first read after 700 or more steps returned zeros on an NVIDIA driver (580), and
+                // the second the right values. The cause is unknown.
                 glFinish();
             }
         }
@@ -379,7 +378,7 @@ TEST_P(CollisionGlTest, ASweptStepNeverTunnels) {
     }
 }
 
-// The velocity of Verlet is the way of the last step: a swept bounce must not shorten or turn it.
+// The velocity of Verlet is the displacement of the last step: a swept bounce must not shorten or rotate it.
 TEST_P(CollisionGlTest, ASweptBounceKeepsTheVelocity) {
     for (const Integrator integrator : kIntegrators) {
         SCOPED_TRACE(nameOf(integrator));
@@ -387,15 +386,15 @@ TEST_P(CollisionGlTest, ASweptBounceKeepsTheVelocity) {
         EXPECT_TRUE(particles_->setGround(0.0F));
         EXPECT_TRUE(particles_->setType({.restitution = 1.0F}));
         ASSERT_TRUE(particles_->setSweep(0.005F));
-        spawnOne({{0.0F, 0.43F, 0.0F}, {0.5F, -6.0F, 0.0F}, 100.0F, 0});  // 0.1 a step: 20 pieces
+        spawnOne({{0.0F, 0.43F, 0.0F}, {0.5F, -6.0F, 0.0F}, 100.0F, 0});  // 0.1 per step: 20 pieces
         step(8);
         EXPECT_LT(glm::length(state().at(0).velocity - glm::vec3(0.5F, 6.0F, 0.0F)), 1e-3F);
         EXPECT_EQ(state().at(0).collisions, 1U);
     }
 }
 
-// What bounces and slides comes to rest, whatever gravity its type has: no bit changes for a thousand steps, and
-// nothing creeps into the floor. A type that is pushed away lies still under the slab.
+// Particles that bounce and slide come to rest under any gravity: no bit changes for a thousand steps, and nothing
+// creeps into the floor. A type with upward gravity rests under the slab.
 TEST_P(CollisionGlTest, WhatBouncesComesToRest) {
     const Collider slab = analytic::frontBackCollider(analytic::box({-2.0, -0.5, -2.0}, {2.0, 0.0, 2.0}), 64);
     std::vector<ParticleType> types(3, ParticleType{.restitution = 0.6F, .friction = 0.3F});
@@ -431,8 +430,8 @@ TEST_P(CollisionGlTest, WhatBouncesComesToRest) {
     }
 }
 
-// What a plain state gives, a hostile one gives as well, and keeps: with a swept collider, whose compute shader uses
-// storage, with a body that moves, in a flow, and with events read back.
+// Results do not depend on the caller's GL state, which is kept: with a swept collider, whose compute shader uses
+// storage buffers, a moving body, a flow, and events read back.
 TEST_P(CollisionGlTest, TheCallersStateIsKeptAndDoesNoHarm) {
     const Collider box = boxCollider();
     AirSettings air;
@@ -463,7 +462,7 @@ TEST_P(CollisionGlTest, TheCallersStateIsKeptAndDoesNoHarm) {
                 collideWith(ColliderBody{&box, {}});
                 setPose({{0.1F, 0.1F, 0.0F}});
                 check("setPoses");
-                // The system is moved: what its pass points to stays.
+                // Moving the system must not move what its pass points to.
                 particles_ = std::make_unique<ParticleSystem>(std::move(*particles_));
             }
             step();
@@ -484,7 +483,7 @@ TEST_P(CollisionGlTest, TheCallersStateIsKeptAndDoesNoHarm) {
     EXPECT_EQ(run([&](const char* call) { caller.expectKept(call); }), plain);
 }
 
-// New numbers alone need no new program, for compilers take their time.
+// New values must not trigger a compilation, because compilers are slow.
 TEST_P(CollisionGlTest, NumbersDoNotCompile) {
     const auto programs = [] {
         std::vector<GLuint> names;
@@ -507,7 +506,7 @@ TEST_P(CollisionGlTest, NumbersDoNotCompile) {
     EXPECT_EQ(programs(), before);
     ASSERT_TRUE(particles_->setSweep(0.0F));
     EXPECT_NE(programs(), before);
-    // And yet they count.
+    // The new values are used.
     spawnOne({{0.0F, 0.01F, 0.0F}, {0.0F, -1.0F, 0.0F}, 100.0F, 0});
     step();
     EXPECT_EQ(state().at(0).velocity.y, 1.0F);

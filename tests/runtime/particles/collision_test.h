@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A particle system among colliders, for the tests of collision.
+// A particle system with colliders, for collision tests.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ class CollisionTest : public StepGlTest {
     void setType(const ParticleType& type) { ASSERT_TRUE(particles_->setTypes(std::span(&type, 1))); }
     void setPose(const Pose& pose) { textures_->setPoses(std::span(&pose, 1)); }
     [[nodiscard]] std::vector<ParticleState> state() const { return required(particles_->readState()); }
-    /// `birth` makes each of them.
+    /// Spawns particles created by `birth`.
     void spawnMany(std::uint32_t count, const std::function<Birth(std::uint32_t)>& birth) {
         std::vector<Birth> births;
         for (std::uint32_t i = 0; i < count; ++i) {
@@ -62,7 +62,7 @@ class CollisionTest : public StepGlTest {
             ASSERT_TRUE(particles_->step(kDt));
         }
     }
-    /// The events of the last step.
+    /// Requests and returns the events of the last step.
     StepEvents takeEvents(std::uint64_t tag = 0) {
         EXPECT_TRUE(requestEvents(*particles_, tag));
         return required(waitEvents(*particles_)).value();

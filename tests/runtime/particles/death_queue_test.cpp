@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The calendar of deaths against a sorted multimap, which is slow and plainly right.
+// Compares the death queue with a sorted multimap, which is slow but simple.
 #include "runtime/particles/death_queue.h"
 
 #include <gtest/gtest.h>
@@ -23,13 +23,13 @@ std::vector<std::uint32_t> pop(DeathQueue& queue, float now) {
 
 struct Pace {
     const char* name;
-    float dt_min, dt_max;  // seconds from step to step
+    float dt_min, dt_max;  // seconds between steps
     float life_max;
 };
 
 class DeathQueueRun : public testing::TestWithParam<Pace> {};
 
-// Breaks with a day forgotten, a turn too early, a block lost or taken twice.
+// Fails if a day is skipped or opened a turn too early, or a block is lost or used twice.
 TEST_P(DeathQueueRun, AgreesWithASortedReference) {
     const Pace& run = GetParam();
     DeathQueue queue;
@@ -39,10 +39,10 @@ TEST_P(DeathQueueRun, AgreesWithASortedReference) {
     std::uint32_t next = 0;
     std::size_t died = 0;
     for (int step = 0; step < 4000; ++step) {
-        // In waves, so that blocks go back to the pool and out again.
+        // In waves, so that blocks are returned to the pool and reused.
         const std::uint32_t births = step / 500 % 2 == 0 ? random.below(40) : 0;
         for (std::uint32_t i = 0; i < births; ++i) {
-            // Some are overdue, and many fall on the same moment.
+            // Some are overdue, and many coincide.
             const float life = random.below(8) == 0 ? -1.0F : random.between(0.0F, run.life_max);
             const float time = random.below(3) == 0 ? now + 0.25F * run.life_max : now + life;
             queue.push(time, next);
@@ -72,8 +72,8 @@ TEST_P(DeathQueueRun, AgreesWithASortedReference) {
     EXPECT_GT(died, 10'000U);
 }
 
-// Steps far below a day, of several days, beyond a whole turn of 64 s; lives within a day, a turn and
-// several.
+// Steps far shorter than a day, as long as several days, and longer than a whole turn of 64 s. Lifetimes within a day,
+// a turn and several turns.
 INSTANTIATE_TEST_SUITE_P(Paces, DeathQueueRun,
                          testing::Values(Pace{"Fine", 1e-5F, 2e-3F, 0.01F},
                                          Pace{"Usual", 1 / 60.0F, 1 / 60.0F, 3.0F},
@@ -95,7 +95,7 @@ TEST(DeathQueue, WhatIsNeverDueHidesNothingThatIs) {
     queue.push(std::numeric_limits<float>::quiet_NaN(), 1);
     queue.push(std::numeric_limits<float>::infinity(), 2);
     queue.push(3e38F, 3);
-    queue.push(64.0F, 4);  // the day that the others wait on, too
+    queue.push(64.0F, 4);  // on the same day as the others
     queue.push(-5.0F, 5);
     queue.push(-std::numeric_limits<float>::infinity(), 6);
     EXPECT_EQ(pop(queue, 0.0F), (std::vector<std::uint32_t>{5, 6}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where, which way, how fast and when an emitter gives birth: against closed forms, for fixed seeds.
+// Position, direction, speed and time of births, against closed forms for fixed seeds.
 #include "runtime/particles/emitter.h"
 #include "runtime/births/emitter_motion.h"
 
@@ -163,7 +163,7 @@ TEST(Emitter, PointsAreChosenEvenlyAndTheirNormalsFollowed) {
     EXPECT_LT(test::chiSquare(hits, std::vector<double>(kPoints, 1.0)), test::kChiSquareMax);
 }
 
-// Without a direction the cone stands on the surface.
+// Without a direction the cone's axis is the surface normal.
 TEST(Emitter, AimFollowsTheNormalOfItsShape) {
     for (const EmitterShape shape : {EmitterShape::kSphere, EmitterShape::kShell, EmitterShape::kDisc}) {
         EmitterSettings settings = round(shape);
@@ -178,7 +178,7 @@ TEST(Emitter, AimFollowsTheNormalOfItsShape) {
             ASSERT_GE(dotOf(birth.velocity, normal), least);
             mean += dotOf(birth.velocity, normal) / 1000.0;
         }
-        EXPECT_LT(mean, 0.5 * (1.0 + least) + 0.002);  // and fills it
+        EXPECT_LT(mean, 0.5 * (1.0 + least) + 0.002);  // and fills the cone
     }
 }
 
@@ -201,7 +201,7 @@ TEST(Emitter, FirstBirthIsPinned) {
     EXPECT_EQ(burstOf(snow(), 1).at(0).position.x, (1.0F - x) * -1.0F + x * 3.0F);
 }
 
-/// A fountain with all there is: bursts that fall between and onto births by rate.
+/// A fountain with all settings: bursts between and at births by rate.
 EmitterSettings fountain() {
     EmitterSettings settings = round(EmitterShape::kSphere);
     settings.start = 0.5;
@@ -215,7 +215,7 @@ EmitterSettings fountain() {
 }
 
 TEST(Emitter, CountsAreThoseOfTheClosedForm) {
-    for (const int rate : {16, 60}) {  // steps a second; sixty give exactly one second's births all the same
+    for (const int rate : {16, 60}) {  // steps per second; sixty also give exactly one second's births
         Emitter emitter(fountain(), 1);
         std::vector<Birth> births;
         for (int step = 1; step <= 4 * rate; ++step) {
@@ -224,7 +224,7 @@ TEST(Emitter, CountsAreThoseOfTheClosedForm) {
             if (rate == 60 && step % 30 != 0) {
                 continue;
             }
-            // Six bursts, at 0 … 1.875; the one at 2.25 would begin as the duration ends.
+            // Six bursts, at 0 … 1.875; the one at 2.25 would start at the end of the duration.
             const double bursts = s < 0.0 ? 0.0 : std::min(std::floor(s / 0.375) + 1.0, 6.0);
             ASSERT_EQ(births.size(),
                       static_cast<std::size_t>(70.0 * bursts + std::floor(1000.0 * std::max(s, 0.0))))
@@ -254,7 +254,7 @@ TEST(Emitter, BirthsAreTheSameHoweverTimeIsCut) {
     EXPECT_NE(burstOf(snow(), 1, 4).at(0).position, burstOf(snow(), 1, 3).at(0).position);
 }
 
-// Birth n lives from n / rate on: at the end of its step that is its age, bursts are born at once.
+// Birth n happens at n / rate; its age is the time since then at the end of its step. Bursts happen at once.
 TEST(Emitter, AgesSpreadBirthsOverTheStep) {
     EmitterSettings settings = fountain();
     settings.burst = 0;
@@ -365,11 +365,11 @@ TEST(Emitter, CheckNamesTheWrongSetting) {
     }
 }
 
-// Emitters that move: births lie where the emitter was at their own moment, and take on a share of its velocity.
+// Moving emitters: births are placed with the emitter's pose at their own time, and inherit a fraction of its velocity.
 constexpr float kPi = std::numbers::pi_v<float>;
 const glm::vec3 kUp(0.0F, 1.0F, 0.0F);
 
-/// Half a turn about y in 4 s, and 8 along x.
+/// Rotates by 180° about y and moves by 8 along x, in 4 s.
 std::vector<PoseKey> spin() {
     return {{0.0, {}},
             {2.0, {{4.0F, 0.0F, 0.0F}, glm::angleAxis(0.5F * kPi, kUp), 1.0F}},
@@ -386,7 +386,7 @@ TEST(EmitterMotion, EachBirthIsCarriedAtItsOwnMoment) {
     std::vector<Birth> births(2, Birth{{1.0F, 0.5F, 0.0F}, {0.0F, 0.0F, 3.0F}});
     births[1].age = 1.0F;
     carry(motion, 2.0, births);
-    // At 2 s: a quarter about y takes x to -z, and z to x.
+    // At 2 s: a quarter turn about y maps x to -z, and z to x.
     expectNear(births[0].position, {4.0F, 0.5F, -1.0F}, 1e-5F, "place");
     expectNear(births[0].velocity, {3.0F, 0.0F, 0.0F}, 1e-5F, "velocity");
     const float h = std::sqrt(0.5F);
@@ -394,7 +394,7 @@ TEST(EmitterMotion, EachBirthIsCarriedAtItsOwnMoment) {
     expectNear(births[1].velocity, {3.0F * h, 0.0F, 3.0F * h}, 1e-5F, "velocity a second before");
 }
 
-// Both ways one upon the other: positions by hand, velocities by differences of them.
+// Composes both motions: positions by hand, velocities by their differences.
 TEST(EmitterMotion, AnAttachedEmitterGoesWithItsBody) {
     EmitterMotion motion;
     motion.keys = spin();
@@ -414,7 +414,7 @@ TEST(EmitterMotion, AnAttachedEmitterGoesWithItsBody) {
         const glm::vec3 measured = (at(time + 1e-3).position - at(time - 1e-3).position) / 2e-3F;
         expectNear(at(time).velocity, measured, 0.05F, "velocity");
     }
-    // The scale of the body is one of places, not of speeds.
+    // The body's scale applies to positions, not to velocities.
     motion.inherit = 0.0F;
     Birth birth{{}, {0.0F, 7.0F, 0.0F}};
     carry(motion, 2.0, std::span(&birth, 1));

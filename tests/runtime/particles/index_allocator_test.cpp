@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The allocator against a std::set of free indices, which is slow and plainly right.
+// Compares the allocator with a std::set of free indices, which is slow but simple.
 #include "runtime/particles/index_allocator.h"
 
 #include <gtest/gtest.h>
@@ -14,8 +14,8 @@ namespace {
 
 class IndexAllocatorCapacity : public testing::TestWithParam<std::uint32_t> {};
 
-// Breaks with any slip in a summary bit, at any level: the capacities stand just below, at and above a full
-// word of each level of the tree.
+// Fails on any wrong summary bit at any level: the capacities are just below, at and above a full word of each level of
+// the tree.
 TEST_P(IndexAllocatorCapacity, AgreesWithASetOverManyRandomCalls) {
     const std::uint32_t capacity = GetParam();
     IndexAllocator allocator(capacity);
@@ -28,7 +28,7 @@ TEST_P(IndexAllocatorCapacity, AgreesWithASetOverManyRandomCalls) {
     EXPECT_FALSE(allocator.release(0));
     Pcg32 random(capacity);
     for (int call = 0; call < 100'000; ++call) {
-        // Fills and empties in waves, so that both ends are met.
+        // Fills and empties in waves, so that both extremes are reached.
         const bool fill = (call / 20'000) % 2 == 0;
         if (random.uniform() < (fill ? 0.7F : 0.3F)) {
             const auto index = allocator.acquire();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The simulation on the GPU, in OpenGL 3.3 and in OpenGL ES 3.0: against a CPU step particle by particle,
-// against closed forms, and for what must hold whatever the input.
+// The GPU simulation in OpenGL 3.3 and OpenGL ES 3.0: against a CPU step for each particle, against closed forms, and
+// for invariants of any input.
 #include "runtime/air/particle_air.h"
 #include "runtime/bodies/world_textures.h"
 #include "runtime/particles/particle_system.h"
@@ -29,7 +29,8 @@ Birth birthAt(const glm::vec3& position, const glm::vec3& velocity = glm::vec3(0
     return {position, velocity, lifetime, 0};
 }
 
-/// Two bodies, seen by maps of every format and compare, a cube from inside one of them and one from free space.
+/// Two bodies in maps of every format and compare, including a cube map from inside one of them and one from free
+/// space.
 Collider mixedCollider() {
     const analytic::Shape shape = analytic::unite(
         {analytic::sphere({0.0, 0.1, 0.0}, 0.45), analytic::box({-0.9, -0.5, -0.3}, {-0.6, 0.2, 0.35})});
@@ -48,7 +49,7 @@ Collider mixedCollider() {
     return collider;
 }
 
-/// Three bodies on their ways at time t.
+/// Three moving bodies at time t.
 std::array<Pose, 3> posesAt(float t) {
     return {Pose{{0.4F * std::sin(t), 0.0F, 0.0F}, turn({1.0F, 2.0F, 0.5F}, 0.8F * t), 1.0F},
             Pose{{-0.8F, 0.3F * t, 0.2F}, turn({0.0F, 0.0F, 1.0F}, 2.0F * t), 0.7F},
@@ -61,14 +62,13 @@ class ParticleSystemGlTest : public CollisionTest {
 };
 RELIEF_INSTANTIATE_STEP_TESTS(ParticleSystemGlTest);
 
-// Every particle of every step is compared with the CPU's step from the GPU's own previous state, and every index with the CPU's
-// own bookkeeping of births and deaths.
-//
-// Tolerance: a GPU may fuse multiply and add, and takes 2.5 ulp for a division and 2 for 1/sqrt (Vulkan's and
-// GLSL's usual bounds; OpenGL gives none). A step chains about ten such operations on numbers below 4, so 16
-// ulp of 4 bound it: 16 · 2^-22 < 4e-6. Poses are a dozen more operations each way: 48 · 2^-22; velocities of a
-// moving surface divide such an error by dt. Where a decision hangs by a hair (reference_step.h) the two may
-// differ; those particles are counted, and may be one in a thousand at most, three if bodies move.
+// Compares every particle of every step with the CPU's step from the GPU's previous state, and every index with the
+// CPU's own record of births and deaths.
+// Tolerance: a GPU may fuse multiply-adds, and its error is 2.5 ulp for a division and 2 ulp for 1/sqrt (the usual
+// bounds of Vulkan and GLSL; OpenGL specifies none). A step chains about ten such operations on numbers below 4, so 16
+// ulp of 4 bound it: 16 · 2^-22 < 4e-6. Poses add a dozen operations each way: 48 · 2^-22. Velocities of a moving
+// surface divide such an error by dt. Near a decision (reference_step.h) the two may differ. Such particles are
+// counted: at most one in a thousand, or three if bodies move.
 TEST_P(ParticleSystemGlTest, StepEqualsTheReferenceParticleByParticle) {
     constexpr std::uint32_t kCapacity = 5000;
     const Collider mixed = mixedCollider();
@@ -77,7 +77,7 @@ TEST_P(ParticleSystemGlTest, StepEqualsTheReferenceParticleByParticle) {
     const std::array<Pose, 3> start = posesAt(0.0F);
     ReferenceSettings still;
     still.bodies = {{&mixed, {}, {}}};
-    still.ground = -0.4F;  // cuts through the box: in both, the deeper one decides
+    still.ground = -0.4F;  // intersects the box: the deeper one decides
     still.forces = {{0.1F, -3.0F, 0.0F}, {0.4F, 0.0F, -0.3F}, 0.5F};
     still.type.restitution = 0.45F;
     still.type.friction = 0.3F;
@@ -126,7 +126,7 @@ TEST_P(ParticleSystemGlTest, StepEqualsTheReferenceParticleByParticle) {
         for (int i = 0; i < 100; ++i) {
             std::vector<Birth> births;
             for (int k = 0; k < 60; ++k) {
-                // Some are born inside: they are caught from the start.
+                // Some are born inside, and are caught from the start.
                 const glm::vec3 place = k % 6 == 0
                                             ? randomIn(random, {-0.9F, -0.5F, -0.3F}, {0.4F, 0.4F, 0.3F})
                                             : randomIn(random, {-1.2F, 0.6F, -0.7F}, {0.7F, 1.0F, 0.7F});
@@ -153,7 +153,7 @@ TEST_P(ParticleSystemGlTest, StepEqualsTheReferenceParticleByParticle) {
             }
             for (const auto& [index, before] : live) {
                 const auto found = after.find(index);
-                if (found == after.end()) {  // died; when it may is the business of another test
+                if (found == after.end()) {  // died; another test checks the time of death
                     free.insert(index);
                     continue;
                 }
@@ -186,8 +186,8 @@ TEST_P(ParticleSystemGlTest, StepEqualsTheReferenceParticleByParticle) {
     }
 }
 
-// Wind and drag: v' = (v + dt (g + k w)) / (1 + dt k) tends to the terminal velocity w + g/k without overshooting, for any
-// dt · k; k is drag / mass, or 6π η r / m by Stokes' law.
+// Wind and drag: v' = (v + dt (g + k w)) / (1 + dt k) approaches the terminal velocity w + g/k without overshoot, for
+// any dt · k. k is drag / mass, or 6π η r / m by Stokes' law.
 TEST_P(ParticleSystemGlTest, DragIsThatOfTheClosedForm) {
     struct Case {
         Forces forces;
@@ -221,10 +221,10 @@ TEST_P(ParticleSystemGlTest, DragIsThatOfTheClosedForm) {
     }
 }
 
-// Snow sticks: once at rest, no bit of any position changes, on top, on slopes, in wind. And no flake ends deeper in a
-// sphere than its maps are wrong: a point that a map sees outside lies in front of that map's surface point at its
-// texel's centre, at most 0.71 texel aside, so it is at most that far from a point of the sphere; and a half-float depth
-// is off by half an ulp, 2^-12 of the depth range.
+// Snow sticks: once at rest, no bit of any position changes, on top, on slopes, in wind. And no flake sinks deeper into
+// a sphere than the error of its maps. A point with an outside vote lies in front of that map's surface point at the
+// texel's centre, at most 0.71 texel aside. So it is at most that far from a point of the sphere. A half-float depth is
+// off by half an ulp, 2^-12 of the depth range.
 TEST_P(ParticleSystemGlTest, SnowRestsExactlyOnASphereAndNotInIt) {
     constexpr std::uint32_t kSize = 256;
     constexpr double kRadius = 0.5;
@@ -248,7 +248,7 @@ TEST_P(ParticleSystemGlTest, SnowRestsExactlyOnASphereAndNotInIt) {
         ASSERT_EQ(particle.contact, Contact::kCollided);
         const double height = glm::length(Vec(particle.position)) - kRadius;
         deepest = std::max(deepest, -height);
-        // It rests a last step's fall above what holds it: dt² g and the wind's share of a step.
+        // It rests at most the last step's fall above the surface: dt² g plus the wind's contribution.
         if (height < 0.02 && particle.position.y > -0.49F) {
             ++on_sphere;
             on_slope += particle.position.y < 0.35F ? 1 : 0;
@@ -295,8 +295,8 @@ TEST_P(ParticleSystemGlTest, CaughtParticlesLeave) {
     }
 }
 
-// CPU and GPU agree on every death and on its step, over irregular steps, heavy churn and an epoch that is
-// set forward dozens of times; and the time of death is right against doubles.
+// CPU and GPU agree on every death and its step, with irregular steps, high churn and an epoch that advances dozens of
+// times. The time of death is correct compared with doubles.
 TEST_P(ParticleSystemGlTest, DeathsOnCpuAndGpuAgree) {
     for (const Integrator integrator : {Integrator::kEuler, Integrator::kVerlet}) {
         constexpr std::uint32_t kCapacity = 3000;
@@ -309,13 +309,13 @@ TEST_P(ParticleSystemGlTest, DeathsOnCpuAndGpuAgree) {
         std::uint32_t next_id = 0;
         double time = 0.0;
         std::uint64_t refused = 0;
-        std::uint32_t least = kCapacity;  // extent, and most, of the second half
+        std::uint32_t least = kCapacity;  // minimum and maximum extent in the second half
         std::uint32_t most = 0;
         for (int step = 0; step < 400; ++step) {
-            // In waves, so that rows fall out of use and come back, which must not bring back the dead.
+            // In waves, so that rows become unused and are reused, which must not revive dead particles.
             std::vector<Birth> births(random.next() % (step / 80 % 2 == 0 ? 400 : 9),
                                       birthAt({1.0F, 2.0F, 3.0F}));
-            for (Birth& birth : births) {  // down to lifetimes far below a step
+            for (Birth& birth : births) {  // includes lifetimes far shorter than a step
                 birth.lifetime = random.between(1e-6F, 1.5F) * random.uniform() + 1e-7F;
             }
             const std::size_t accepted = particles_->spawn(births).value();
@@ -359,8 +359,8 @@ TEST_P(ParticleSystemGlTest, DeathsOnCpuAndGpuAgree) {
     }
 }
 
-// The age of a birth is a step of its own before the first, v' = (v + t (g + k w)) / (1 + t k), in the air that the step
-// has, whose wind takes the place of the forces' own. It dies by its age, too.
+// The age of a birth is an extra step before the first one, v' = (v + t (g + k w)) / (1 + t k), in the step's air,
+// whose wind replaces that of the forces. The age also counts towards death.
 TEST_P(ParticleSystemGlTest, AnAgeIsAStepOfItsOwn) {
     constexpr float kTime = 0.25F;
     constexpr float kDrag = 3.0F;
@@ -368,7 +368,7 @@ TEST_P(ParticleSystemGlTest, AnAgeIsAStepOfItsOwn) {
     for (const bool with_air : {false, true}) {
         make({.capacity = 4});
         setType({.gravity = -2.0F});
-        const glm::vec3 gravity(0.0F, -9.0F, 0.0F);  // as the type has it
+        const glm::vec3 gravity(0.0F, -9.0F, 0.0F);  // gravity of the type
         EXPECT_TRUE(
             particles_->setForces({-0.5F * gravity, with_air ? glm::vec3(0.0F, 9.0F, 0.0F) : wind, kDrag}));
         if (with_air) {
@@ -390,7 +390,7 @@ TEST_P(ParticleSystemGlTest, AnAgeIsAStepOfItsOwn) {
             1e-5F);
         EXPECT_EQ(particle.age, 2.0F * kTime);
         EXPECT_EQ(particle.lifetime, 3.0F * kTime);
-        particles_->step(kTime);  // ends exactly at the time of death, and is the last one
+        particles_->step(kTime);  // ends exactly at the time of death: the last step
         EXPECT_EQ(particles_->counts().died, 1U);
     }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is drawn with random numbers, against closed forms.
+// Random draws against closed forms.
 #include "runtime/particles/random.h"
 
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ TEST(Random, BelowIsEvenAndInRange) {
             EXPECT_LT(test::chiSquare(hits, std::vector<double>(count, 1.0)), test::kChiSquareMax);
         }
     }
-    // Of three quarters of 2^32 a product without rejection makes every third number twice as likely.
+    // For a bound of 3/4 · 2^32, a product without rejection would draw every third number twice as often.
     Pcg32 random(9);
     int thirds = 0;
     for (int i = 0; i < kCount; ++i) {
@@ -78,7 +78,7 @@ TEST(Random, ConeIsUniformInSolidAngle) {
         for (int i = 0; i < kCount; ++i) {
             const glm::dvec3 d(inCone(random, static_cast<float>(opening)));
             ASSERT_NEAR(glm::length(d), 1.0, 3e-7);
-            // From the radius where that is the better conditioned of the two.
+            // Computed from the radius if that is better conditioned.
             const double aside = std::hypot(d.x, d.y);
             down.push_back(degrees < 1.0 ? aside * aside / (1.0 + std::sqrt(1.0 - aside * aside))
                                          : 1.0 - d.z);
@@ -125,7 +125,7 @@ TEST(Random, UnitVectorsOfAnyLength) {
     }
 }
 
-// Pins the bits: the same on every machine, for the draws of a seeded run hang by them.
+// Pins the bits: they must be the same on every machine, because seeded runs depend on them.
 TEST(Random, TheBitsOfEveryKindOfDrawArePinned) {
     Pcg32 random(42, 54);
     float sum = 0.0F;

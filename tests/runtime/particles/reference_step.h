@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The step of shaders/particles/step.glsl on the CPU: float32, the same operations in the same order, the field from
-// formats/. Written from the rule (paper, section 3.3.2), and the truth that the GPU
-// is held to.
+// The step of shaders/particles/step.glsl on the CPU: float32, the same operations in the same order, with the field
+// from formats/. Written from the rule (paper, section 3.3.2), as the truth for the GPU.
 #pragma once
 
 #include <cmath>
@@ -15,7 +14,7 @@
 
 namespace relief {
 
-/// A collider with the poses of the beginning and the end of a step.
+/// A collider with its poses at the start and end of a step.
 struct ReferenceBody {
     const Collider* collider = nullptr;
     Pose before;
@@ -36,9 +35,8 @@ struct ReferenceState {
     glm::vec3 position{0.0F};
     glm::vec3 velocity{0.0F};
     Contact contact = Contact::kNone;
-    /// Some decision hung by a hair: P_prev or P* lies closer than the tolerance to a border between texels
-    /// or cube faces, to the edge of a volume, or to a vote of 0, so that another rounding may decide
-    /// otherwise.
+    /// True if P_prev or P* lies within the tolerance of a border between texels or cube faces, the edge of a volume,
+    /// or a vote of 0, so that another rounding may change the decision.
     bool ambiguous = false;
 };
 
@@ -46,7 +44,7 @@ inline float dot(const glm::vec3& a, const glm::vec3& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-/// How near to a decision counts as a hair: texels for borders, parts of a volume for its ends and for votes.
+/// Tolerance of decisions: texels for borders, fractions of a volume for its ends and for votes.
 inline constexpr float kTexelHair = 1e-3F;
 inline constexpr float kVolumeHair = 1e-6F;
 
@@ -80,14 +78,14 @@ inline bool isAmbiguous(const Collider& collider, const glm::vec3& p) {
     return false;
 }
 
-/// What is solid at a point, and the way out: body −1 is the floor, −2 nothing.
+/// The solid at a point, and the way out: body −1 is the floor, −2 none.
 struct ReferenceSolid {
     float distance = 1e30F;
     glm::vec3 normal{0.0F};
     int body = -2;
 };
 
-/// Of a body in a pose.
+/// The solid of a body in a pose.
 inline ReferenceSolid solidOf(const ReferenceBody& body, int number, const Pose& pose, const glm::vec3& p) {
     const FieldSample field = evaluate(*body.collider, toObject(pose, p));
     return field.inside() ? ReferenceSolid{pose.scale * field.distance, pose.rotation * field.normal, number}
@@ -95,7 +93,7 @@ inline ReferenceSolid solidOf(const ReferenceBody& body, int number, const Pose&
 }
 
 /// The union of all bodies and the floor; the deepest decides.
-/// \param rivals  how many of them are as deep, within a hair.
+/// \param rivals  number of solids equally deep, within the tolerance.
 inline ReferenceSolid solidAt(const ReferenceSettings& settings, const glm::vec3& p, int* rivals = nullptr) {
     std::vector<ReferenceSolid> all(1);
     for (std::size_t i = 0; i < settings.bodies.size(); ++i) {
@@ -117,7 +115,7 @@ inline ReferenceSolid solidAt(const ReferenceSettings& settings, const glm::vec3
     return best;
 }
 
-/// Whether the step began inside what it ran into.
+/// True if the step began inside the solid that it collided with.
 inline bool wasInside(const ReferenceSettings& settings, const ReferenceSolid& solid, const glm::vec3& p) {
     if (solid.body < 0) {
         return p.y < *settings.ground;
@@ -137,7 +135,7 @@ inline ReferenceState referenceStep(const ReferenceSettings& settings, const glm
 
     ReferenceState out;
     out.position = p_star;
-    // Which of two bodies is deeper, and on which side of the floor.
+    // Which body is deeper, and the side of the floor.
     int rivals = 0;
     const ReferenceSolid ahead = solidAt(settings, p_star, &rivals);
     out.ambiguous = ahead.distance < 0.0F && rivals > 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far random draws, made with fixed seeds, are from their distribution.
+// Deviations of random draws with fixed seeds from their distributions.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace relief::test {
 
 /// Kolmogorov's distance between draws and a distribution function, times √n. By chance it exceeds kKolmogorovMax once
-/// in a million.
+/// in a million runs.
 inline double kolmogorov(std::vector<double> draws, const std::function<double(double)>& cdf) {
     std::sort(draws.begin(), draws.end());
     const auto n = static_cast<double>(draws.size());
@@ -25,7 +25,8 @@ inline double kolmogorov(std::vector<double> draws, const std::function<double(d
 }
 inline constexpr double kKolmogorovMax = 2.7;
 
-/// Pearson's χ² of counts from shares, less its mean, in standard deviations. By chance it exceeds 6 once in millions.
+/// Pearson's χ² of counts for expected fractions, minus its mean, in standard deviations. By chance it exceeds 6 once
+/// in millions of runs.
 inline double chiSquare(const std::vector<std::size_t>& counts, const std::vector<double>& shares) {
     double whole = 0.0;
     double n = 0.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests of the simulation: once for each path that a step can take, in both APIs.
+// Simulation tests, run once for each step path in both APIs.
 #pragma once
 
 #include <string>
@@ -26,14 +26,14 @@ inline std::string stepTestName(const testing::TestParamInfo<StepCase>& info) {
 
 class StepGlTest : public GlTestOf<StepCase> {
   public:
-    /// The path of the case at hand, whatever the options say.
+    /// Sets the path of the current case.
     [[nodiscard]] static ParticleSystemOptions onPath(ParticleSystemOptions options) {
         options.path = GetParam().path;
         return options;
     }
 };
 
-// Compute in OpenGL ES is step_path_gl_test.cpp's, the same bits as fragments there, and depth_sort_gl_test.cpp's.
+// step_path_gl_test.cpp, which shows the same bits as fragments, and depth_sort_gl_test.cpp test compute in OpenGL ES.
 #define RELIEF_INSTANTIATE_STEP_TESTS(suite)                                                  \
     INSTANTIATE_TEST_SUITE_P(Paths, suite,                                                    \
                              testing::Values(StepCase{GlApi::kGl33Core, StepPath::kFragment}, \
@@ -41,7 +41,7 @@ class StepGlTest : public GlTestOf<StepCase> {
                                              StepCase{GlApi::kGl33Core, StepPath::kCompute}), \
                              stepTestName)
 
-// What the CPU decides alone, such as which arguments are refused.
+// For code that runs only on the CPU, such as argument validation.
 #define RELIEF_INSTANTIATE_STEP_TESTS_ONCE(suite)                                                            \
     INSTANTIATE_TEST_SUITE_P(Paths, suite, testing::Values(StepCase{GlApi::kGl33Core, StepPath::kFragment}), \
                              stepTestName)

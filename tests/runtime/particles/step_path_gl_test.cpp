@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The paths of a step: the same particles and events, whichever is taken.
+// All step paths give the same particles and events.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::uint32_t kParticles = 3000;
 
-/// What a step is compiled for.
+/// The features that a step is compiled for.
 struct Features {
     const char* name;
     Integrator integrator = Integrator::kEuler;
@@ -31,12 +31,12 @@ struct Features {
     float radius = 0.0F;
     float sweep = 0.0F;
     bool air = false;
-    int bodies = 0;      ///< that move
-    bool masks = false;  ///< every other particle collides with body 1 and the floor alone
-    int repeats = 0;     ///< of six maps, each of which sees the box from one side alone
+    int bodies = 0;      ///< number of moving bodies
+    bool masks = false;  ///< every other particle collides only with body 1 and the floor
+    int repeats = 0;     ///< of six maps, each of which sees only one side of the box
 };
 
-/// Bodies whose first maps differ in what may be known of a point that these do not look at.
+/// Bodies whose first maps allow different conclusions about points that they do not cover.
 class Bodies {
   public:
     [[nodiscard]] std::vector<ColliderBody> first(int count) const {
@@ -47,7 +47,7 @@ class Bodies {
         }
         return bodies;
     }
-    /// Near each other, so that some overlap.
+    /// Close together, so that some overlap.
     static Pose pose(int body, int step) {
         const auto i = static_cast<float>(body);
         const auto angle = 0.02F * static_cast<float>(step) + i;
@@ -59,7 +59,7 @@ class Bodies {
   private:
     std::array<Collider, 5> colliders_{boxCollider(), half(), layer(), Collider{}, cube()};
 
-    /// A ball of which the first map has one side, and abstains beyond.
+    /// A ball whose first map covers one side and abstains beyond it.
     static Collider half() {
         const analytic::Shape ball = analytic::sphere(analytic::Vec(0.0), 0.3);
         const analytic::Shape side = analytic::box({-0.3, -0.3, -0.3}, {0.0, 0.3, 0.3});
@@ -76,7 +76,7 @@ class Bodies {
         ball.maps.erase(ball.maps.begin());
         return ball;
     }
-    /// A box of which the first map has a layer, with texels that abstain at any depth.
+    /// A box whose first map covers a layer, with texels that abstain at any depth.
     static Collider layer() {
         const analytic::Shape thin = analytic::box({-0.4, -0.2, -0.05}, {0.4, 0.2, 0.05});
         DepthMap first =
@@ -93,7 +93,7 @@ class Bodies {
     }
 };
 
-/// None of whose maps can be left out: each alone knows that it is free where it looks from.
+/// No map can be omitted: each is the only one that sees its side as free.
 Collider sidesOf(int repeats) {
     analytic::Shape box = analytic::box({-0.4, -0.2, -0.3}, {0.4, 0.2, 0.3});
     box.bounds.add(glm::vec3(-0.7F));
@@ -115,7 +115,7 @@ struct Played {
 
 class StepPathGlTest : public GlTest {
   protected:
-    /// Particles that are born in two goes, collide and die.
+    /// Particles that are spawned in two batches, collide and die.
     static Played played(const Features& features, StepPath path, int steps) {
         static const Collider kBox = boxCollider();
         static const Bodies kBodies;
@@ -129,7 +129,7 @@ class StepPathGlTest : public GlTest {
                                                                     .path = path}));
         EXPECT_EQ(particles.path(), path);
         EXPECT_TRUE(particles.setForces({{0.1F, -3.0F, 0.0F}, {0.4F, 0.0F, -0.3F}, 0.5F}));
-        EXPECT_TRUE(particles.setGround(-0.19F));  // above some: they touch it in the first step
+        EXPECT_TRUE(particles.setGround(-0.19F));  // above some, which touch it in the first step
         const ParticleType type{.radius = features.radius, .restitution = 0.5F, .friction = 0.2F};
         std::vector<ParticleType> types{type};
         if (features.masks) {
@@ -195,9 +195,9 @@ constexpr Features kAll[] = {
     {.name = "bodies and balls, swept", .radius = 0.02F, .sweep = 0.03F, .bodies = 2},
 };
 
-// One processor runs both paths of a software renderer with the same arithmetic: bit by bit. A GPU may fuse other
-// operations in a compute shader: a step from the same births is within the CPU reference's tolerance
-// (particle_system_gl_test.cpp), but for one in a thousand, where a decision hangs by a hair.
+// A software renderer runs both paths on one processor with the same arithmetic, so they are bit-identical. A GPU may
+// fuse operations differently in a compute shader. A step from the same births is then within the CPU reference's
+// tolerance (particle_system_gl_test.cpp), except for one in a thousand near a decision.
 TEST_P(StepPathGlTest, BothPathsGiveTheSameParticles) {
     const bool bits = context_->software();
     const int steps = bits ? 24 : 2;
@@ -234,7 +234,7 @@ TEST_P(StepPathGlTest, BothPathsGiveTheSameParticles) {
                         a.death == b.death);
         }
         EXPECT_GT(touched, 0U);
-        if (features.collider) {  // and not the floor alone
+        if (features.collider) {  // not only the floor
             Features floor = features;
             floor.collider = false;
             const std::vector<ParticleState> free = played(floor, StepPath::kFragment, steps).state;
@@ -248,7 +248,7 @@ TEST_P(StepPathGlTest, BothPathsGiveTheSameParticles) {
     }
 }
 
-// Whether lanes go on by themselves: else the test above says nothing of it.
+// Checks that tours are used; otherwise the test above proves nothing about them.
 TEST_P(StepPathGlTest, ToursAreForSweepsOfASingleCollider) {
     const auto tours = [](const Result<WorldTextures>& textures, StepVariant variant) {
         variant.collider = &*textures;
@@ -275,7 +275,8 @@ TEST_P(StepPathGlTest, TheAutomaticPathFollowsTheDevice) {
     EXPECT_EQ(particles->path(), context_->software() ? StepPath::kFragment : StepPath::kCompute);
 }
 
-// More than a dispatch of births takes, on texels in disorder: the short lives of the first go are over.
+// More births than one dispatch handles, on texels in random order, because the short lives of the first batch have
+// ended.
 TEST_P(StepPathGlTest, ManyBirthsAtOnceAreTheSame) {
     constexpr std::uint32_t kMany = 300'000;
     std::vector<std::vector<ParticleState>> states;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The camera's path: through its keys, and never without an upper side.
+// Camera paths pass through their keys, and always have an up vector.
 #include "runtime/picture/camera_path.h"
 
 #include <gtest/gtest.h>
@@ -25,8 +25,8 @@ TEST(CameraPath, PassesThroughItsKeysAndStandsStillBesideThem) {
     EXPECT_EQ(cameraAt(kKeys, 1e9), cameraAt(kKeys, 5.0));
 }
 
-// These keys lie on straight lines in time (2 and 1 a second along x and y): Catmull-Rom with speeds by time
-// keeps to them although the keys are 1 and 3 seconds apart. (By index it would not.)
+// These keys lie on straight lines in time (2 and 1 per second along x and y). Catmull-Rom with speeds by time
+// reproduces the lines although the keys are 1 and 3 seconds apart; by index it would not.
 TEST(CameraPath, SmoothKeepsAnEvenSpeed) {
     for (const double time : {1.25, 1.75, 2.5, 3.5, 4.9}) {
         const auto t = static_cast<float>(time);
@@ -37,7 +37,7 @@ TEST(CameraPath, SmoothKeepsAnEvenSpeed) {
     }
 }
 
-// Uniform keys 0, 0, 1, 1: half way up the middle, Catmull-Rom's weights are (-1, 9, 9, -1)/16.
+// Uniform keys 0, 0, 1, 1: halfway through the middle segment, Catmull-Rom's weights are (-1, 9, 9, -1)/16.
 TEST(CameraPath, SmoothIsCatmullRom) {
     std::array<CameraKey, 4> keys{};
     const std::array<float, 4> x{3.0F, 0.0F, 1.0F, 7.0F};
@@ -45,7 +45,7 @@ TEST(CameraPath, SmoothIsCatmullRom) {
         keys[i] = {static_cast<double>(i), {x[i], 0.0F, 9.0F}, glm::vec3(0.0F), 30.0F};
     }
     EXPECT_NEAR(cameraAt(keys, 1.5).eye.x, (-3.0F + 0.0F + 9.0F - 7.0F) / 16.0F, 1e-6F);
-    // No jump of speed at a key.
+    // Speed is continuous at a key.
     const auto at = [&](double time) { return cameraAt(keys, time).eye.x; };
     EXPECT_NEAR((at(2.001) - at(2.0)) / 0.001F, (at(2.0) - at(1.999)) / 0.001F, 0.05F);
     EXPECT_NEAR((at(2.001) - at(1.999)) / 0.002F, 0.5F * (x[3] - x[1]), 0.05F);
@@ -55,7 +55,7 @@ TEST(CameraPath, OneKeyAndHardTurns) {
     const std::array<CameraKey, 1> one{kKeys[1]};
     EXPECT_EQ(cameraAt(one, 0.0).eye, kKeys[1].eye);
     EXPECT_EQ(cameraAt(one, 9.0).eye, kKeys[1].eye);
-    // Straight over the target, and through it.
+    // Directly above the target, and through it.
     for (const float height : {4.0F, 0.0F}) {
         const std::array<CameraKey, 2> over{CameraKey{0.0, {-1.0F, height, 0.0F}, glm::vec3(0.0F), 30.0F},
                                             CameraKey{1.0, {1.0F, height, 0.0F}, glm::vec3(0.0F), 30.0F}};
@@ -63,7 +63,7 @@ TEST(CameraPath, OneKeyAndHardTurns) {
         EXPECT_TRUE(std::isfinite(camera.up().x + camera.right().x)) << height;
         EXPECT_NEAR(glm::length(camera.up()), 1.0F, 1e-3F);
     }
-    // Between steep keys the cubic leaves the range of angles; the camera does not.
+    // Between steep keys the cubic leaves the range of angles; the camera must not.
     const std::array<CameraKey, 4> wide{
         CameraKey{0.0, glm::vec3(1.0F), {}, 1.0F}, CameraKey{1.0, glm::vec3(1.0F), {}, 169.0F},
         CameraKey{2.0, glm::vec3(1.0F), {}, 170.0F}, CameraKey{3.0, glm::vec3(1.0F), {}, 1.0F}};

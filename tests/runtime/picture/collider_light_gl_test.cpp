@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The light among a collider in closed form: a sphere's shade, a plate's, and that both follow what moves.
+// Light around a collider in closed form: the shade of a sphere and of a plate, also in motion.
 #include "runtime/bodies/world_textures.h"
 #include "runtime/picture/collider_light.h"
 
@@ -29,7 +29,7 @@ struct Light {
     float sky;
 };
 
-/// Evaluates particle_light.glsl at the points of a texture, one a texel.
+/// Evaluates particle_light.glsl at the points of a texture, one per texel.
 constexpr const char* kQuery = R"(
 uniform highp sampler2D u_points;  // xyz: object space
 
@@ -55,7 +55,7 @@ class ColliderLightGlTest : public GlTest {
     void use(const Collider& collider) {
         use(required(WorldTextures::create(collider)), collider.bounds, finestTexel(collider));
     }
-    /// As particles get it, the mean over their random numbers.
+    /// The light of particles, averaged over their random numbers.
     std::vector<Light> at(const std::vector<glm::vec3>& points) {
         const PassState state;
         EXPECT_TRUE(light_->update());
@@ -82,11 +82,11 @@ class ColliderLightGlTest : public GlTest {
     }
     Light at(const glm::vec3& point) { return at(std::vector<glm::vec3>{point}).front(); }
 
-    std::unique_ptr<WorldTextures> textures_;  // stays where it is: the light points at it
+    std::unique_ptr<WorldTextures> textures_;  // must not move: the light points at it
     std::optional<ColliderLight> light_;
 };
 
-/// The share of the sun's disc that the rays from p see past a sphere.
+/// The fraction of the sun's disc that a sphere leaves visible from p.
 double sunPastSphere(const glm::dvec3& p, const glm::dvec3& center, double radius) {
     const glm::dvec3 sun(sunDirection());
     const glm::dvec3 a = glm::normalize(glm::cross(sun, glm::dvec3(0, 0, 1)));
@@ -104,15 +104,15 @@ double sunPastSphere(const glm::dvec3& p, const glm::dvec3& center, double radiu
     return static_cast<double>(seen) / kRays;
 }
 
-// On a plane below a sphere: full light and full shade where geometry says so, and between them the share of the
-// disc. Would fail with a map that is turned, shifted or scaled, a penumbra of another width, or shade from nothing.
+// On a plane below a sphere: full light and full shade as in the geometry, and the visible fraction of the disc between
+// them. Fails if a map is rotated, shifted or scaled, if the penumbra has another width, or if shade has no cause.
 TEST_P(ColliderLightGlTest, ASphereCastsItsShade) {
     use(analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, 0.5), 128));
     for (const float height : {-0.55F, -1.0F, -2.5F}) {
         std::vector<glm::vec3> points;
         for (int z = 0; z < 28; ++z) {
             for (int x = 0; x < 28; ++x) {
-                // Along the light, below the sphere.
+                // Along the light direction, below the sphere.
                 const glm::vec3 under = sunDirection() * (height / sunDirection().y);
                 points.push_back(under + glm::vec3(0.07F * static_cast<float>(x) - 1.0F, 0.0F,
                                                    0.07F * static_cast<float>(z) - 1.0F));
@@ -125,7 +125,7 @@ TEST_P(ColliderLightGlTest, ASphereCastsItsShade) {
         double sum = 0.0;
         int between = 0;
         for (std::size_t i = 0; i < points.size(); ++i) {
-            // A texel of the map, and of the collider's own.
+            // One texel of the shade map plus one of the collider's maps.
             const double least = sunPastSphere(points[i], glm::dvec3(0.0), 0.515);
             const double most = sunPastSphere(points[i], glm::dvec3(0.0), 0.485);
             if (least == 1.0) {
@@ -150,7 +150,7 @@ TEST_P(ColliderLightGlTest, ASphereCastsItsShade) {
     }
 }
 
-// On the sphere itself: what faces the sun is not shaded by its own texels, what faces away is.
+// On the sphere itself: its own texels do not shade the side towards the sun, but they do shade the other side.
 TEST_P(ColliderLightGlTest, ASurfaceDoesNotShadeItself) {
     use(analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, 0.5), 128));
     std::vector<glm::vec3> points;
@@ -173,9 +173,9 @@ TEST_P(ColliderLightGlTest, ASurfaceDoesNotShadeItself) {
     }
 }
 
-// A sheet of a fortieth of a voxel. Behind it there is no sun beyond the bias, and no more sky than geometry leaves: of
-// an infinite plate at height h the rays steeper than h / reach meet it, and 1 - (h / reach)² of the cosine-weighted
-// sky is hidden.
+// A sheet as thick as 1/40 voxel. Behind it there is no sun beyond the bias, and only as much sky as in the geometry.
+// An infinite plate at height h blocks rays steeper than h / reach, and so hides 1 - (h / reach)² of the
+// cosine-weighted sky.
 TEST_P(ColliderLightGlTest, NoLightLeaksThroughAThinSheet) {
     const Collider sheet =
         analytic::frontBackCollider(analytic::box({-1.0, -0.00125, -1.0}, {1.0, 0.0, 1.0}), 256);
@@ -185,7 +185,7 @@ TEST_P(ColliderLightGlTest, NoLightLeaksThroughAThinSheet) {
     const float behind = light_->sunBias() / sunDirection().y + 0.01F;
     const float under = 1.5F * light_->voxel() + 0.002F;
     EXPECT_LT(behind, 0.03F) << "of a side of 2";
-    for (int i = 0; i < 400; ++i) {  // anywhere in the middle, at the bias and deeper
+    for (int i = 0; i < 400; ++i) {  // random central points, at the bias and deeper
         const float x = -0.2F + 0.02F * static_cast<float>(i % 20);
         const float z = -0.2F + 0.02F * static_cast<float>(i / 20);
         const float depth = behind + 0.001F * static_cast<float>(i % 37);
@@ -218,7 +218,7 @@ TEST_P(ColliderLightGlTest, LightFollowsABodyThatMoves) {
     bounds.add(glm::vec3(-1.5F, -0.5F, -0.5F));
     bounds.add(glm::vec3(1.5F, 0.5F, 0.5F));
     use(required(WorldTextures::create(std::span(&body, 1))), bounds, finestTexel(ball));
-    // Behind each place of the ball, seen from the sun, and right below it.
+    // Behind each position of the ball as seen from the sun, and directly below it.
     const auto lightUnder = [&](float x) {
         const glm::vec3 place(x, 0.0F, 0.0F);
         return Light{at(place - 0.6F * sunDirection()).sun, at(place - glm::vec3(0.0F, 0.45F, 0.0F)).sky};
@@ -240,7 +240,7 @@ TEST_P(ColliderLightGlTest, LightFollowsABodyThatMoves) {
 }
 
 TEST_P(ColliderLightGlTest, LightFollowsABodyThatDeforms) {
-    // A slab that grows to both sides.
+    // A slab that grows on both sides.
     const auto slab = [](float half) { return movingBox({half, 0.1F, 0.5F}); };
     Bounds box;
     box.add(glm::vec3(-1.2F, -0.3F, -0.7F));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A collider drawn from its mesh, against the same one drawn from its depth maps and against the closed form.
+// A collider drawn from its mesh, against the same collider drawn from its depth maps and against the closed form.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -49,7 +49,7 @@ PictureMesh sphereMesh(std::uint32_t around, std::uint32_t rings) {
 
 class ColliderMeshGlTest : public GlTest {
   protected:
-    /// A picture of the sphere, drawn from its mesh or from its maps; its depths as view distances.
+    /// A picture of the sphere, drawn from its mesh or from its maps, with depths as view distances.
     struct Picture {
         std::vector<std::uint8_t> rgb;
         std::vector<float> distances;
@@ -103,9 +103,9 @@ TEST_P(ColliderMeshGlTest, ASphereLooksTheSameFromMeshAndMaps) {
     EXPECT_GT(maps_rgb[3 * (kWidth * (kHeight / 2 - 5) + kWidth / 2 - 5)], 60)
         << "the side towards the sun is lit";
 
-    // Outline: but for a pixel of the target along the circle the two cover the same. Depth: facets are off
-    // by r(1 - cos(π/64)) = 0.0006 at most. A texel of the maps has one depth, so that where the surface
-    // leans by 45° or less they may be off by a texel and a step of the ray, 2.5 texels of 1/126.
+    // Outline: both cover the same pixels except for one pixel of the target along the circle. Depth: facets are off by
+    // at most r(1 - cos(π/64)) = 0.0006. A map texel has one depth, so maps may be off by a texel and a ray step, 2.5
+    // texels of 1/126, where the surface slopes by 45° or less.
     const float texel = 1.0F / 126.0F;
     const double scale = 0.5 * target_.height / camera.tanHalfFov();
     const double edge = scale * std::tan(std::asin(kRadius / kDistance));
@@ -120,7 +120,7 @@ TEST_P(ColliderMeshGlTest, ASphereLooksTheSameFromMeshAndMaps) {
                 ASSERT_EQ(std::isfinite(mesh_depth[i]), away < edge) << x << " " << y;
                 ASSERT_EQ(std::isfinite(maps_depth[i]), away < edge) << x << " " << y;
             }
-            // The ray (px, py, -scale) t from the eye meets the sphere at t, a view distance over the scale.
+            // The ray (px, py, -scale) t from the eye hits the sphere at t, the view distance divided by the scale.
             const double a = px * px + py * py + scale * scale;
             const double b = kDistance * scale;
             const double rest = b * b - a * (kDistance * kDistance - kRadius * kRadius);
@@ -135,7 +135,7 @@ TEST_P(ColliderMeshGlTest, ASphereLooksTheSameFromMeshAndMaps) {
     }
     EXPECT_GT(covered, 1000);
 
-    // The light: sampled with noise, so as a mean.
+    // Light is sampled with noise, so only its mean is compared.
     double difference = 0.0;
     for (std::size_t i = 0; i < mesh_rgb.size(); ++i) {
         difference += std::abs(int{mesh_rgb[i]} - int{maps_rgb[i]});
@@ -148,8 +148,8 @@ TEST_P(ColliderMeshGlTest, TheFloorHidesWhatLiesBelowIt) {
     ColliderStyle style;
     style.ground = 0.0F;
     const std::vector<float> depth = draw(camera, style, &mesh_).distances;
-    // Below the middle the eye sees the floor before the sphere's lower half: where a ray is at height 0 it
-    // is there.
+    // Below the picture's centre, the eye sees the floor in front of the sphere's lower half: the ray hits the floor at
+    // height 0.
     const int y = target_.height / 2 - static_cast<int>(0.17 * target_.height);
     const float up = (2.0F * (static_cast<float>(y) + 0.5F) / static_cast<float>(target_.height) - 1.0F) *
                      camera.tanHalfFov();

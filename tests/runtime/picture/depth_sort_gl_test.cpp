@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The depth sort, on each path: against std::stable_sort, as fragments against the network pass by pass; and while particles
-// move, are born and die, and while the viewer moves: what must hold in every frame, and how far from sorted the order is.
+// The depth sort on each path: against std::stable_sort, and as fragments against each pass of the network. While
+// particles move, are born and die, and the viewer moves, it checks invariants of every frame and how far the order is
+// from sorted.
 #include "runtime/picture/depth_sort.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +31,7 @@ struct Element {
     friend bool operator==(const Element&, const Element&) = default;
 };
 
-/// What the shaders say, written down once more.
+/// The comparison of the shaders.
 bool before(const Element& a, const Element& b) {
     return a.key != b.key ? a.key > b.key : a.index < b.index;
 }
@@ -54,7 +55,7 @@ std::vector<Element> readOrder(const DepthSorter& sorter) {
     return order;
 }
 
-/// Every index below count() once.
+/// Every index below count() exactly once.
 void expectPermutation(const std::vector<Element>& order) {
     std::vector<bool> seen(order.size());
     for (const Element& element : order) {
@@ -64,7 +65,7 @@ void expectPermutation(const std::vector<Element>& order) {
     }
 }
 
-/// Particles of the test's own, as a particle system stores them.
+/// The test's own particles, in the layout of a particle system.
 struct Cloud {
     std::vector<glm::vec4> particles;  // w < 0: dead
     std::uint32_t width = 0;
@@ -75,15 +76,15 @@ struct Cloud {
         width = std::min(static_cast<std::uint32_t>(particles.size()), 1024U);
         const std::size_t rows = (particles.size() + width - 1) / width;
         std::vector<glm::vec4> texels = particles;
-        texels.resize(rows * width, glm::vec4(0.0F, 0.0F, 0.0F, 1.0F));  // leftovers that look alive
+        texels.resize(rows * width, glm::vec4(0.0F, 0.0F, 0.0F, 1.0F));  // stale data that looks alive
         texture = makeTexture2D(GL_RGBA32F, static_cast<GLsizei>(width), static_cast<GLsizei>(rows), GL_RGBA,
                                 GL_FLOAT, texels.data());
     }
     [[nodiscard]] std::uint32_t extent() const { return static_cast<std::uint32_t>(particles.size()); }
 };
 
-/// Coordinates are multiples of 1/64 in [−8, 8): with an eye of the same kind every squared distance is a
-/// multiple of 2^-12 below 2^11, exact in a float by any sequence of operations. One in nine is dead.
+/// Coordinates are multiples of 1/64 in [−8, 8). With an eye at such coordinates, every squared distance is a multiple
+/// of 2^-12 below 2^11, exact in float for any order of operations. One in nine particles is dead.
 Cloud latticeCloud(std::uint32_t count, std::uint32_t levels, Pcg32& random) {
     Cloud cloud;
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -100,7 +101,8 @@ Cloud latticeCloud(std::uint32_t count, std::uint32_t levels, Pcg32& random) {
 
 const glm::vec3 kEye{1.5F, -2.25F, 7.0F};
 
-/// Index order with the keys of a lattice cloud. \param count  of the ranks.
+/// Index order with the keys of a lattice cloud.
+/// \param count  number of ranks.
 std::vector<Element> latticeElements(const Cloud& cloud, std::uint32_t count) {
     std::vector<Element> elements(count);
     for (std::uint32_t i = 0; i < elements.size(); ++i) {
@@ -120,11 +122,11 @@ std::vector<Element> stablySorted(const Cloud& cloud, std::uint32_t ranks) {
     return sorted;
 }
 
-/// One sorter, of the case's path.
+/// One sorter on the path of the case.
 class DepthSorterTest : public StepGlTest {
   protected:
     static bool exact() { return GetParam().path == StepPath::kCompute; }
-    /// The ranks that so many particles need.
+    /// The ranks needed for this many particles.
     static std::uint32_t ranksFor(std::uint32_t extent) {
         return exact() || extent == 0 ? extent : std::bit_ceil(extent);
     }
@@ -139,9 +141,9 @@ class DepthSorterTest : public StepGlTest {
 };
 
 class DepthSortGlTest : public DepthSorterTest {};
-class DepthSortNetworkGlTest : public DepthSorterTest {};  // fragments alone
+class DepthSortNetworkGlTest : public DepthSorterTest {};  // only fragments
 
-// Of compute, a row is 256 elements; a block is one row, and of more than 512 rows two: one sorter sees more and fewer in turn.
+// In compute, a row is 256 elements. A block is one row, or two for more than 512 rows: one sorter sees both in turn.
 TEST_P(DepthSortGlTest, AWholeSequenceIsAStableSort) {
     Pcg32 random(3);
     std::vector<std::uint32_t> counts{1, 2, 3, 1000, 1024, 1025, 70'000};
@@ -152,7 +154,7 @@ TEST_P(DepthSortGlTest, AWholeSequenceIsAStableSort) {
     }
     for (const std::uint32_t count : counts) {
         for (const std::uint32_t levels :
-             {1U, 4U, 1024U}) {  // one place, ties almost everywhere, here and there
+             {1U, 4U, 1024U}) {  // one position; ties almost everywhere; some ties
             if (levels < 1024 && count > 70'000) {
                 continue;
             }
@@ -186,7 +188,7 @@ TEST(DepthSort, SequencesHaveTheLengthOfThePaper) {
     EXPECT_EQ(DepthSorter::passesPerFrame(1, 50), 0U);
 }
 
-// Batcher's network as loops over its pairs (Knuth, Algorithm M): after each pass, element for element.
+// Batcher's network as loops over its pairs (Knuth, Algorithm M), compared element by element after each pass.
 TEST_P(DepthSortNetworkGlTest, EveryPassIsThatOfTheNetwork) {
     constexpr std::uint32_t kCount = 2048;
     Pcg32 random(5);
@@ -231,7 +233,7 @@ TEST_P(DepthSortNetworkGlTest, ARestartBeginsAWholeSequence) {
     }
 }
 
-// Of numbers of any size, so that every digit of a key has many values, and of some that are none.
+// For numbers of all magnitudes, so that every digit of a key has many values, and for NaN.
 TEST_P(DepthSortGlTest, KeysAreDistancesAndTheDeadHaveNone) {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -246,7 +248,7 @@ TEST_P(DepthSortGlTest, KeysAreDistancesAndTheDeadHaveNone) {
                                      i % 5 == 0 ? -1.0F : static_cast<float>(i));
     }
     const glm::vec3 eye{0.3F, 0.1F, 1.7F};
-    cloud.particles[1] = glm::vec4(eye, 0.0F);  // at the eye, and alive
+    cloud.particles[1] = glm::vec4(eye, 0.0F);  // at the eye, but alive
     const std::array<float, 7> odd{kNan, -kNan, kInfinity, -kInfinity, 3e38F, -3e38F, 1e30F};
     for (std::uint32_t i = 0; i < odd.size(); ++i) {
         cloud.particles[600 * i + 2][static_cast<int>(i % 3)] = odd[i];
@@ -260,12 +262,12 @@ TEST_P(DepthSortGlTest, KeysAreDistancesAndTheDeadHaveNone) {
     EXPECT_TRUE(std::is_sorted(order.begin(), order.end(), before));
     for (std::size_t rank = 0; rank < order.size(); ++rank) {
         const Element& element = order[rank];
-        const bool alive = element.index < kExtent && element.index % 5 != 0;  // beyond the extent: leftovers
+        const bool alive = element.index < kExtent && element.index % 5 != 0;  // stale data beyond the extent
         ASSERT_EQ(element.key != 0, alive) << element.index;
         if (rank < odd.size()) {
             EXPECT_EQ(element.index % 600, 2U) << "what is nowhere, or farther than floats go, comes first";
         } else if (alive && element.index > 2) {
-            // Three roundings, 3 · 2^-24 of the whole, on top of those of the differences, twice 2^-24.
+            // Three roundings, 3 · 2^-24 of the total, plus those of the differences, 2 · 2^-24.
             const glm::dvec3 away = glm::dvec3(cloud.particles[element.index]) - glm::dvec3(eye);
             const double squared = glm::dot(away, away);
             ASSERT_NEAR(std::bit_cast<float>(element.key), squared, squared * 6.0 * 0x1p-24);
@@ -298,12 +300,12 @@ TEST_P(DepthSortMotionGlTest, APermutationWhateverTheExtentDoes) {
                                                 5000, 4097, 2, 0, 600, 2049, 2048, 9};
     for (std::size_t leg = 0; leg < 2 * extents.size(); ++leg) {
         const std::uint32_t extent = extents[leg % extents.size()];
-        // The first round leaves some legs before their sequence ends, the second none.
+        // The first round ends some legs before their sequence ends, the second none.
         const bool whole = leg >= extents.size();
-        // On the compute path every update is a whole sort.
+        // On the compute path every update is a complete sort.
         const std::uint32_t frames = exact() ? 1 : whole ? 40 : 1 + random.next() % 30;
         for (std::uint32_t frame = 0; frame < frames; ++frame) {
-            Cloud cloud = latticeCloud(kCapacity, 1024, random);  // all move, many die and are born
+            Cloud cloud = latticeCloud(kCapacity, 1024, random);  // all particles move, many die or are born
             const std::uint32_t before_count = sorter_->count();
             sorter_->update(cloud.texture, cloud.width, extent, kEye, 6);
             const std::uint32_t count = sorter_->count();
@@ -318,7 +320,7 @@ TEST_P(DepthSortMotionGlTest, APermutationWhateverTheExtentDoes) {
                 ASSERT_EQ(element.key != 0, alive);
             }
         }
-        // 40 frames of 6 passes are more than two sequences of 91: the region is as small as can be.
+        // 40 frames of 6 passes are more than two sequences of 91: the sorted region is as small as possible.
         if (whole) {
             ASSERT_EQ(sorter_->count(), ranksFor(extent)) << "leg " << leg;
         }
@@ -326,10 +328,10 @@ TEST_P(DepthSortMotionGlTest, APermutationWhateverTheExtentDoes) {
 }
 
 struct Disorder {
-    double adjacent = 0.0;     ///< share of neighbours out of order; a half for a random order
+    double adjacent = 0.0;     ///< fraction of neighbours out of order; ½ for a random order
     double depth_error = 0.0;  ///< mean of |distance drawn i-th - distance that belongs i-th|, object units
 
-    /// Adds that of distances to the eye, in drawing order, of one of so many frames.
+    /// Adds the error of one of `frames` frames, from distances to the eye in drawing order.
     void add(const std::vector<double>& drawn, double frames) {
         std::vector<double> sorted = drawn;
         std::sort(sorted.begin(), sorted.end(), std::greater<>());
@@ -341,15 +343,16 @@ struct Disorder {
     }
 };
 
-// Snow in a box of 3 · 1 · 3 that falls and comes back at the top, seen by a camera that goes round it at 60 frames a second. The
-// depth errors, as fractions of those in the order of indices, are those of runtime/METHOD.md's table; the bounds leave a
-// fifth or more for other roundings. The newborn wait at the end for one to two sequences, so that short lives tell.
-// Neighbours are as close in depth as 0.0003: it takes little for 4 in 10 of them to be out of order.
+// Snow that falls in a box of 3 · 1 · 3 and wraps to the top, seen by a camera that circles it, at 60 frames per
+// second. The depth errors, as fractions of those in index order, are those in the table of runtime/METHOD.md; the
+// bounds leave a margin of at least a fifth for other roundings. New particles wait at the end for one or two
+// sequences, so short lives have an effect. Neighbours may be as close in depth as 0.0003, so 4 in 10 of them are
+// easily out of order.
 TEST_P(DepthSortMotionGlTest, SpreadOverFramesItKeepsUpWithMotion) {
     constexpr std::uint32_t kCount = 12'000;  // 16,384 ranks, 105 passes
     struct Case {
-        std::uint32_t frames;  // that a sequence is spread over
-        float life;            // seconds between two deaths of a flake, one 20th of them dead; 0: none dies
+        std::uint32_t frames;  // frames per sequence
+        float life;  // seconds between two deaths of a flake, of which it is dead 1/20; 0: none dies
         double most;
     };
     for (const Case& c : {Case{10, 5.0F, 0.14}, Case{30, 0.0F, 0.1}, Case{50, 30.0F, 0.17}}) {
@@ -366,7 +369,7 @@ TEST_P(DepthSortMotionGlTest, SpreadOverFramesItKeepsUpWithMotion) {
             for (std::uint32_t i = 0; i < kCount; ++i) {
                 glm::vec4 flake(random.between(-1.5F, 1.5F), 0.0F, random.between(-1.5F, 1.5F), 0.0F);
                 flake.y = 0.5F - std::fmod(0.8F * time + random.uniform(), 1.0F);
-                if (c.life > 0.0F) {  // born again elsewhere, each time
+                if (c.life > 0.0F) {  // reborn at another place each time
                     const float lives = time / c.life + random.uniform();
                     flake.z = std::fmod(flake.z + 1.5F + 1.17F * std::floor(lives), 3.0F) - 1.5F;
                     flake.w = lives - std::floor(lives) > 0.95F ? -1.0F : 0.0F;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture of meshes, judged at points of the world: a roof over a meadow, in sun, rain, snow and fog.
+// A picture of meshes, checked at points of the world: a roof above a meadow, in sun, rain, snow and fog.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -58,7 +58,7 @@ class MeshRendererGlTest : public GlTest {
     }
     [[nodiscard]] std::vector<MeshPlace> meadow() const { return {{0, {}, false}, {1, {}, false}}; }
 
-    /// The mean of 3 × 3 pixels about a point of the world.
+    /// The mean of 3 × 3 pixels around a point of the world.
     [[nodiscard]] Rgb at(const glm::vec3& p) const {
         const glm::vec4 clip =
             camera_.projection(float{kWidth} / float{kHeight}) * camera_.view() * glm::vec4(p, 1.0F);
@@ -85,7 +85,7 @@ class MeshRendererGlTest : public GlTest {
     Frame frame_ = required(Frame::create(kWidth, kHeight));
     std::vector<std::uint8_t> rgb_;
     const glm::vec3 open_{3.0F, 0.0F, 1.0F};
-    const glm::vec3 below_{0.0F, 0.0F, 0.0F};  // the roof's middle
+    const glm::vec3 below_{0.0F, 0.0F, 0.0F};  // below the roof's centre
     const glm::vec3 roof_{0.0F, kRoofHeight + 0.1F, 0.0F};
 };
 

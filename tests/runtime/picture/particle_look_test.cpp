@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Key-frames: rows for the shader, and what is refused. sprite_gl_test.cpp draws them.
+// Key frames: rows for the shader, and rejected values. sprite_gl_test.cpp draws them.
 #include "runtime/picture/particle_look.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG and PLY bytes: read back by libpng, or by hand from the format's definition.
+// PNG and PLY bytes, read back by libpng or checked by hand against the format's definition.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -65,7 +65,7 @@ TEST(Ply, HeaderAndVerticesByHand) {
     ASSERT_EQ(text.size(), head.size() + 2 * 40);
     EXPECT_EQ(text.substr(0, head.size()), head);
     EXPECT_EQ(text[head.size() + 32], 3);
-    // The least byte comes first: 1.0F is 3f 80 00 00.
+    // Little-endian: 1.0F is 3f 80 00 00.
     EXPECT_EQ(text.substr(head.size() + 40, 4), std::string("\0\0\x80\x3f", 4));
     EXPECT_EQ(text.substr(head.size() + 72), std::string("\4\3\2\1\x0c\x0b\x0a\0", 8));
     EXPECT_TRUE(ply({}).ends_with("end_header\n")) << "no particles are a file too";

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pictures: what hides what, and where; and that none of Relief's passes leaves a trace in the caller's
-// state or is spoilt by it.
+// Pictures: occlusion and positions; and no pass of Relief changes the caller's state or is affected by it.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -47,7 +46,7 @@ class RendererGlTest : public GlTest {
         const std::size_t at = 3 * (std::size_t{kWidth} * y + x);
         return {rgb[at], rgb[at + 1], rgb[at + 2]};
     }
-    /// The pixel, from the top left, where a point of object space appears.
+    /// The pixel, from the top left, of a point in object space.
     std::pair<std::uint32_t, std::uint32_t> project(const glm::vec3& p) const {
         const glm::vec4 clip = camera_.projection(1.5F) * camera_.view() * glm::vec4(p, 1.0F);
         return {static_cast<std::uint32_t>((0.5F + 0.5F * clip.x / clip.w) * static_cast<float>(kWidth)),
@@ -73,7 +72,7 @@ TEST_P(RendererGlTest, ParticlesAreHiddenBehindAndShownInFront) {
     const ParticleStyle style{.diameter = 0.06F, .opacity = 1.0F};
     drawCollider();
     const std::vector<std::uint8_t> bare = frame_.read();
-    // In front, behind, half a diameter before and behind the surface, beside, and behind the eye.
+    // In front, behind, half a diameter in front of and behind the surface, beside, and behind the eye.
     for (const auto& [place, shown] :
          {std::pair(glm::vec3(0.0F, 0.0F, 1.0F), true), std::pair(glm::vec3(0.0F, 0.0F, -1.0F), false),
           std::pair(glm::vec3(0.1F, 0.05F, 0.51F), true), std::pair(glm::vec3(0.1F, 0.05F, 0.40F), false),
@@ -147,12 +146,13 @@ TEST_P(RendererGlTest, TheFloorIsShadedBelowTheCollider) {
     camera_.eye = {0.0F, 1.5F, 3.0F};
     drawCollider();
     const std::vector<std::uint8_t> rgb = frame_.read();
-    const auto [x, y] = project({0.6F, -0.5F, -0.3F});     // where sunDirection() casts the sphere's shadow
-    const auto [ox, oy] = project({-0.9F, -0.5F, -0.3F});  // in the open
+    const auto [x, y] = project({0.6F, -0.5F, -0.3F});     // the sphere's shadow by sunDirection()
+    const auto [ox, oy] = project({-0.9F, -0.5F, -0.3F});  // unshaded
     EXPECT_LT(pixel(rgb, x, y).b + 20, pixel(rgb, ox, oy).b);
 }
 
-// The finest body of a world decides the step, however large the others are: rays still reach through the whole box.
+// The finest body of a world determines the ray step, however large the others are. Rays must still cross the whole
+// box.
 TEST_P(RendererGlTest, RaysReachThroughABoxOfManyTexels) {
     const auto clay = [&](float texel) {
         auto renderer = required(ColliderRenderer::create({&textures_, collider_.bounds, texel}));
@@ -179,8 +179,8 @@ TEST_P(RendererGlTest, FrameSizesAreChecked) {
     EXPECT_EQ(frame->read().size(), 3U);
 }
 
-// What a plain state gives, a hostile one gives as well, and keeps. The maps are uploaded under it, too: an unpack window
-// must not cut them up.
+// Pictures do not depend on the caller's state, which is kept. The maps are uploaded in that state as well: its unpack
+// parameters must have no effect.
 TEST_P(RendererGlTest, TheCallersStateIsKeptAndDoesNoHarm) {
     style_.ground = -0.5F;
     spawnAt({0.0F, 0.8F, 0.9F});

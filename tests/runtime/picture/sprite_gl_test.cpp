@@ -17,13 +17,13 @@ namespace {
 
 constexpr GLsizei kSide = 64;
 constexpr float kPi = 3.14159265F;
-// RGBA16F resolves 2^-11 of a number.
+// RGBA16F has a relative precision of 2^-11.
 constexpr float kHalf = 1.0F / 1024.0F;
 
 class SpriteGlTest : public GlTest {
   protected:
     SpriteGlTest() {
-        // At the origin a unit is half the picture's height: 32 pixels.
+        // At the origin, one unit is half the picture's height: 32 pixels.
         camera_.eye = {0.0F, 0.0F, 3.0F};
         camera_.fov = glm::degrees(2.0F * std::atan(1.0F / 3.0F));
         camera_.near_plane = 0.5F;
@@ -33,7 +33,7 @@ class SpriteGlTest : public GlTest {
         style_.sprite = Sprite::kQuad;
     }
 
-    /// A sprite at the origin for each type, of lifetime 8, aged `age` seconds.
+    /// A sprite of each type at the origin, with lifetime 8 and this age in seconds.
     void spawnTypes(const std::vector<std::uint32_t>& types, float age) {
         std::vector<Birth> births;
         for (const std::uint32_t type : types) {
@@ -76,7 +76,7 @@ class SpriteGlTest : public GlTest {
         ASSERT_TRUE(drawn) << drawn.error().message;
         pixels_ = required(readTextureFloats(color_, kSide, kSide));
     }
-    /// A sprite with a look at the origin, aged so many seconds of 8.
+    /// Draws a sprite with this look at the origin, at this age of 8 seconds.
     void drawOne(const ParticleLook& look, float age = 1.0F) {
         style_.looks = {look};
         spawnTypes({0}, age);
@@ -87,7 +87,7 @@ class SpriteGlTest : public GlTest {
         const std::size_t at = 4 * (static_cast<std::size_t>(y) * kSide + static_cast<std::size_t>(x));
         return {pixels_[at], pixels_[at + 1], pixels_[at + 2], pixels_[at + 3]};
     }
-    /// Of as many ranks as will be drawn; below 0: nothing there.
+    /// As many ranks as will be drawn; below 0: none.
     [[nodiscard]] GlTexture orderTexture(const std::vector<int>& order) {
         std::vector<std::uint32_t> texels;
         for (const int index : order) {
@@ -95,7 +95,7 @@ class SpriteGlTest : public GlTest {
             texels.push_back(index < 0 ? 0U : 7U);
         }
         order_count_ = static_cast<std::uint32_t>(order.size());
-        // Two in a row, so that rows are taken as well.
+        // Two per row, to test multiple rows.
         return makeTexture2D(GL_RG32UI, 2, static_cast<GLsizei>(order.size() / 2), GL_RG_INTEGER,
                              GL_UNSIGNED_INT, texels.data());
     }
@@ -133,9 +133,8 @@ const glm::vec4 kGreen{0, 1, 0, 1};
 const glm::vec4 kBlue{0, 0, 1, 1};
 const glm::vec4 kClear{0, 0, 0, 0};
 
-// A quarter turn anticlockwise takes what was right to the top, what was at the top to the left. Quads and
-// points, for the middles of the four texels and beyond are free of filtering: 16 pixels is the sprite's half
-// side.
+// A quarter turn anticlockwise moves the right side to the top, and the top to the left. For quads and points: the
+// centres of the four texels, and pixels beyond them, are free of filtering. The sprite's half side is 16 pixels.
 TEST_P(SpriteGlTest, ACellTurnsAnticlockwise) {
     useAtlas();
     const auto expectCorners = [&](const std::array<glm::vec4, 4>& wanted, const char* what) {
@@ -149,7 +148,7 @@ TEST_P(SpriteGlTest, ACellTurnsAnticlockwise) {
         ParticleLook one = cells(1, 1);
         drawOne(one);
         expectCorners({kRed, kGreen, kBlue, kClear}, "upright");
-        // The square's own outline, to the pixel.
+        // The square's own outline, pixel-exact.
         expectNear(pixel(16, 43), kRed, kHalf, "inside the left edge");
         expectNear(pixel(15, 43), kClear, 0.0F, "outside the left edge");
         expectNear(pixel(20, 47), kRed, kHalf, "inside the upper edge");
@@ -161,8 +160,8 @@ TEST_P(SpriteGlTest, ACellTurnsAnticlockwise) {
     }
 }
 
-// Turned by 45° the corner of a quad of half side 16 reaches 16·√2 = 22.6 pixels; a point's does not leave
-// its square.
+// Rotated by 45°, the corner of a quad of half side 16 reaches 16·√2 = 22.6 pixels; a point's corner stays in its
+// square.
 TEST_P(SpriteGlTest, AQuadTurnsWithItsCorners) {
     useAtlas();
     ParticleLook one = cells(0, 0);
@@ -183,7 +182,7 @@ TEST_P(SpriteGlTest, AQuadIsNoSmallerThanItSays) {
     useAtlas();
     ParticleLook one = cells(0, 0);
     one.size = {{0.0F, 4.0F * sizes[1] / 32.0F}};
-    // Its centre lies beside the picture, where a point would be gone.
+    // Its centre lies outside the picture, where a point would be culled.
     camera_.eye.x = 1.5F;
     camera_.target.x = 1.5F;
     drawOne(one);
@@ -191,7 +190,7 @@ TEST_P(SpriteGlTest, AQuadIsNoSmallerThanItSays) {
     EXPECT_EQ(pixel(kSide - 1, kSide - 1).a, 1.0F);
 }
 
-// Keys at ages 0, ½ and 1 of a life of 8 seconds: at 4 s the middle key itself, at 2 s and 6 s the means.
+// Keys at ages 0, ½ and 1 of a lifetime of 8 seconds: at 4 s the middle key itself, at 2 s and 6 s the means.
 TEST_P(SpriteGlTest, KeyFramesAtExactAges) {
     ParticleLook one = look(glm::vec3(1.0F), 1.0F, 1.0F);
     one.color = {{0.0F, {1.0F, 0.0F, 0.0F}}, {0.5F, {0.0F, 1.0F, 0.0F}}, {1.0F, {0.0F, 0.0F, 1.0F}}};
@@ -208,7 +207,7 @@ TEST_P(SpriteGlTest, KeyFramesAtExactAges) {
           Case{6.0F, {0.0F, 0.5F, 0.5F}, 0.75F, 1.5F}, Case{1.0F, {0.75F, 0.25F, 0.0F}, 0.25F, 0.5F}}) {
         drawOne(one, c.age);
         expectNear(pixel(32, 32), glm::vec4(c.opacity * c.color, c.opacity), kHalf, "middle");
-        // A grain is full up to 0.65 of its radius, and nothing from the radius on.
+        // A grain is opaque up to 0.65 of its radius, and transparent from the radius on.
         const int radius = static_cast<int>(16.0F * c.size);
         EXPECT_NEAR(pixel(32 + static_cast<int>(0.6F * static_cast<float>(radius)), 32).a, c.opacity, kHalf)
             << c.age;
@@ -217,7 +216,7 @@ TEST_P(SpriteGlTest, KeyFramesAtExactAges) {
     }
 }
 
-// A curve with as many keys as there may be: a saw, of which each age has its own tooth.
+// A curve with the maximum number of keys: a sawtooth with a tooth at each tested age.
 TEST_P(SpriteGlTest, ManyKeysAtExactAges) {
     style_.looks = {look(glm::vec3(1.0F), 1.0F, 1.0F)};
     AgeTrack<float>& saw = style_.looks[0].opacity;
@@ -233,8 +232,8 @@ TEST_P(SpriteGlTest, ManyKeysAtExactAges) {
     }
 }
 
-// A unit is 32 pixels, so that a sprite of ½ is 16 across; at a speed of 1 and 1 s of stretch 32 more reach back from it,
-// whichever way it goes: right, up, and along a slanted way of the same length. Round ends: the ellipse of the whole.
+// One unit is 32 pixels, so a sprite of ½ is 16 across. At speed 1 with 1 s of stretch, it extends 32 pixels backwards,
+// in any direction: right, up, and along a diagonal of the same length. Round ends: the ellipse of the whole.
 TEST_P(SpriteGlTest, AStretchedSpriteReachesBackAlongItsWay) {
     ParticleLook one = look(glm::vec3(1.0F), 1.0F, 0.5F);
     one.stretch = 1.0F;
@@ -244,13 +243,13 @@ TEST_P(SpriteGlTest, AStretchedSpriteReachesBackAlongItsWay) {
         for (const glm::vec3 way :
              {glm::vec3(1.0F, 0.0F, 0.0F), {0.0F, 1.0F, 0.0F}, {-kDiagonal, kDiagonal, 0.0F}}) {
             spawn({{glm::vec3(0.0F), way, 8.0F, 0}}, 0.0625F, 8, integrator);
-            draw();  // its head's centre has come to way / 2, 16 pixels; its tail's to -16
+            draw();  // its head's centre is at way / 2, 16 pixels; its tail's at -16
             const auto at = [&](float along, float across) {
                 const glm::vec2 p =
                     glm::vec2(32.0F) + along * glm::vec2(way) + across * glm::vec2(-way.y, way.x);
                 return pixel(static_cast<int>(p.x), static_cast<int>(p.y)).a;
             };
-            // A grain is full up to 0.65 of its radius, of 24 along and 8 across.
+            // A grain is opaque up to 0.65 of its radius, which is 24 along and 8 across.
             for (const glm::vec2& full : {glm::vec2(0, 0), {13, 0}, {-13, 0}, {0, 4}}) {
                 EXPECT_NEAR(at(full.x, full.y), 1.0F, kHalf);
             }
@@ -271,7 +270,7 @@ TEST_P(SpriteGlTest, AStretchedCellHasItsRightSideInFront) {
     one.stretch = 1.0F;
     style_.looks = {one};
     spawn({{glm::vec3(0.0F), glm::vec3(0.0F, -1.0F, 0.0F), 8.0F, 0}}, 0.5F);
-    draw();  // downwards: 48 pixels long, 16 wide; the cell is turned by a quarter clockwise
+    draw();  // downwards: 48 pixels long, 16 wide; the cell is rotated by 90° clockwise
     expectNear(pixel(36, 44), kRed, kHalf, "upper left of the cell: tail, right");
     expectNear(pixel(36, 19), kGreen, kHalf, "upper right: head, right");
     expectNear(pixel(27, 44), kBlue, kHalf, "lower left: tail, left");
@@ -280,20 +279,20 @@ TEST_P(SpriteGlTest, AStretchedCellHasItsRightSideInFront) {
     expectNear(pixel(32, 6), kClear, 0.0F, "beyond the head");
 }
 
-// What comes towards the viewer from behind the picture's plane has its tail there: no sprite turns over.
+// The tail of a particle that flies away from the viewer may lie behind the viewer: the sprite must not flip over.
 TEST_P(SpriteGlTest, ATailBehindTheViewerIsCutOff) {
     ParticleLook one = look(glm::vec3(1.0F), 1.0F, 0.5F);
     one.stretch = 8.0F;
     style_.looks = {one};
     spawn({{glm::vec3(0.0F), glm::vec3(0.25F, 0.0F, -1.0F), 80.0F, 0}}, 0.03125F);
-    draw();  // its tail goes left and towards the viewer, past him
+    draw();  // its tail extends left and past the viewer
     EXPECT_GT(pixel(8, 32).a, 0.0F);
     EXPECT_EQ(pixel(48, 32).a, 0.0F);
 }
 
 TEST_P(SpriteGlTest, CellsArePlayedOverAge) {
     useAtlas();
-    drawOne(cells(0, 1), 3.9F);  // 0.49 of its life
+    drawOne(cells(0, 1), 3.9F);  // 0.49 of its lifetime
     EXPECT_NEAR(pixel(20, 43).g, 0.2158605F, kHalf) << "128 of sRGB in linear light";
     drawOne(cells(0, 1), 4.1F);
     expectNear(pixel(20, 43), kRed, kHalf, "second cell");
@@ -333,7 +332,7 @@ TEST_P(SpriteGlTest, AdditiveSumsInAnyOrder) {
     }
 }
 
-// Over: the later of two halves covers half of the earlier.
+// Blending "over": the later of two half-transparent sprites covers half of the earlier.
 TEST_P(SpriteGlTest, AlphaFollowsTheOrder) {
     style_.looks = {look({1, 0, 0}, 0.5F, 1.0F), look({0, 1, 0}, 0.5F, 1.0F)};
     spawnTypes({0, 1}, 1.0F);
@@ -345,7 +344,7 @@ TEST_P(SpriteGlTest, AlphaFollowsTheOrder) {
     const Case cases[] = {{{}, green_last},
                           {{0, 1}, green_last},
                           {{1, 0}, {0.5F, 0.25F, 0.0F, 0.75F}},
-                          {{1, -1}, {0.0F, 0.5F, 0.0F, 0.5F}},  // one left out
+                          {{1, -1}, {0.0F, 0.5F, 0.0F, 0.5F}},  // one omitted
                           {{2, 0}, {0.5F, 0.0F, 0.0F, 0.5F}}};  // one beyond the extent
     for (const Sprite sprite : {Sprite::kQuad, Sprite::kPoint}) {
         style_.sprite = sprite;
@@ -357,8 +356,8 @@ TEST_P(SpriteGlTest, AlphaFollowsTheOrder) {
     }
 }
 
-// A sprite of diameter ½ at distance 3 has its front at 2.75: what lies h behind that lets h / soft of it
-// through.
+// The front of a sprite of diameter ½ at distance 3 is at 2.75. A surface h behind the front leaves h / soft of the
+// opacity.
 TEST_P(SpriteGlTest, SoftEdgesFadeByDistance) {
     style_.looks = {look(glm::vec3(1.0F), 1.0F, 0.5F)};
     style_.soft = 0.4F;

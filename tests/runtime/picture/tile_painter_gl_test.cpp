@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sprites painted by tiles against the same sprites drawn by the GL, in OpenGL 4.3 and in OpenGL ES 3.1: in every style,
-// before and behind a collider, at the picture's edges, of all sizes, and where the tiles have no room.
+// Sprites painted by tiles against the same sprites drawn by the GL, in OpenGL 4.3 and OpenGL ES 3.1: every style, in
+// front of and behind a collider, at the picture's edges, all sizes, and without tile memory.
 #include "runtime/bodies/world_textures.h"
 #include "runtime/gl/compute_units.h"
 #include "runtime/picture/tile_painter.h"
@@ -19,7 +19,7 @@
 namespace relief {
 namespace {
 
-// No multiples of a tile's side.
+// Not multiples of a tile's side.
 constexpr GLsizei kWidth = 150;
 constexpr GLsizei kHeight = 101;
 constexpr int kMargin = 7;  // half a sprite's pixels
@@ -43,7 +43,7 @@ class TilePainterGlTest : public GlTest {
     [[nodiscard]] ColliderView view() const { return {&textures_, collider_.bounds, finestTexel(collider_)}; }
     [[nodiscard]] RenderTarget target() const { return {framebuffer_.name(), kWidth, kHeight, srgb_}; }
 
-    /// All about the sphere, and beyond the picture; one in nine has died.
+    /// All around the sphere, and beyond the picture. One in nine has died.
     void spawn(std::uint32_t count, float reach = 1.2F) {
         particles_.emplace(required(ParticleSystem::create({.capacity = count})));
         Pcg32 random(7);
@@ -86,8 +86,9 @@ class TilePainterGlTest : public GlTest {
         double mean = 0.0;
         double most = 0.0;
     };
-    /// \param width, height  of both pictures. \param margin  pixels at their edges that are left out: some drivers drop
-    ///                        points whose centre is out of the picture.
+    /// \param width, height  of both pictures.
+    /// \param margin  pixels at the edges that are ignored: some drivers drop points whose centre is outside the
+    /// picture.
     static Difference between(const std::vector<float>& a, const std::vector<float>& b, int margin = 0,
                               int width = kWidth, int height = kHeight) {
         Difference difference;
@@ -104,7 +105,7 @@ class TilePainterGlTest : public GlTest {
         return difference;
     }
 
-    /// Both ways give one picture. The GL places vertices on the 256th part of a pixel, and blends in half floats.
+    /// Both methods give one picture. The GL snaps vertices to 1/256 pixel, and blends in half floats.
     void expectTheSame(const char* what, bool ordered, bool among_collider, double most = 0.04) {
         SCOPED_TRACE(what);
         const std::vector<float> drawn = draw(renderers_[0], ordered, among_collider);
@@ -162,14 +163,14 @@ TEST_P(TilePainterGlTest, EveryStyleLooksAsPointsDo) {
         look.lit = style_.looks.size() != 2;
     }
     expectTheSame("types", true, true);
-    // The order matters, so that the same picture shows that the tiles keep it.
+    // The order matters, so equal pictures prove that the tiles keep it.
     style_.opacity = 0.9F;
     EXPECT_GT(between(draw(renderers_[1], true, true), draw(renderers_[1], false, true)).most, 0.4);
 }
 
-// Cells turn in the picture, and stretched sprites lie along their way; both have corners.
+// Cells rotate in the picture, and stretched sprites lie along their velocity; both have corners.
 TEST_P(TilePainterGlTest, QuadsCellsAndStretchedSprites) {
-    // Two cells that fade towards their edges: a picture that is no grain's, and smooth.
+    // Two cells that fade towards their edges: a smooth picture, unlike a grain.
     constexpr std::uint32_t kSide = 32;
     std::vector<std::uint8_t> rgba;
     for (std::uint32_t y = 0; y < kSide; ++y) {
@@ -190,7 +191,7 @@ TEST_P(TilePainterGlTest, QuadsCellsAndStretchedSprites) {
     style_.looks[1].cell_first = 1;
     style_.looks[1].cell_last = 1;
     style_.looks[1].rotation = {{0.0F, 0.6F}};
-    constexpr double kCellSteps = 0.1;  // texels are the nearest ones
+    constexpr double kCellSteps = 0.1;  // nearest texels are sampled
     for (const bool quads : {false, true}) {
         style_.sprite = quads ? Sprite::kQuad : Sprite::kPoint;
         style_.atlas = nullptr;
@@ -223,12 +224,12 @@ TEST_P(TilePainterGlTest, SpritesOfEverySize) {
     for (const float diameter : {0.02F, 0.2F, 0.4F}) {
         compare(diameter, 25);
     }
-    // Quads are as large as they like, and stay where their middle is out of the picture.
+    // Quads have no maximum size, and stay if their centre is outside the picture.
     style_.sprite = Sprite::kQuad;
     for (const float diameter : {0.4F, 5.0F, 1e4F}) {
         compare(diameter, 0);
     }
-    for (const float diameter : {1e12F, 1e30F}) {  // rasterisers disagree on what these look like
+    for (const float diameter : {1e12F, 1e30F}) {  // rasterisers draw these differently
         style_.diameter = diameter;
         for (const float part : draw(renderers_[1], true, true)) {
             ASSERT_FALSE(std::isnan(part));
@@ -236,7 +237,7 @@ TEST_P(TilePainterGlTest, SpritesOfEverySize) {
     }
 }
 
-// Tiles have room for 2^18 entries of few sprites. Then points or quads are drawn, the very same.
+// Tiles have room for 2^18 entries of few sprites. Beyond that, identical points or quads are drawn.
 TEST_P(TilePainterGlTest, WithoutRoomSpritesAreDrawn) {
     spawn(8000, 0.7F);
     style_.diameter = 2.0F;
@@ -245,13 +246,13 @@ TEST_P(TilePainterGlTest, WithoutRoomSpritesAreDrawn) {
         style_.sprite = sprite;
         EXPECT_EQ(draw(renderers_[0], true, false), draw(renderers_[1], true, false));
     }
-    // And tiles are painted again afterwards.
+    // Afterwards tiles are painted again.
     style_.diameter = 0.05F;
     style_.opacity = 0.6F;
     expectTheSame("after that", true, false);
 }
 
-// So far away that all particles are in a few tiles, whose work groups would walk all of them: points are drawn.
+// So far away that all particles are in a few tiles, whose work groups would process all of them: points are drawn.
 TEST_P(TilePainterGlTest, ACloudFarAway) {
     spawn(90'000);
     style_.diameter = 0.2F;
@@ -268,7 +269,7 @@ TEST_P(TilePainterGlTest, NothingAliveNothingInSightAndNoRanks) {
     ASSERT_EQ(sorter_->count(), 0U) << "before its first update";
     EXPECT_TRUE(renderers_[1].draw(*particles_, camera_, style_, target(), {&sorter_->order(), 0}));
     const std::vector<float> seen = draw(renderers_[1], true, false);
-    camera_.target = {0.0F, 0.0F, 9.0F};  // all lie behind the viewer
+    camera_.target = {0.0F, 0.0F, 9.0F};  // all are behind the viewer
     EXPECT_EQ(draw(renderers_[0], true, false), draw(renderers_[1], true, false));
     EXPECT_NE(seen, draw(renderers_[1], true, false));
     camera_.target = glm::vec3(0.0F);
@@ -295,7 +296,7 @@ TEST_P(TilePainterGlTest, APictureOfAnotherSizeAndATargetWithoutDepth) {
     }
 }
 
-// A renderbuffer of depth cannot be read: points are drawn, the very same.
+// A depth renderbuffer cannot be read: identical points are drawn.
 TEST_P(TilePainterGlTest, DepthThatIsNoTexture) {
     spawn(500);
     GLuint depth = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes, played: what rains on animated or thin colliders stays outside.
+// Played scenes: drops stay outside animated and thin colliders.
 #include "runtime/events/event_recorder.h"
 #include "runtime/player/simulation.h"
 
@@ -60,7 +60,7 @@ rate = 6000
         for (const ParticleState& particle : *particles) {
             hit += particle.collisions > 0 ? 1 : 0;
             const glm::vec3 p = toObject(poseAt(loaded.scene.colliders[i], time), particle.position);
-            // Only near it: solid angles are slow.
+            // Only near the tube, because solid angles are slow.
             const bool near = glm::all(glm::lessThan(glm::abs(p - glm::vec3(0, 1, 0)), glm::vec3(1.3F)));
             inside += near && windingNumber(positions, mesh.triangles, p) > 0.5 ? 1 : 0;
         }
@@ -71,7 +71,7 @@ rate = 6000
     EXPECT_EQ(made.mesh(1)->triangleCount(), mesh.triangles.size());
 }
 
-// The list of events is as short as the spawns can use, or long for a log: the particles are the same.
+// Event lists are as short as spawns can use, or long for a log: the particles are the same.
 TEST_P(SimulationGlTest, ALogOfHitsChangesNoBirth) {
     const test::TemporaryFolder folder;
     ASSERT_TRUE(saveCollider(folder.path() / "tube.relief", animatedContainer(bendingTube(12, 8))));
@@ -134,8 +134,8 @@ most = 30
     EXPECT_GT(splashes, 200U);
 }
 
-// Every host creates its simulation so: relief-sim, the page's player and Python. A host may step by more than the scene's dt,
-// and give birth by itself.
+// Every host creates its simulation this way: relief-sim, the page's player and Python. A host may step by more than
+// the scene's dt, and spawn its own particles.
 TEST_P(SimulationGlTest, SweepsWhereAStepIsLongerThanAColliderIsThick) {
     const test::TemporaryFolder folder;
     const analytic::Shape floor = analytic::box({-2.0, -0.105, -2.0}, {2.0, 0.0, 2.0});

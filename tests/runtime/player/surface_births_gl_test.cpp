@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Births on the surfaces of colliders that move and bend, as a scene plays them.
+// Births on the surfaces of moving and deforming colliders in played scenes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,8 +25,8 @@ class SurfaceBirthsGlTest : public GlTest {
         EXPECT_TRUE(saveCollider(folder_.path() / "tube.relief", animatedContainer(mesh_)));
     }
 
-    /// The particles after some steps of a scene, in which a tube that bends has sparks.
-    /// \param own  poses of the program's, equal to the clip's.
+    /// The particles after some steps of a scene in which a bending tube emits sparks.
+    /// \param own  poses set by the program, equal to the clip's.
     std::vector<ParticleState> played(const std::string& emitter, int steps, bool collides = false,
                                       bool own = false) {
         return played(
@@ -58,7 +58,7 @@ class SurfaceBirthsGlTest : public GlTest {
         return *particles;
     }
 
-    /// The places of the tube's vertices in the world.
+    /// The positions of the tube's vertices in the world.
     std::vector<glm::dvec3> tubeAt(double time) const {
         const Pose pose = poseAt(loaded_->scene.colliders[0], time);
         std::vector<glm::dvec3> out;
@@ -67,7 +67,8 @@ class SurfaceBirthsGlTest : public GlTest {
         }
         return out;
     }
-    /// Without forces it flies straight on: its age times its velocity ago it was there.
+    /// The birth position. Without forces a spark flies straight, so it was born at its position minus age times
+    /// velocity.
     static glm::dvec3 birthplace(const ParticleState& spark) {
         return glm::dvec3(spark.position) - double{spark.age} * glm::dvec3(spark.velocity);
     }
@@ -76,7 +77,7 @@ class SurfaceBirthsGlTest : public GlTest {
     std::unique_ptr<LoadedScene> loaded_;
     double time_ = 0.0;
 };
-// The CPU gives birth: only SimulationGlTest differs by API.
+// The CPU computes births, so one API is enough; SimulationGlTest runs in both.
 INSTANTIATE_TEST_SUITE_P(Api, SurfaceBirthsGlTest, testing::Values(GlApi::kGl33Core), glApiTestName);
 
 double distanceTo(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& p) {
@@ -101,7 +102,7 @@ double distanceTo(const std::vector<glm::dvec3>& at, const std::vector<glm::uvec
     return least;
 }
 
-// Births by rate have moments of their own, between two poses.
+// Births by rate have their own times, between two poses.
 TEST_P(SurfaceBirthsGlTest, LieWhereItWasAtTheirOwnMoment) {
     const std::vector<ParticleState> sparks = played("rate = 2000\nspeed = 0.5\n", 12);
     ASSERT_NEAR(static_cast<double>(sparks.size()), 480.0, 1.0);
@@ -113,13 +114,13 @@ TEST_P(SurfaceBirthsGlTest, LieWhereItWasAtTheirOwnMoment) {
         worst = std::max(worst, distanceTo(tubeAt(born), mesh_.triangles, place));
         still = std::max(still, distanceTo(tubeAt(born + 0.5 * kDt), mesh_.triangles, place));
     }
-    // r (ω dt)² / 8, of the clip's quarter turn a second at an arm of 2.2.
+    // r (ω dt)² / 8 for the clip's 90° per second at an arm of 2.2.
     constexpr double kTurn = 1.5708;
     EXPECT_LT(worst, 2.2 * kTurn * kTurn * kDt * kDt / 8 + 2e-5);
     EXPECT_GT(still, 10 * worst) << "half a step later it has gone on";
 }
 
-// A skeleton of the program's own is a jump at first, and from then on moves as the same clip does.
+// Poses of the program are a jump at first. After that they move like the same clip.
 TEST_P(SurfaceBirthsGlTest, FollowPosesOfTheProgram) {
     const std::string keys = "rate = 1000\nspeed = 0\ninherit = 1\nstart = 0.1\n";
     const std::vector<ParticleState> by_clip = played(keys, 12);
@@ -132,7 +133,7 @@ TEST_P(SurfaceBirthsGlTest, FollowPosesOfTheProgram) {
     }
 }
 
-// A clip that ends elsewhere than it began jumps as it starts again: no spark is born on the way.
+// A clip whose end differs from its start jumps when it repeats: no spark is born on the way.
 TEST_P(SurfaceBirthsGlTest, AJumpThrowsNothing) {
     const std::vector<ParticleState> sparks =
         played("play = { clip = \"grow\", start = 0.5, resolution = 64 }\n",
@@ -140,7 +141,7 @@ TEST_P(SurfaceBirthsGlTest, AJumpThrowsNothing) {
     ASSERT_GT(sparks.size(), 4900U);
     std::size_t still = 0;
     for (const ParticleState& spark : sparks) {
-        // It grows by 0.1 in 1 s, so that what is thrown goes outwards at that speed, or less on the lids.
+        // It grows by 0.1 in 1 s, so sparks move outwards at that speed, or slower on the lids.
         const glm::vec2 away(spark.position.x, spark.position.z);
         const glm::vec2 velocity(spark.velocity.x, spark.velocity.z);
         ASSERT_LE(glm::length(velocity), 0.1001F);

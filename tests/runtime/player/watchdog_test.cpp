@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The watchdog ends the process once it starves, and not before.
+// The watchdog ends the process if it is not fed, and only then.
 #include "runtime/player/watchdog.h"
 
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ TEST(Watchdog, AtRestFedOrWithoutLimitItIsQuiet) {
     }
 }
 
-/// What a command line makes of one option.
+/// The options of a command line with one option.
 Result<GpuOptions> gpuOptions(const std::string& option, const std::string& word) {
     CLI::App app("", "tool");
     GpuOptions options;

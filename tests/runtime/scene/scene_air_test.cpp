@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene's air and fields: what their keys set, and what the report has of them.
+// The scene's air and fields: the effect of their keys, and their part of the report.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -23,7 +23,7 @@ TEST(SceneAir, KeysReachTheAir) {
         kBox + "[forces]\nwind = [1, 0, 0]\nviscosity = 1.8e-5\n");
     EXPECT_EQ(scene.air.attractors,
               (std::vector<Attractor>{{{1, 2, 3}, 4.0F, 0.5F}, {{0, 0, 0}, -1.0F, 1.0F, 0, 2.5F}}));
-    EXPECT_EQ(scene.air.vortices,  // with an axis of unit length
+    EXPECT_EQ(scene.air.vortices,  // the axis has unit length
               (std::vector<Vortex>{{{1, 0, 1}, {0, 0, -1}, 3.0F, 0.25F, 2}}));
     EXPECT_EQ(scene.air.curl_noise, (CurlNoise{0.5F, 2.0F, 4, 2000.0F, 4294967295U}));
     EXPECT_EQ(scene.flow->origin, "dir/scene.toml:26:7: flow.raw: ");
@@ -34,7 +34,7 @@ TEST(SceneAir, KeysReachTheAir) {
     EXPECT_EQ(scene.air.wind, glm::vec3(1, 0, 0));
     EXPECT_EQ(scene.air.viscosity, 1.8e-5F);
     EXPECT_TRUE(checkAir(scene.air));
-    // The smallest that the file may say is still taken by the runtime.
+    // The runtime accepts the smallest values that the file may contain.
     EXPECT_TRUE(checkAir(sceneWith("[curl_noise]\namplitude = 1e-300\nscale = 1e-300\n").air));
 }
 

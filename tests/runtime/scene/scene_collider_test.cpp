@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene's colliders, their ways through the world, and what types of particles do. pose_keys_test.cpp has poses between keys.
+// The scene's colliders, their pose keys, and particle types. pose_keys_test.cpp tests poses between keys.
 #include "runtime/scene/scene_collider.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ void expectNear(const glm::vec3& a, const glm::vec3& b, float bound) {
     EXPECT_NEAR(a.z, b.z, bound);
 }
 
-/// Turns by 120 degrees about z while it goes from x = 1 to x = 5, from 2 s to 4 s.
+/// Rotates by 120 degrees about z and moves from x = 1 to x = 5, from 2 s to 4 s.
 SceneCollider turning() {
     SceneCollider collider;
     collider.posed = true;
@@ -43,13 +43,13 @@ TEST(SceneCollider, EveryKey) {
     const SceneCollider& first = scene.colliders[0];
     EXPECT_EQ(first.restitution, 0.25F);
     EXPECT_EQ(first.friction, 0.75F);
-    // A quarter about z: x goes to y.
+    // A quarter turn about z maps x to y.
     expectNear(toWorld(first.pose, {2.0F, 0.0F, 0.0F}), {1.0F, 3.0F, 3.0F}, 1e-6F);
     ASSERT_EQ(first.keys.size(), 2U);
     EXPECT_EQ(first.keys[0].time, 1.0);
     EXPECT_EQ(first.keys[0].pose, first.pose) << "what a key leaves open is the collider's";
     EXPECT_EQ(poseAt(first, 9.0), first.keys[1].pose);
-    // Half a turn about y, which is the axis of an angle alone; the collider's scale.
+    // Half a turn about y, the default axis of an angle; the collider's scale.
     expectNear(toWorld(first.keys[1].pose, {2.0F, 0.0F, 0.0F}), {3.0F, 5.0F, 6.0F}, 1e-6F);
     const SceneCollider& second = scene.colliders[1];
     expectNear(toWorld(poseAt(second, 9.0), {1.0F, 2.0F, 3.0F}), {-1.0F, 2.0F, -3.0F}, 1e-6F);
@@ -72,18 +72,18 @@ TEST(WorldBounds, HoldEveryPlaceOfATurningBox) {
     object.add({-1.0F, -1.0F, -1.0F});
     object.add({1.0F, 1.0F, 1.0F});
     SceneCollider collider = turning();
-    // At one place: the corners of a square of half side 2 come by at ±2√2 on x and y; z stays.
+    // Without translation: the corners of a square of half side 2 pass ±2√2 on x and y; z does not change.
     collider.keys[1].pose.position = collider.keys[0].pose.position;
     const Bounds turned = worldBounds(collider, object);
     const float reach = 2.0F * std::sqrt(2.0F);
     expectNear(turned.min, {1.0F - reach, -reach, -2.0F}, 0.003F);
     expectNear(turned.max, {1.0F + reach, reach, 2.0F}, 0.003F);
-    // On its way: from x = 1 − 2 (as the turn begins) to 5 + 2.
+    // With translation: from x = 1 − 2 (at the start of the rotation) to 5 + 2.
     const Bounds moved = worldBounds(turning(), object);
     EXPECT_LE(moved.min.x, -1.0F);
     EXPECT_GE(moved.max.x, 7.0F);
     EXPECT_NEAR(moved.max.y, reach, 0.003F);
-    // At rest: the pose alone.
+    // At rest: only the pose.
     SceneCollider still;
     still.pose = {{1.0F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F, 0.0F}, 3.0F};
     EXPECT_EQ(worldBounds(still, object).min, glm::vec3(-2.0F, -3.0F, -3.0F));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// [emitter], [[emitter]] and [[spawn]]: what their keys mean, and what is filled in.
+// [emitter], [[emitter]] and [[spawn]]: their keys and defaults.
 #include "runtime/scene/scene_emitter.h"
 #include "runtime/births/emitter_motion.h"
 
@@ -83,7 +83,7 @@ TEST(SceneEmitter, DefaultsOfSeveral) {
                   "[[emitter]]\nrate = 100\n[[emitter]]\nburst = 100\nburst_every = 1\nduration = 4.5\n"
                   "[[emitter]]\nstart = 5\ndirection = [0, 1, 0]\n"),
         unitBounds()));
-    // 10000 less 1000 by the first's rate and 5 bursts of 100: 4250 for each of the two that say no rate.
+    // 10000 minus 1000 by the first emitter's rate and 5 bursts of 100: 4250 for each of the two without a rate.
     EXPECT_NEAR(scene.emitters[1].rate, 8500.0 / 2.0 / 4.5, 1e-4);
     EXPECT_NEAR(scene.emitters[2].rate, 8500.0 / 2.0 / 5.0, 1e-4);
     EXPECT_EQ(scene.emitters[2].velocity, glm::vec3(0.0F));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// [[material]] of scenes, "materials" of worlds and [[spawn]] material: what is read, and whom it reaches.
+// [[material]] of scenes, "materials" of worlds and the material of [[spawn]]: what is read, and which colliders use
+// it.
 #include <gtest/gtest.h>
 
 #include "formats/container.h"
@@ -37,7 +38,7 @@ TEST(SceneMaterial, ResponsesReachTheCollidersByName) {
     const std::vector<Material>& list = loaded.colliders.front()->materials.list;
     EXPECT_EQ(list[0], (Material{"oak", 0.125F, 0.25F}));
     EXPECT_EQ(list[1], (Material{"stove", 1.0F, 0.75F, 3.0F}));
-    // Of the names of the textures; one that is not among them is never hit.
+    // Indices into the names of the textures. A name that is missing there is never hit.
     const std::vector<std::string> names{"oak", "stove"};
     EXPECT_EQ(makeSpawners(loaded.scene.spawns, names).front().settings().material, 1);
     EXPECT_EQ(makeSpawners(loaded.scene.spawns, std::span(names).first(1)).front().settings().material, 1);
@@ -50,7 +51,7 @@ TEST(SceneMaterial, UnknownNamesAreErrors) {
          {std::pair("[[material]]\nname = \"stave\"\n", "material[0].name = 'stave'"),
           {"[[spawn]]\non = \"collision\"\nmaterial = \"ice\"\n", "spawn[0].material = 'ice'"}}) {
         expectErrorOf(loadAll(folder.write("scene.toml", kHead + more), {}), "scene.toml:3:1: ", what);
-        // A scene that another one becomes as it plays.
+        // Another scene that replaces this one during play.
         const auto plays = loadAll(folder.write("plays.toml", kHead), {});
         const auto changed = parseScene(kHead + more, "scene.toml");
         ASSERT_TRUE(plays && changed);

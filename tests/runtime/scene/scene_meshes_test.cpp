@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The meshes of a scene's pictures: which file stands for which collider, and the weather over time.
+// The meshes of a scene's pictures: the file drawn for each collider, and the weather over time.
 #include "runtime/scene/scene_meshes.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ class DrawnMeshesTest : public testing::Test {
                       "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
     }
 
-    /// A scene of a world, as loadAll() would make it, without its containers.
+    /// A scene with a world, like the result of loadAll(), but without its containers.
     [[nodiscard]] LoadedScene loaded(const World& world, const std::string& tables = {}) const {
         auto scene = parseScene(tables + "[ground]\nenabled = false\n[render]\nmeshes = \"" +
                                     folder_.path().filename().string() + "\"\n",
@@ -116,7 +116,7 @@ TEST_F(DrawnMeshesTest, TilesOfAMeshAreDrawnOnce) {
     World world = namedWorld();
     test::addTile(world, 0, "floor-1.relief", world.bodies.size());
     EXPECT_EQ(loadDrawnMeshes(loaded(world, "world = \"world.json\"\n"))->places.size(), 3U);
-    world.bodies.back().position.x += 10.0F;  // elsewhere it is another body
+    world.bodies.back().position.x += 10.0F;  // at another place it is another body
     EXPECT_EQ(loadDrawnMeshes(loaded(world, "world = \"world.json\"\n"))->places.size(), 4U);
 }
 
@@ -174,7 +174,7 @@ TEST(SceneLooks, EveryKey) {
                             .cell_first = 3,
                             .cell_last = 7,
                             .lit = false,
-                            .fade_in = 0.0F,  // opacity says itself how it comes and goes
+                            .fade_in = 0.0F,  // the opacity track replaces the fades
                             .fade_out = 0.0F}));
     EXPECT_EQ(scene.types[2].look.cell_last, 6U);
     EXPECT_EQ(scene.types[2].look.fade_out, 2.0F);

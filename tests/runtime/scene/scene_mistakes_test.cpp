@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Errors in a scene's text, with their line and column. Ranges, types of values and unknown keys are the reader's
-// (toml_reader_test.cpp); these are the scene's own rules.
+// Errors in a scene's text, with line and column. toml_reader_test.cpp tests ranges, value types and unknown keys; this
+// file tests the scene's own rules.
 #include <gtest/gtest.h>
 
 #include "runtime/bodies/world_textures.h"
@@ -19,7 +19,7 @@ TEST(SceneErrors, OfTheFile) {
                       {"collider = []\n", "1:12", "collider"},
                       {"emitter = [{}, 1]\n" + kSceneHead, "1:11", "emitter"},
                       {"steps = 4\n" + kSceneHead, "1:1", "'steps'"},
-                      // The first error of the file is the one that is reported.
+                      // The first error in the file is reported.
                       {kSceneHead + "[time]\nzeta = 1\nalpha = 1\n", "4:1", "'time.zeta'"},
                       {kSceneHead + "[attractor]\nstrength = 1\n", "3:1", "[[attractor]]"}});
 }

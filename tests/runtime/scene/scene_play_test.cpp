@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene's colliders that play clips: what is filled in, and their colours.
+// The scene's colliders that play clips: defaults and colours.
 #include "runtime/scene/scene_play.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ TEST(ScenePlay, IsLoadedWithItsClip) {
     EXPECT_EQ(loaded.played[0]->poseAt(2.5), poseAt(mesh, mesh.clips[0], 0.5)) << "again from the beginning";
     EXPECT_EQ(loaded.played[1]->poseAt(0.5), poseAt(mesh, mesh.clips[1], 0.75));
     EXPECT_EQ(loaded.played[1]->poseAt(7.0), poseAt(mesh, mesh.clips[1], 1.0));
-    // The tube bends to -x by a little more than 1.
+    // The tube bends to -x by slightly more than 1.
     EXPECT_LE(loaded.bounds.min.x, 3.0F - 1.05F);
     EXPECT_GE(loaded.bounds.max.x, 3.09F);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Emitters of a surface: which area they have, and what is no surface.
+// Surface emitters: their area, and invalid surfaces.
 #include "runtime/scene/scene_births.h"
 
 #include <gtest/gtest.h>
@@ -71,7 +71,7 @@ TEST_F(SceneSurface, IsThatOfTheColliderByGroupsAndMaterials) {
         const double own = areaOf(mesh_.positions, {t});
         skin += mesh_.triangle_materials[i] == 1 ? own : 0.0;
         for (int corner = 0; corner < 3; ++corner) {
-            // The joint's weight as the tube is made.
+            // The joint weight that the tube is made with.
             const float y = mesh_.positions[t[corner]].y;
             upper += own / 3.0 * double{std::clamp((y / 2.0F - 0.5F) * 3.0F + 0.5F, 0.0F, 1.0F)};
         }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene file: what its keys mean, what is filled in, and hostile bytes. scene.schema.json pins ranges of keys.
+// The scene file: keys, defaults, and hostile bytes. scene.schema.json pins the ranges of keys.
 #include "runtime/scene/scene.h"
 
 #include <gtest/gtest.h>
@@ -62,7 +62,7 @@ TEST(Scene, BodiesThatATypeCollidesWith) {
 TEST(Scene, OnlyWhatIsLeftOpenIsFilledFromTheBounds) {
     const auto scene = withDefaults(sceneWith(""), unitBounds());
     ASSERT_TRUE(scene);
-    // The longest side is 2: births start above the box, the floor is its lower end.
+    // The longest side is 2: births start above the box, and the floor is its lower end.
     EXPECT_GT(scene->emitters[0].box_min.y, 1.0F);
     EXPECT_EQ(*scene->forces.gravity, glm::vec3(0.0F, -6.0F, 0.0F));
     EXPECT_EQ(*scene->ground.height, 0.0F);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes written in tests, and errors in them.
+// Scene texts of tests, and errors in them.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ inline Result<Scene> sceneOf(const std::string& text) {
     return parseScene(text, "dir/scene.toml");
 }
 
-/// The scene of a text that must be one.
+/// The scene of a text that must be valid.
 inline Scene goodScene(const std::string& text) {
     const auto scene = sceneOf(text);
     EXPECT_TRUE(scene) << text << "\n" << scene.error().message;
@@ -29,7 +29,7 @@ inline Scene goodScene(const std::string& text) {
     return scene.value_or(none);
 }
 
-/// The scene of a collider and more.
+/// The scene of one collider and these lines.
 inline Scene sceneWith(const std::string& more) {
     return goodScene(kSceneHead + more);
 }
@@ -41,7 +41,7 @@ inline Bounds unitBounds() {
     return bounds;
 }
 
-/// \param names  the key, or what else tells the error from others at its place.
+/// \param names  the key, or other text that identifies the error at its position.
 template <class T>
 void expectErrorOf(const Result<T>& result, const std::string& place, const std::string& names) {
     ASSERT_FALSE(result) << place << " " << names;
@@ -55,10 +55,10 @@ void expectErrorOf(const Result<T>& result, const std::string& place, const std:
 struct SceneError {
     std::string text;
     std::string place;  ///< line and column of its error, "3:1"
-    std::string names;  ///< the key, or what else tells it from other errors at that place
+    std::string names;  ///< the key, or other text that identifies the error at that position
 };
 
-/// Each text after the head is no scene, which is said in one line.
+/// Each text after the head is rejected with a one-line message.
 inline void expectErrors(const std::string& head, const std::vector<SceneError>& errors) {
     for (const auto& [text, place, names] : errors) {
         SCOPED_TRACE(head + text);

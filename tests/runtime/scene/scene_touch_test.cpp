@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Births where a surface touches another: of the same births without that rule exactly those that closed forms keep.
+// Births where a surface touches another: exactly those of the unfiltered births that closed forms keep.
 #include "runtime/scene/scene_touch.h"
 #include "runtime/births/emitter_motion.h"
 
@@ -32,7 +32,7 @@ struct Played {
     std::uint64_t refused = 0;
 };
 
-/// Whether a birth is kept; nullopt so near to the rule's edge that the maps may decide it.
+/// Whether a birth is kept; nullopt if it is so near to the rule's edge that map errors may decide.
 using Truth = std::function<std::optional<bool>(const glm::dvec3& p, double moment)>;
 
 std::optional<bool> below(double value, double limit, double margin) {
@@ -56,7 +56,7 @@ class SceneTouch : public testing::Test {
     Result<LoadedScene> load(const std::string& text) {
         return loadAll(folder_.write("scene.toml", text), {});
     }
-    /// \param room  of each step.
+    /// \param room  capacity of each step.
     Played run(const std::string& text, double seconds, std::uint64_t room = 1U << 20) {
         Played made;
         auto loaded = load(text);
@@ -74,8 +74,9 @@ class SceneTouch : public testing::Test {
         }
         return made;
     }
-    /// \param scene  that ends with an emitter of a surface. \param keys  of that emitter's way.
-    /// \return how many births touch something.
+    /// \param scene  ends with a surface emitter.
+    /// \param keys  pose keys of that emitter.
+    /// \return the number of births that touch something.
     std::size_t expectTruth(const std::string& scene, const std::string& touching, double seconds,
                             const Truth& truth, const std::string& keys = "") {
         const std::vector<Born> all = run(scene + keys, seconds).births;
@@ -106,7 +107,7 @@ const std::string kNoGround = "ground = { enabled = false }\n";
 const std::string kBox = "[[collider]]\nfile = \"box.relief\"\n";
 const std::string kFoot = "[[emitter]]\nshape = \"surface\"\nmesh = \"foot.obj\"\nrate = 3000\nspeed = 0\n";
 
-/// A step: the foot, at height 0.3, is down from 1 s to 2 s.
+/// A footstep: the foot, otherwise at height 0.3, is down from 1 s to 2 s.
 double footHeight(double time) {
     return 0.3 * std::clamp(std::max(1.0 - time, time - 2.0), 0.0, 1.0);
 }
@@ -126,7 +127,7 @@ TEST_F(SceneTouch, AFootRaisesDustWhereAndWhileItIsDown) {
             },
             kStep);
     };
-    // Half of the area or all of it, 4/3 of 3 s; five standard deviations.
+    // Half of the area or all of it, for 4/3 of 3 s; the bound is five standard deviations.
     EXPECT_NEAR(static_cast<double>(dust(", material = \"earth\"", true)), 2000.0, 200.0);
     EXPECT_NEAR(static_cast<double>(dust(", material = [\"earth\", \"oak\"]", false)), 4000.0, 240.0);
     EXPECT_NEAR(static_cast<double>(dust("", false)), 4000.0, 240.0);
@@ -145,7 +146,7 @@ TEST_F(SceneTouch, ABodyThatComesToTheSurface) {
             return near && oak ? std::optional(*near && *oak) : std::nullopt;
         });
     EXPECT_NEAR(static_cast<double>(touched), 3000 * 0.6 * 0.7, 150.0);
-    // A foot inside of the body does not touch its surface.
+    // A foot inside the body does not touch its surface.
     const std::string deep =
         kNoGround + kBox + "position = [0, 0.25, 0]\n" + kFoot + "touching = { within = 0.2 }\n";
     EXPECT_TRUE(run(deep, 0.1).births.empty());
@@ -164,7 +165,7 @@ TEST_F(SceneTouch, SpeedIsRelativeToWhatIsTouched) {
                    1.0)
             .births.size();
     };
-    // The first births are of moments up to time 0, when nothing moves.
+    // The first births have times up to 0, when nothing moves.
     EXPECT_NEAR(static_cast<double>(count(slides, "", "0.39")), 2940.0, 1.0);
     EXPECT_EQ(count(slides, "", "0.41"), 0U);
     EXPECT_NEAR(static_cast<double>(count("", along, "0.39")), 2940.0, 1.0) << "the foot slides";
@@ -189,7 +190,7 @@ TEST_F(SceneTouch, TheColliderItLiesOnDoesNotCount) {
     const std::size_t touching = expectTruth(two, "within = 0.1", 1.0, [](const glm::dvec3& p, double) {
         return below(std::abs(slab().distance(p - glm::dvec3(0.5, 0.55, 0.0))), 0.1, 0.03);
     });
-    // 1.5 x 2 of the top, and strips beside, of a surface of 12.
+    // 1.5 x 2 of the top, and strips beside it, of a surface of 12.
     EXPECT_GT(touching, 900U);
 }
 
@@ -197,7 +198,7 @@ TEST_F(SceneTouch, TheNearestOfManyBodiesDecides) {
     std::string scene = kNoGround;
     std::vector<glm::dvec3> places;
     for (int i = 0; i < 500; ++i) {
-        // Slabs of 0.16 in a grid, some of them out of reach.
+        // A grid of slabs with side 0.16, some of them out of reach.
         const glm::dvec3 at(-0.6 + 0.05 * (i % 25), -0.01 * (i % 11), -0.5 + 0.05 * (i / 25));
         places.push_back(at);
         scene += std::string("[[collider]]\nfile = \"") + (i % 3 == 0 ? "bare" : "box") +
@@ -233,10 +234,10 @@ TEST_F(SceneTouch, TheGroundIsNoMaterial) {
         "position = [0.8, -0.02, 0]\n" +
         kFoot;
     expectTruth(scene, "within = 0.05", 0.1, [](const glm::dvec3&, double) { return true; });
-    // The box from x = -0.2 on is 0.02 below, and round its edge.
+    // From x = -0.2 on, the box is 0.02 below, and around its edge.
     expectTruth(scene, "within = 0.025", 0.2,
                 [](const glm::dvec3& p, double) { return below(-p.x, 0.2 + 0.015, 0.02); });
-    // Beside the box the ground lies nearer, but for a little round the box's edge.
+    // Beside the box the ground is nearer, except close to the box's edge.
     expectTruth(scene, "within = 0.05, material = [\"oak\", \"earth\"]", 0.2,
                 [](const glm::dvec3& p, double) { return below(-p.x, 0.2 + std::sqrt(5e-4), 0.02); });
 }

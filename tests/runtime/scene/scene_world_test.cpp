@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene's world: its bodies among the colliders, in which order, and what tables change of them.
+// A scene's world: its bodies among the colliders, their order, and changes by tables.
 #include "runtime/scene/scene_world.h"
 
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ TEST(SceneWorld, ATableOfANodeComesFirstAndKeepsWhatItLeavesOpen) {
     EXPECT_EQ(scene.colliders[3].node, "gate");
 }
 
-// Found where every second body is elsewhere, too.
+// Also detected if every second body is elsewhere.
 TEST(SceneWorld, BodiesMayNotAllBeAtOnePlace) {
     const auto collider = std::make_shared<const Collider>(test::readmeExample());
     const auto scene = [&](std::size_t bodies, std::size_t every, float apart) {
@@ -86,7 +86,7 @@ TEST(SceneWorld, BodiesMayNotAllBeAtOnePlace) {
     }
 }
 
-// A level is wide and low: seen from above, it fills nine tenths of the picture one way or the other.
+// A level is wide and low. Seen from above, it fills nine tenths of the picture's width or height.
 TEST(SceneWorld, TheDefaultCameraFramesALevel) {
     for (const glm::vec3& half :
          {glm::vec3(90.0F, 12.0F, 90.0F), glm::vec3(4.0F, 30.0F, 2.0F), glm::vec3(300.0F, 0.0F, 5.0F)}) {
@@ -105,7 +105,7 @@ TEST(SceneWorld, TheDefaultCameraFramesALevel) {
     }
 }
 
-/// Of the door another tile, in the same place, and before the gate.
+/// Adds another tile of the door, in the same place, before the gate.
 World threeBodiesAndATile() {
     World world = test::threeBodies();
     test::addTile(world, 1, "door-1.relief", 2);

@@ -28,7 +28,7 @@ std::vector<StreamBody> randomBodies(std::mt19937& random) {
     return bodies;
 }
 
-/// The distance to a body, by samples of its box from all sides: no nearer than the truth, and no farther than `step` more.
+/// The distance to a body from samples on all sides of its box: between the true distance and `step` more.
 float sampledDistance(const StreamBody& body, const glm::vec3& point, int count) {
     float least = std::numeric_limits<float>::max();
     for (int x = 0; x <= count; ++x) {
@@ -57,7 +57,7 @@ TEST(StreamPlan, WantsWhatReachesIntoABallAndTheNearestFirst) {
                 std::min(nearest[body.collider], sampledDistance(body, point.position, 12) / point.radius);
         }
     }
-    constexpr float kSampled = 0.05F;  // more than a step of the samples over a radius
+    constexpr float kSampled = 0.05F;  // above the sample step divided by a radius
     std::vector<bool> found(kColliders, false);
     float before = 0.0F;
     for (const std::uint32_t collider : plan.wanted()) {

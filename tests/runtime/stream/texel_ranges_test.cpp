@@ -10,7 +10,7 @@
 namespace relief {
 namespace {
 
-/// Against a row of marks.
+/// Compared with an array of flags.
 TEST(TexelRanges, GivesTheFirstGapThatFitsAndJoinsWhatComesBack) {
     constexpr std::size_t kFirst = 1000;
     constexpr std::size_t kCount = 400;

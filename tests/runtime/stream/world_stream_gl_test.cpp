@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Worlds whose colliders come and go: the field is that of the colliders that are there, bit by bit, and nothing falls through
-// while others are missing.
+// Worlds whose colliders are loaded and evicted: the field is bit-identical to that of the present colliders, and
+// particles do not fall through while others are missing.
 #include "runtime/bodies/world_textures.h"
 #include "runtime/stream/world_stream.h"
 
@@ -36,7 +36,7 @@ Collider colliderOf(DepthMap map) {
     return collider;
 }
 
-/// Brings what it has, when it is told to.
+/// Delivers colliders on request of the test.
 class TestSource : public ColliderSource {
   public:
     explicit TestSource(const std::vector<Collider>& colliders) : colliders_(colliders) {}
@@ -67,7 +67,7 @@ class TestSource : public ColliderSource {
 
 constexpr std::size_t kColliders = 6;
 
-/// Colliders along x, ten units apart, each of its own random trees, coarse and fine.
+/// Colliders along x, ten units apart, each with its own random trees, coarse and fine.
 class WorldStreamGlTest : public GlTest {
   protected:
     WorldStreamGlTest() {
@@ -115,7 +115,7 @@ class WorldStreamGlTest : public GlTest {
             ASSERT_TRUE(stream_->update(points));
         }
     }
-    /// Compares the field with that of textures in which these colliders are fine and the others coarse.
+    /// Compares the field with that of textures in which these colliders are fine and all others coarse.
     void expectFine(const std::vector<std::size_t>& fine) {
         std::vector<ColliderBody> bodies = bodies_;
         for (ColliderBody& body : bodies) {
@@ -139,7 +139,7 @@ class WorldStreamGlTest : public GlTest {
         EXPECT_EQ(different, 0U);
         EXPECT_GT(near, 500U);
     }
-    /// A ball about a collider's bodies, and one about two neighbours.
+    /// A ball around a collider's bodies, and one around two neighbours.
     static PointOfInterest at(std::size_t collider) {
         return {{10.0F * static_cast<float>(collider), 3.0F, 0.0F}, 2.0F};
     }
@@ -158,13 +158,13 @@ class WorldStreamGlTest : public GlTest {
     World world_;
     std::vector<ColliderBody> bodies_;
     std::uint64_t coarse_bytes_ = 0;
-    std::uint64_t largest_ = 0;  // of the fine ones
+    std::uint64_t largest_ = 0;  // size of the largest fine collider
     std::vector<glm::vec3> points_;
     std::unique_ptr<WorldStream> stream_;
     TestSource* source_ = nullptr;
 };
 
-// What is wanted, loaded, evicted and reported: the CPU decides alone, so one API is enough.
+// Only the CPU decides what is wanted, loaded, evicted and reported, so one API is enough.
 using WorldStreamBooksGlTest = WorldStreamGlTest;
 
 TEST_P(WorldStreamGlTest, TheFieldIsThatOfWhatIsThere) {
@@ -188,7 +188,7 @@ TEST_P(WorldStreamGlTest, BodiesThatMoveTakeTheirMapsAlong) {
         body.pose.position += glm::vec3(0.5F, -0.25F, 0.125F);
         poses.push_back(body.pose);
     }
-    for (int i = 0; i < 3; ++i) {  // and comes to rest
+    for (int i = 0; i < 3; ++i) {  // then comes to rest
         stream_->setPoses(poses);
     }
     expectFine({2});
@@ -219,7 +219,7 @@ TEST_P(WorldStreamGlTest, AnUpdateCopiesSoManyBytesAndTheCoarseMapsStandInUntilA
 }
 
 TEST_P(WorldStreamBooksGlTest, WhatWasNotWantedForTheLongestTimeGoes) {
-    // The first to go is the largest, so that its place is enough for any other.
+    // The first to be evicted is the largest, so that its memory suffices for any other.
     std::vector<std::size_t> by_size{0, 1, 2, 3, 4, 5};
     std::ranges::sort(by_size, std::greater(), [&](std::size_t i) { return fine_[i].texelBytes(); });
     const std::size_t old = by_size[0], first = by_size[1], second = by_size[2], late = by_size[3];
@@ -234,7 +234,7 @@ TEST_P(WorldStreamBooksGlTest, WhatWasNotWantedForTheLongestTimeGoes) {
     EXPECT_LE(stream_->counts().gpu_bytes, room);
     EXPECT_EQ(finish({first, second}), std::vector<std::size_t>()) << "the old one has gone";
     expectFine({first, second, late});
-    // More than there is room for: the nearest, and nothing is loaded in vain.
+    // More colliders than fit: the nearest are loaded, and nothing is loaded in vain.
     const PointOfInterest all{{0.0F, 3.0F, 0.0F}, 200.0F};
     EXPECT_TRUE(stream_->finish({&all, 1}));
     EXPECT_EQ(stream_->counts().wanted, kColliders);
@@ -246,7 +246,7 @@ TEST_P(WorldStreamBooksGlTest, WhatWasNotWantedForTheLongestTimeGoes) {
 
 TEST_P(WorldStreamBooksGlTest, ThereIsRoomAgainWhenWhatWasInTheWayIsNoLongerWanted) {
     open({.gpu_bytes = coarse_bytes_ + 2 * largest_});
-    // In any order and number: in the end the one that alone is wanted is there, and nothing has been loaded in vain.
+    // In any order and number: in the end the only wanted collider is present, and nothing was loaded in vain.
     Pcg32 random(12);
     for (int i = 0; i < 25; ++i) {
         std::vector<std::size_t> some;
@@ -323,7 +323,7 @@ TEST_P(WorldStreamBooksGlTest, TooLittleMemoryIsSaid) {
     }
 }
 
-// Drops rest on the fine plane of a tile or on the coarse one, whichever is there; the two are half a unit apart.
+// Drops rest on the fine or the coarse plane of a tile, whichever is present; the two are half a unit apart.
 TEST_P(WorldStreamGlTest, NothingFallsThroughTilesThatComeAndGo) {
     const auto plane = [](double height) {
         const PatchHeights codes = PatchHeights::of(std::vector(4, height), 2);

@@ -42,7 +42,7 @@ PointDataGrid::Ptr gridOf(const std::vector<std::byte>& bytes) {
     return grids->size() == 1 ? openvdb::gridPtrCast<PointDataGrid>((*grids)[0]) : nullptr;
 }
 
-/// What a reader finds, by id.
+/// The particles in a written file, by id.
 std::map<std::uint32_t, VdbPoint> particlesOf(const PointDataGrid& grid) {
     std::map<std::uint32_t, VdbPoint> out;
     for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf) {
