@@ -323,7 +323,7 @@ job weekly 90 sweep
 job_sweep() {
     local status=0
     release relief_gl_test
-    RELIEF_SOAK=1 "$bin/relief_gl_test" --gtest_filter='*ASweptStepNeverTunnels*' \
+    RELIEF_SOAK=1 "$bin/relief_gl_test" --gtest_filter='*SweptStepsNeverTunnel*' \
         --gtest_output="json:$work/sweep.json" || status=$?
     python3 - "$work/sweep.json" <<'P'
 import json, sys
@@ -395,7 +395,7 @@ job_characters() {
     done
     "$bin/relief" bake "$work/mannequin.glb" --animated "${clips[@]}" -o "$work/mannequin.relief" -q
     RELIEF_ANIMATED=$work/mannequin.relief "$bin/relief_gl_test" \
-        --gtest_filter='*AnimatedColliderGlTest.InsideIsThatOfThePosedMesh/Gl33Core' |
+        --gtest_filter='*AnimatedColliderGlTest.InsideMatchesThePosedMesh/Gl33Core' |
         sed "s/^.*% wrong/$name: &/"
 }
 

@@ -36,7 +36,7 @@ constexpr const char* kQuery = R"(
 uniform highp sampler2D u_points;  // xyz: object space; w: time
 
 layout(location = 0) out vec4 o_air;    // xyz: airVelocity
-layout(location = 1) out vec4 o_field;  // xyz: fieldAcceleration of a particle at a velocity of (1, 2, 3)
+layout(location = 1) out vec4 o_field;  // xyz: fieldAcceleration of a particle with velocity (1, 2, 3)
 
 void main() {
     vec4 point = texelFetch(u_points, ivec2(gl_FragCoord.xy), 0);
@@ -160,7 +160,7 @@ AirSettings everything() {
 
 // No kind, each kind alone, all but one, and all: each combination compiles, and its result is the sum of its parts.
 // With several attractors or vortices, each adds its own contribution.
-TEST_P(AirGlTest, EveryKindOfAirCompilesAloneAndAddsUp) {
+TEST_P(AirGlTest, EveryCombinationCompilesAndAddsUp) {
     const AirSettings all = everything();
     const std::vector<glm::vec4> points = randomPoints(2000, 2.0F, 128.0F * 0.6F / 0.9F, 2);
     const auto some = [&](unsigned kinds) {
@@ -190,7 +190,7 @@ TEST_P(AirGlTest, EveryKindOfAirCompilesAloneAndAddsUp) {
     for (const unsigned kinds : {0U, 30U, 29U, 27U, 23U, 15U, 31U}) {
         SCOPED_TRACE(kinds);
         const AirBlock block = required(AirBlock::create(some(kinds)));
-        EXPECT_EQ(block.defines().empty(), kinds == 0) << "a scene without air must compile none of it";
+        EXPECT_EQ(block.defines().empty(), kinds == 0) << "a scene without air must not compile air code";
         EXPECT_EQ(block.defines().find("_CURL") != std::string::npos, (kinds & 4U) != 0);
         std::vector<std::vector<Sample>> alone;
         for (unsigned kind = 1; kind < 32; kind *= 2) {
@@ -246,7 +246,7 @@ TEST_P(AirGlTest, FlowIsExactOnTrilinearFieldsAndConstantOutside) {
     }
 }
 
-TEST_P(AirGlTest, AttractorsFallOffAsTheySay) {
+TEST_P(AirGlTest, AttractorsMatchTheirFalloff) {
     const glm::vec3 position(0.2F, 0.4F, -0.3F);
     std::vector<glm::vec4> points = randomPoints(5000, 3.0F, 0.0F, 7);
     points.emplace_back(position, 0.0F);
@@ -270,12 +270,12 @@ TEST_P(AirGlTest, AttractorsFallOffAsTheySay) {
                 ASSERT_NEAR(glm::length(glm::dvec3(gpu[i].field) - expected), 0.0, 5e-6) << r;
             }
             EXPECT_GT(*std::min_element(zones.begin(), zones.end()), 5);
-            EXPECT_EQ(gpu.back().field, glm::vec3(0.0F)) << "no direction at its very place";
+            EXPECT_EQ(gpu.back().field, glm::vec3(0.0F)) << "no force at the attractor itself";
         }
     }
 }
 
-TEST_P(AirGlTest, VorticesTurnRightHandedRoundTheirAxis) {
+TEST_P(AirGlTest, VorticesRotateRightHandedAboutTheirAxis) {
     const glm::vec3 center(0.1F, -0.2F, 0.3F);
     const glm::vec3 axis(1.0F, 2.0F, -2.0F);  // length 3
     std::vector<glm::vec4> points = randomPoints(5000, 2.0F, 0.0F, 9);
@@ -292,15 +292,15 @@ TEST_P(AirGlTest, VorticesTurnRightHandedRoundTheirAxis) {
             const double size = r < 0.6 ? r / 0.6 : std::pow(0.6 / r, falloff);
             const glm::dvec3 got(gpu[i].field);
             ASSERT_NEAR(glm::length(got), 4.0 * size, 1e-5) << r;
-            ASSERT_NEAR(glm::dot(got, a), 0.0, 5e-6) << "pushes along its axis";
-            ASSERT_NEAR(glm::dot(got, across) / r, 0.0, 5e-6) << "pushes outwards";
-            ASSERT_GT(glm::dot(glm::cross(a, across), got), 0.0) << "turns the wrong way";
+            ASSERT_NEAR(glm::dot(got, a), 0.0, 5e-6) << "force along the axis";
+            ASSERT_NEAR(glm::dot(got, across) / r, 0.0, 5e-6) << "radial force";
+            ASSERT_GT(glm::dot(glm::cross(a, across), got), 0.0) << "rotates in the wrong direction";
         }
         EXPECT_NEAR(glm::length(gpu.back().field), 0.0, 1e-5);
     }
 }
 
-TEST_P(AirGlTest, UpdateChangesWhatTheSameProgramsSay) {
+TEST_P(AirGlTest, UpdateChangesValuesWithoutRecompiling) {
     AirSettings air = everything();
     AirBlock block = required(AirBlock::create(air));
     const std::string defines = block.defines();
@@ -322,7 +322,7 @@ TEST_P(AirGlTest, UpdateChangesWhatTheSameProgramsSay) {
     }
 
     AirBlock less = required(AirBlock::create(without_flow));
-    EXPECT_EQ(less.update(everything()).error().code, ErrorCode::kUsage) << "its programs know no vortices";
+    EXPECT_EQ(less.update(everything()).error().code, ErrorCode::kUsage) << "compiled without vortices";
     air.attractors.resize(9);
     EXPECT_EQ(AirBlock::create(air).error().code, ErrorCode::kUsage);
 }
@@ -376,7 +376,7 @@ class CurlNoiseGlTest : public AirGlTest {
 // Central differences over 0.02 of the finest cell have an error of h²/6 of a third derivative, about 1e-3 of the
 // gradient, and rounding errors of about 1e-4. A field with divergence, or with a wrong term in the curl, would have a
 // divergence as large as the other derivatives.
-TEST_P(CurlNoiseGlTest, HasNoDivergence) {
+TEST_P(CurlNoiseGlTest, IsDivergenceFree) {
     for (const int octaves : {1, 2, 4}) {
         const CurlNoise noise{1.5F, 0.8F, octaves, 0.4F, 7};
         const float h = 0.02F * noise.scale / static_cast<float>(1 << (octaves - 1));
@@ -392,7 +392,7 @@ TEST_P(CurlNoiseGlTest, HasNoDivergence) {
 }
 
 // The amplitude is the root mean square of the speed for any octaves, seed and time, and no direction is preferred.
-TEST_P(CurlNoiseGlTest, HasTheAmplitudeItSaysAndNoPreferredDirection) {
+TEST_P(CurlNoiseGlTest, HasItsAmplitudeAndIsIsotropic) {
     for (const int octaves : {1, 2, 3, 4}) {
         for (const float t : {0.0F, 0.75F}) {  // a pattern, and halfway to the next
             const CurlNoise noise{2.0F, 0.5F, octaves, 1.0F / 3.0F, static_cast<std::uint32_t>(octaves)};
@@ -409,7 +409,7 @@ TEST_P(CurlNoiseGlTest, HasTheAmplitudeItSaysAndNoPreferredDirection) {
                 fastest = std::max(fastest, glm::length(v));
             }
             EXPECT_NEAR(std::sqrt(squares.x + squares.y + squares.z), 2.0, 0.02) << octaves << " " << t;
-            EXPECT_LT(fastest, 4.0 * 2.0) << "the header says so";
+            EXPECT_LT(fastest, 4.0 * 2.0) << "bound stated in the header";
             for (int axis = 0; axis < 3; ++axis) {
                 EXPECT_NEAR(mean[axis], 0.0, 0.025) << octaves << " " << t;
                 EXPECT_NEAR(squares[axis], 4.0 / 3.0, 0.05) << octaves << " " << t;
@@ -419,7 +419,7 @@ TEST_P(CurlNoiseGlTest, HasTheAmplitudeItSaysAndNoPreferredDirection) {
 }
 
 // Pinned, because the noise of a seed is part of a scene's result.
-TEST_P(CurlNoiseGlTest, IsThatOfItsSeed) {
+TEST_P(CurlNoiseGlTest, DependsOnlyOnTheSeed) {
     Pcg32 random(6);
     std::vector<glm::ivec3> lattice;
     for (int i = 0; i < 200; ++i) {
@@ -457,7 +457,7 @@ TEST_P(CurlNoiseGlTest, IsThatOfItsSeed) {
 // At the faces between simplices, other corners start to contribute: at faces within a cell's cube, where two fractions
 // are equal, and at those between cubes. The velocity jumps if the order of corners is wrong or a contribution does not
 // end at the face opposite its corner. It has a kink if a contribution ends too abruptly.
-TEST_P(CurlNoiseGlTest, HasNoJumpAndNoKinkAtTheFacesOfSimplices) {
+TEST_P(CurlNoiseGlTest, IsSmoothAcrossFacesOfSimplices) {
     Pcg32 random(8);
     constexpr std::size_t kPoints = 4000;
     for (int face = 0; face < 7; ++face) {  // the last kind is anywhere
@@ -508,9 +508,9 @@ TEST_P(CurlNoiseGlTest, ChangesSmoothlyInTimeAndRepeatsAfterItsPeriod) {
             ASSERT_LT(glm::length(v[i + k] - v[i + k + 1]), 0.05);
         }
         correlation += glm::dot(v[i + 8], v[i + 9]) / 300.0;
-        ASSERT_LT(glm::length(v[i + 10] - v[i + 8]), 0.01) << "a jump where time is taken back";
+        ASSERT_LT(glm::length(v[i + 10] - v[i + 8]), 0.01) << "a jump where the time wraps";
     }
-    EXPECT_NEAR(correlation, 0.0, 0.15) << "after a pattern's time another should blow";
+    EXPECT_NEAR(correlation, 0.0, 0.15) << "successive patterns must not correlate";
 }
 
 // Far away, floats are coarser than the noise's cells, and a fused multiply-add may select another cell; but the speed

@@ -14,7 +14,7 @@
 namespace relief {
 namespace {
 
-TEST(CurlNoise, ItsTimeRepeatsAfterItsPeriod) {
+TEST(CurlNoise, TimeWrapsAfterThePeriod) {
     CurlNoise noise{1.0F, 0.5F, 3, 0.25F, 5};  // 128 patterns of 2 s
     EXPECT_EQ(curlTime(noise, 256.0 + 0.5), 0.5F);
     noise.drift = 0.0F;
@@ -33,7 +33,7 @@ TEST(Air, StokesRateOfADrop) {
     EXPECT_EQ(stokesRate(0.0F, 1.0F, 1.0F), 0.0F);
 }
 
-TEST(Air, WrongSettingsAreNamed) {
+TEST(Air, InvalidSettingsAreNamed) {
     AirSettings good;
     good.attractors.resize(8);
     good.vortices.resize(8);

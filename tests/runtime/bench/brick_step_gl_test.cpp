@@ -157,7 +157,7 @@ class BrickStepGlTest : public testing::TestWithParam<StepPath> {
 };
 
 // Bricks as in Unreal Engine, and a dense volume.
-TEST_P(BrickStepGlTest, ParticlesEndOnTheCpusSide) {
+TEST_P(BrickStepGlTest, ParticlesEndOnTheCpuSide) {
     expectTheCpusSides(bricks(8));
     expectTheCpusSides(dense());
 }

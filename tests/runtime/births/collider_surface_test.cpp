@@ -57,7 +57,7 @@ bool isClosed(const ColliderSurface& surface) {
     return std::all_of(sides.begin(), sides.end(), [](const auto& side) { return side.second == 0; });
 }
 
-TEST(ColliderSurface, IsThatOfABall) {
+TEST(ColliderSurface, MatchesABall) {
     const ColliderSurface surface =
         surfaceOf(analytic::frontBackCollider(analytic::sphere({1, 2, 3}, 0.5), 256));
     EXPECT_TRUE(isClosed(surface));
@@ -70,7 +70,7 @@ TEST(ColliderSurface, IsThatOfABall) {
     for (glm::vec3& p : centred.positions) {
         p -= glm::vec3(1, 2, 3);
     }
-    EXPECT_NEAR(volumeOf(centred), kPi / 6, 2e-3) << "outwards";
+    EXPECT_NEAR(volumeOf(centred), kPi / 6, 2e-3) << "oriented outwards";
 }
 
 TEST(ColliderSurface, KeepsTheEdgesOfABox) {
@@ -87,7 +87,7 @@ TEST(ColliderSurface, KeepsTheEdgesOfABox) {
     }
 }
 
-TEST(ColliderSurface, AMaterialHasItsPartOfTheArea) {
+TEST(ColliderSurface, MaterialsHaveTheirFractionOfTheArea) {
     const glm::dvec3 half(0.5, 0.3, 0.2);
     Collider box = analytic::frontBackCollider(analytic::box(-half, half), 128);
     // The half with x > 0 is felt.
@@ -112,7 +112,7 @@ TEST(ColliderSurface, AMaterialHasItsPartOfTheArea) {
     EXPECT_NE(none.error().message.find("'ice'"), std::string::npos) << none.error().message;
 }
 
-TEST(ColliderSurface, RefusesWhatHasNone) {
+TEST(ColliderSurface, RejectsCollidersWithoutASurface) {
     const Collider ball = analytic::frontBackCollider(analytic::sphere({0, 0, 0}, 0.5), 32);
     EXPECT_FALSE(colliderSurface(ball, 1));
     EXPECT_FALSE(colliderSurface(ball, kSurfaceCellsMax + 1));

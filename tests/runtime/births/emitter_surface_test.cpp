@@ -57,7 +57,7 @@ std::vector<EmitterSurface::Place> drawn(const EmitterSurface& surface, int coun
     return places;
 }
 
-TEST(EmitterSurface, LiesInTheFacesOfABoxAndPointsOutwards) {
+TEST(EmitterSurface, LiesOnTheFacesOfABoxAndPointsOutwards) {
     const glm::vec3 half(0.5F, 2.0F, 0.1F);
     const AnimatedMesh box = movingBox(half);
     std::vector<std::size_t> counts(3);
@@ -107,11 +107,11 @@ TEST(EmitterSurface, IsUniformOnABentPipe) {
     };
     EXPECT_LT(test::kolmogorov(around, bent_share), test::kKolmogorovMax);
     EXPECT_GT(test::kolmogorov(around, [](double phi) { return phi / (2 * kPi); }), 20.0)
-        << "areas at rest would be seen";
+        << "areas at rest would be detected";
 }
 
 // Points of a rotating body move with ω × r. The error of the linear path stays within the header's bounds.
-TEST(EmitterSurface, MovesAsATurningBodyDoes) {
+TEST(EmitterSurface, MovesLikeARotatingBody) {
     const AnimatedMesh box = movingBox({0.5F, 0.3F, 0.2F});
     const glm::vec3 axis = glm::normalize(glm::vec3(1.0F, 2.0F, -1.0F));
     constexpr double kTurn = 3.0;  // radians per second
@@ -137,13 +137,13 @@ TEST(EmitterSurface, MovesAsATurningBodyDoes) {
                       arm * kTurn * kTurn * dt * dt / 8 + 1e-6);
             ASSERT_LE(double{glm::length(then[i].velocity - velocity)},
                       arm * kTurn * kTurn * dt / 2 * 1e-1 + 1e-6 / dt)
-                << "in the middle of the step it is far better";
+                << "the error is far smaller in the middle of the step";
             ASSERT_GT(glm::dot(then[i].normal, exact[i].normal), 0.99999F);
         }
     }
 }
 
-TEST(EmitterSurface, WeightsAreADensityThatIsLinear) {
+TEST(EmitterSurface, WeightsAreALinearDensity) {
     const std::vector<glm::vec3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 0, 0}, {6, 0, 0}, {5, 1, 0}};
     const std::vector<glm::uvec3> two{{0, 1, 2}, {3, 4, 5}};
     // If only one corner has a weight, its barycentric coordinate has a beta distribution, 6 x (1 − x).
@@ -169,7 +169,7 @@ TEST(EmitterSurface, WeightsAreADensityThatIsLinear) {
     EXPECT_NEAR(static_cast<double>(near) / kCount, 0.75, 5 * std::sqrt(0.1875 / kCount));
 }
 
-TEST(EmitterSurface, RefusesWhatIsNoSurface) {
+TEST(EmitterSurface, RejectsInvalidSurfaces) {
     const std::vector<glm::vec3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     const std::vector<glm::uvec3> one{{0, 1, 2}};
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -208,7 +208,7 @@ EmitterSettings settingsOf(EmitterSurface surface) {
     return settings;
 }
 
-TEST(EmitterSurface, AnEmitterThrowsAlongTheNormalAndTakesOnItsVelocity) {
+TEST(EmitterSurface, EmittersThrowAlongTheNormalAndAddTheSurfaceVelocity) {
     const AnimatedMesh box = movingBox({0.5F, 0.3F, 0.2F});
     Emitter emitter(settingsOf(surfaceOf(box.triangles, box.positions)), 1);
     std::vector<glm::vec3> later = box.positions;
@@ -232,14 +232,14 @@ TEST(EmitterSurface, AnEmitterThrowsAlongTheNormalAndTakesOnItsVelocity) {
         EXPECT_NEAR(glm::length(own[i].velocity), 2.0F, 1e-5F);
         const glm::vec3 at_end = own[i].position + own[i].age * glm::vec3(1, 0, 2);
         const glm::vec3 from = glm::abs(at_end - glm::vec3(0.1F, 0, 0.2F)) - glm::vec3(0.5F, 0.3F, 0.2F);
-        EXPECT_NEAR(std::max({from.x, from.y, from.z}), 0.0F, 1e-5F) << "on the box of its own moment";
+        EXPECT_NEAR(std::max({from.x, from.y, from.z}), 0.0F, 1e-5F) << "on the box at the time of birth";
         // x maps to −z, and z to x.
         const glm::vec3 thrown = births[i].velocity - quarter * own[i].velocity;
         EXPECT_LT(glm::length(thrown - 0.5F * glm::vec3(3 * 2.0F, 5.0F, -3 * 1.0F)), 1e-4F);
     }
 }
 
-TEST(EmitterSurface, WithoutAnAreaNothingIsBorn) {
+TEST(EmitterSurface, NoAreaMeansNoBirths) {
     const AnimatedMesh box = movingBox({0.5F, 0.3F, 0.2F});
     EmitterSettings settings = settingsOf({});
     EXPECT_FALSE(Emitter::check(settings));

@@ -39,7 +39,7 @@ TEST(PointList, CsvWithAndWithoutNormals) {
     EXPECT_NEAR(normals->normals[1].x, 0.6F, 1e-7F);
 }
 
-TEST(PointList, WrongCsvNamesItsLine) {
+TEST(PointList, CsvErrorsNameTheLine) {
     expectError("x,y,z\nu,v,w\n1,2,3\n", "p:2: not a point; write x,y,z");
     expectError("1,2,3\nx,y,z\n", "p:2: not a point of 3 numbers");
     expectError("1,2\n3,4,5\n", "p:1: ");  // numbers, so no header line
@@ -110,7 +110,7 @@ TEST(PointList, BinaryPlyOfEveryTypeAndByteOrder) {
     }
 }
 
-TEST(PointList, WrongPly) {
+TEST(PointList, RejectsInvalidPly) {
     expectError("ply\n", "p: its header does not end");
     expectError("ply\n" + std::string(1'000'000, '\n'), "p: its header does not end");
     expectError("ply\nformat ebcdic 1.0\nend_header\n", "p: its header does not name a supported format");
@@ -141,7 +141,7 @@ TEST(PointList, WrongPly) {
     expectError(header("binary_little_endian", "4194304", kXyz), "p: vertex 0: it ends before the counts");
 }
 
-TEST(PointList, EveryPrefixAndFlippedByteIsSurvived) {
+TEST(PointList, SurvivesPrefixesAndFlippedBytes) {
     std::string binary = header("binary_little_endian", "2", kXyz);
     for (int i = 0; i < 6; ++i) {
         append(binary, static_cast<float>(i), false);
@@ -161,7 +161,7 @@ TEST(PointList, EveryPrefixAndFlippedByteIsSurvived) {
     }
 }
 
-TEST(PointList, ManyPointsAreALimit) {
+TEST(PointList, ManyPointsHitTheLimit) {
     std::string text;
     for (std::size_t i = 0; i <= kPointsMax; ++i) {
         text += "1,2,3\n";

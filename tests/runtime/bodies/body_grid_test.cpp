@@ -68,7 +68,7 @@ std::vector<BodyBox> randomBoxes(std::uint32_t count, float half, float spread, 
     return boxes;
 }
 
-TEST(BodyGrid, FindsTheBodiesWhoseBoxesHoldAPoint) {
+TEST(BodyGrid, FindsTheBodiesWhoseBoxesContainAPoint) {
     Pcg32 random(3);
     std::size_t met = 0;
     for (const float half : {1.0F, 30.0F, 5000.0F}) {
@@ -105,7 +105,7 @@ BodyBox along(const glm::vec3& low, const glm::vec3& size, std::uint32_t body) {
     return {low + half, {half.x, 0, 0, 0, half.y, 0, 0, 0, half.z}, 0.0F, body, false};
 }
 
-TEST(BodyGrid, AsksFewOfMany) {
+TEST(BodyGrid, TestsFewBodiesOfMany) {
     Pcg32 random(5);
     std::vector<BodyBox> boxes;
     const glm::vec3 spread(500.0F, 5.0F, 500.0F);
@@ -129,7 +129,7 @@ TEST(BodyGrid, AsksFewOfMany) {
     EXPECT_LT(static_cast<double>(asked) / kPoints, 5.0);
 }
 
-TEST(BodyGrid, ALongBodyIsInCellsAlongIt) {
+TEST(BodyGrid, LongBodiesOccupyOnlyCellsAlongThem) {
     // A needle through a cube of 40³ cells: its axis-aligned box contains 64,000.
     BodyBox needle;
     const glm::vec3 way = glm::normalize(glm::vec3(1.0F));
@@ -142,7 +142,7 @@ TEST(BodyGrid, ALongBodyIsInCellsAlongIt) {
     }
 }
 
-TEST(BodyGrid, OfNothingIsEmpty) {
+TEST(BodyGrid, NoBodiesMakeAnEmptyGrid) {
     EXPECT_TRUE(BodyGrid::of({}, 0.25F).levels.empty());
     const BodyBox point{.center = glm::vec3(3.0F), .body = 7};
     EXPECT_EQ(found(BodyGrid::of({&point, 1}, 0.25F), glm::vec3(3.0F)), std::vector<std::uint32_t>{7});

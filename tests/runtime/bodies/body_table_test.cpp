@@ -48,7 +48,7 @@ glm::vec3 through(const glm::vec4 (&rows)[3], const glm::vec3& p) {
     return {glm::dot(rows[0], at), glm::dot(rows[1], at), glm::dot(rows[2], at)};
 }
 
-TEST(BodyTable, ABodyThatStopsIsAtRestAStepLater) {
+TEST(BodyTable, StoppedBodiesAreAtRestAStepLater) {
     BodyTable table(oneMap(), row(1'000), true);
     EXPECT_TRUE(table.isNew());
     static_cast<void>(table.takeChanges());
@@ -108,7 +108,7 @@ TEST(BodyTable, PlacedMapsAndMovesFollowThePoses) {
     }
 }
 
-TEST(BodyTable, TheTextureIsNoHigherThanWide) {
+TEST(BodyTable, TextureIsNoHigherThanWide) {
     for (const std::size_t count : {1U, 7U, 300U, 65'536U}) {
         const BodyTable table(oneMap(), row(count), true);
         const std::size_t width = std::size_t{1} << table.log2Width();

@@ -73,7 +73,7 @@ class MaterialsGlTest : public CollisionTest {
     }();
 };
 
-TEST_P(MaterialsGlTest, DropsNameTheSquareThatTheyHit) {
+TEST_P(MaterialsGlTest, HitsHaveTheMaterialOfTheirSquare) {
     for (const bool placed : {false, true}) {
         for (const float sweep : {0.0F, 0.05F}) {
             SCOPED_TRACE(std::string(placed ? "placed" : "in its own space") +
@@ -110,7 +110,7 @@ TEST_P(MaterialsGlTest, DropsNameTheSquareThatTheyHit) {
     }
 }
 
-TEST_P(MaterialsGlTest, HitsOnOneMaterialMayBeListedAlone) {
+TEST_P(MaterialsGlTest, HitsCanBeFilteredByMaterial) {
     make({.capacity = 4000});
     collideWith(board_);
     EXPECT_TRUE(particles_->setGround(-0.05F));
@@ -143,7 +143,7 @@ TEST_P(MaterialsGlTest, HitsOnOneMaterialMayBeListedAlone) {
     }
 }
 
-TEST_P(MaterialsGlTest, NamesAreOneOverColliders) {
+TEST_P(MaterialsGlTest, MaterialNumbersAreSharedByColliders) {
     const Collider plain = boxCollider();
     Collider other = boxCollider();
     other.materials.list = {{"white"}};
@@ -204,7 +204,7 @@ TEST_P(MaterialsGlTest, ResponsesMultiply) {
 
 // A contact reduces the lifetime by the losses of the material and the type. A particle that stopped dies that much
 // earlier; a sliding particle loses as much in each step.
-TEST_P(MaterialsGlTest, ContactsCostLife) {
+TEST_P(MaterialsGlTest, ContactsReduceLifetime) {
     board_.materials.list = {{"black", 1.0F, 0.0F, 3.0F}, {"white", 1.0F, 0.0F, 500.0F}};
     constexpr int kLife = 600;  // steps in a lifetime of ten seconds
     const auto expectSteps = [&](OnCollision reaction, float type_loss, float square, int lived) {

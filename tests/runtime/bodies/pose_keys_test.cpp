@@ -24,7 +24,7 @@ std::vector<PoseKey> way() {
             {4.5, pose({4.0F, -1.0F, 2.0F}, {0.3F, 1.0F, -0.5F}, -2.5F)}};
 }
 
-TEST(PoseKeys, StraightLinesAndEvenTurns) {
+TEST(PoseKeys, InterpolatesLinearlyAtConstantRotation) {
     const auto keys = way();
     EXPECT_EQ(poseAt(keys, -5.0), keys.front().pose);
     EXPECT_EQ(poseAt(keys, 1.0), keys.front().pose);
@@ -35,7 +35,7 @@ TEST(PoseKeys, StraightLinesAndEvenTurns) {
     EXPECT_NEAR(glm::angle(half.rotation), 0.25F * kPi, 1e-6F);
 }
 
-TEST(PoseKeys, MotionInClosedForm) {
+TEST(PoseKeys, MotionMatchesTheClosedForm) {
     const Motion motion = motionAt(way(), 2.0);
     EXPECT_NEAR(glm::length(motion.velocity - glm::vec3(2.0F, 0.0F, 0.0F)), 0.0F, 1e-6F);
     EXPECT_NEAR(glm::length(motion.turn - glm::vec3(0.0F, 0.0F, 0.25F * kPi)), 0.0F, 1e-6F);
@@ -43,11 +43,12 @@ TEST(PoseKeys, MotionInClosedForm) {
         EXPECT_EQ(motionAt(way(), time).velocity, glm::vec3(0.0F)) << time;
         EXPECT_LT(glm::length(motionAt(way(), time).turn), 1e-6F) << time;
     }
-    EXPECT_EQ(motionAt(way(), 1.0).velocity, glm::vec3(2.0F, 0.0F, 0.0F)) << "at a key it goes on from there";
+    EXPECT_EQ(motionAt(way(), 1.0).velocity, glm::vec3(2.0F, 0.0F, 0.0F))
+        << "at a key, the motion of the next segment";
 }
 
 // A quarter turn by either of its two quaternions is the same rotation.
-TEST(PoseKeys, TurnsTheShorterWayRound) {
+TEST(PoseKeys, RotatesTheShorterWay) {
     auto keys = way();
     keys[1].pose.rotation = -keys[1].pose.rotation;
     EXPECT_NEAR(motionAt(keys, 2.0).turn.z, 0.25F * kPi, 1e-6F);
@@ -55,7 +56,7 @@ TEST(PoseKeys, TurnsTheShorterWayRound) {
 }
 
 // Neither direction is shorter: the rotation follows the angles, however they are rounded.
-TEST(PoseKeys, HalfATurnGoesAsTheAnglesDo) {
+TEST(PoseKeys, HalfTurnsFollowTheAngles) {
     for (const glm::vec3& axis : {glm::vec3(0.0F, 1.0F, 0.0F), glm::vec3(0.3F, 1.0F, -0.5F)}) {
         for (const auto& [from, to] :
              {std::pair{0.0F, 180.0F}, std::pair{0.0F, -180.0F}, std::pair{180.0F, 360.0F},
@@ -74,7 +75,7 @@ TEST(PoseKeys, HalfATurnGoesAsTheAnglesDo) {
 }
 
 // For any rotation, velocity + turn × arm is the change of a point's toWorld().
-TEST(PoseKeys, MotionIsTheDifferenceOfPoses) {
+TEST(PoseKeys, MotionIsTheDerivativeOfThePose) {
     const auto keys = way();
     constexpr double kShort = 1e-3;
     const glm::vec3 q(0.7F, -0.4F, 1.1F);

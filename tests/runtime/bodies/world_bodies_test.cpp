@@ -11,7 +11,7 @@
 namespace relief {
 namespace {
 
-TEST(WorldBodies, BodiesPosesAndBoxAreThoseOfTheWorld) {
+TEST(WorldBodies, BodiesPosesAndBoxMatchTheWorld) {
     const LoadedWorld loaded = {test::threeBodies(), std::vector<Collider>(2)};
     const std::vector<ColliderBody> bodies = worldBodies(loaded);
     ASSERT_EQ(bodies.size(), 3U);

@@ -76,7 +76,7 @@ std::vector<Pose> posesOf(const std::vector<ColliderBody>& bodies) {
 }
 
 // Worlds of every kind of collider, and worlds of placed patch maps, whose field the CPU computes as well.
-TEST_P(WorldFieldGlTest, FewAreAskedAndAllDecide) {
+TEST_P(WorldFieldGlTest, BroadPhaseMatchesTestingEveryBody) {
     const Colliders colliders;
     Pcg32 random(21);
     std::map<std::string, FieldQuery> queries;  // by their defines
@@ -141,7 +141,7 @@ TEST_P(WorldFieldGlTest, FewAreAskedAndAllDecide) {
 }
 
 // The response shows which of two coincident bodies was hit.
-TEST_P(WorldGlTest, OfEqualBodiesTheFirstDecides) {
+TEST_P(WorldGlTest, FirstOfEqualBodiesDecides) {
     const Collider box = boxCollider();
     for (const float first : {0.25F, 0.75F}) {
         const std::array<ColliderBody, 2> bodies{ColliderBody{&box, {}, first},
@@ -155,7 +155,7 @@ TEST_P(WorldGlTest, OfEqualBodiesTheFirstDecides) {
     }
 }
 
-TEST_P(WorldGlTest, ParticlesAreThoseOfEveryBody) {
+TEST_P(WorldGlTest, ParticlesMatchThoseOfTestingEveryBody) {
     const Colliders colliders;
     for (const int kind : {0, 1, 2, 3}) {
         const bool balls = kind % 2 == 1;
@@ -203,7 +203,7 @@ TEST_P(WorldGlTest, ParticlesAreThoseOfEveryBody) {
     }
 }
 
-TEST_P(WorldFieldGlTest, AColliderOfManyBodiesIsThereOnce) {
+TEST_P(WorldFieldGlTest, CollidersOfManyBodiesAreUploadedOnce) {
     const Collider box = boxCollider();
     const auto one = WorldTextures::create(std::vector<ColliderBody>(1, {&box, {}, 1.0F, 0.0F}));
     const auto many = WorldTextures::create(std::vector<ColliderBody>(1'000, {&box, {}, 1.0F, 0.0F}));

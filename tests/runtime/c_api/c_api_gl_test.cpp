@@ -71,7 +71,7 @@ class CApi : public testing::Test {
         const std::string what = arguments.function.name + ", " + says;
         const std::uint64_t before = relief_error_count();
         EXPECT_NE(call(arguments), Outcome::kSuccess) << what;
-        EXPECT_EQ(relief_error_count(), before + 1) << what << " passes";
+        EXPECT_EQ(relief_error_count(), before + 1) << what << " was accepted";
         const std::string message = relief_error();
         EXPECT_EQ(message.find(arguments.function.name + "(): "), 0U) << what << ": " << message;
         EXPECT_NE(message.find(says), std::string::npos) << what << ": " << message;
@@ -99,7 +99,7 @@ class CApi : public testing::Test {
     Stage stage_;
 };
 
-TEST_F(CApi, TheTableIsWholeAndEveryFunctionWorks) {
+TEST_F(CApi, TableIsCompleteAndEveryFunctionWorks) {
     EXPECT_GE(kFunctions.size(), 55U);
     for (const Function& function : kFunctions) {
         expectGood(function);
@@ -163,7 +163,7 @@ TEST_F(CApi, EveryHandleMayBeFreedOrNone) {
     EXPECT_GE(at_all, 32);
 }
 
-TEST_F(CApi, OtherSizesAreRefused) {
+TEST_F(CApi, WrongSizesAreRejected) {
     int at_all = 0;
     for (const Structure& structure : kStructures) {
         if (structure.fields.front().name != "size") {
@@ -186,7 +186,7 @@ TEST_F(CApi, OtherSizesAreRefused) {
     EXPECT_GE(at_all, 36);
 }
 
-TEST_F(CApi, EveryNumberOfEveryStructureIsLookedAt) {
+TEST_F(CApi, EveryNumberOfEveryStructureIsValidated) {
     int at_all = 0;
     for (const Structure& structure : kStructures) {
         eachReader(structure, [&](const Function& function, std::size_t i) {
@@ -223,7 +223,7 @@ TEST_F(CApi, EveryNumberOfEveryStructureIsLookedAt) {
     EXPECT_GE(at_all, 13 + 13 + 8 + 5 + 36 + 7);
 }
 
-TEST_F(CApi, EveryNumberAmongTheArgumentsIsLookedAt) {
+TEST_F(CApi, EveryNumberArgumentIsValidated) {
     eachArgument([&](const Function& function, std::size_t i, const Argument& argument) {
         if (argument.type == "float") {
             for (const float wrong : {kNan, kInfinity, -kInfinity, 0.0F, -1.0F, 1.1e9F}) {
@@ -247,7 +247,8 @@ TEST_F(CApi, EveryNumberAmongTheArgumentsIsLookedAt) {
                 expectRefused({stage_, function},
                               argument.name + "[" + std::to_string(kWrong) + "] is not finite");
                 EXPECT_TRUE(std::isnan(stage_.samples[kWrong].distance) && stage_.samples[kWrong].map == -1);
-                EXPECT_TRUE(std::isfinite(stage_.samples[kItems - 1].distance)) << "the others are answered";
+                EXPECT_TRUE(std::isfinite(stage_.samples[kItems - 1].distance))
+                    << "the other samples are valid";
             }
             stage_.fill();
         } else if (!argument.isPointer()) {
@@ -259,7 +260,7 @@ TEST_F(CApi, EveryNumberAmongTheArgumentsIsLookedAt) {
     });
 }
 
-TEST_F(CApi, WhatIsWrittenWhereACallFailsIsNoNumber) {
+TEST_F(CApi, FailedCallsWriteNan) {
     relief_collider_bounds(nullptr, stage_.low, stage_.high);
     relief_collider_query(nullptr, stage_.points, kItems, stage_.samples);
     for (int k = 0; k < 3; ++k) {
@@ -278,7 +279,7 @@ TEST_F(CApi, WhatIsWrittenWhereACallFailsIsNoNumber) {
     EXPECT_EQ(relief_error_count(), before) << relief_error();
 }
 
-TEST_F(CApi, WithoutAContextNothingOfTheGlIsTouched) {
+TEST_F(CApi, CallsWithoutAContextFail) {
     EGLDisplay display = eglGetCurrentDisplay();
     EGLContext context = eglGetCurrentContext();
     ASSERT_TRUE(eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT));
@@ -300,7 +301,7 @@ TEST_F(CApi, WithoutAContextNothingOfTheGlIsTouched) {
     }
 }
 
-TEST_F(CApi, AFailureIsHandedOnWithItsCause) {
+TEST_F(CApi, FailuresKeepTheirFirstCause) {
     const char* const kMissing = "no such file.relief";
     EXPECT_EQ(relief_textures_create(relief_collider_load(kMissing)), nullptr);
     const std::string cause = relief_error();
@@ -310,7 +311,7 @@ TEST_F(CApi, AFailureIsHandedOnWithItsCause) {
     relief_collider* collider = relief_collider_load(kMissing);
     relief_textures* textures = relief_textures_create(collider);
     relief_particles* particles = relief_particles_create(textures, &stage_.options);
-    EXPECT_EQ(particles, nullptr) << "particles that collide with nothing, by error";
+    EXPECT_EQ(particles, nullptr) << "these particles would collide with nothing";
     EXPECT_EQ(relief_particles_spawn(particles, stage_.births, kItems), 0U);
     EXPECT_EQ(relief_particles_step(particles, 0.01F), -1);
     EXPECT_EQ(relief_picture_create(textures, collider), nullptr);
@@ -338,7 +339,7 @@ TEST_F(CApi, AFailureIsHandedOnWithItsCause) {
 }
 
 // Particles and pictures keep their dependencies alive: with freed collider and textures, results are bit-identical.
-TEST_F(CApi, ThingsMayBeFreedInAnyOrder) {
+TEST_F(CApi, ObjectsMayBeFreedInAnyOrder) {
     relief_textures* doomed = relief_textures_create(stage_.collider);
     relief_particles* orphan = relief_particles_create(doomed, &stage_.options);
     relief_picture* shown = relief_picture_create(doomed, stage_.collider);
@@ -368,7 +369,7 @@ TEST_F(CApi, ThingsMayBeFreedInAnyOrder) {
         glReadPixels(0, 0, 16, 16, GL_RGBA, GL_UNSIGNED_BYTE, pixels[static_cast<std::size_t>(which)].data());
     }
     EXPECT_EQ(std::memcmp(states[0], states[1], sizeof(states[0])), 0);
-    EXPECT_GT(states[1][0].collisions, 0U) << "it fell past the box";
+    EXPECT_GT(states[1][0].collisions, 0U) << "missed the box";
     EXPECT_EQ(pixels[0], pixels[1]);
     for (relief_textures* one : others) {
         relief_textures_free(one);
@@ -395,15 +396,15 @@ TEST_F(CApi, AFailedSetOrSpawnChangesNothing) {
     EXPECT_EQ(stage_.states[0].velocity[1], -0.5F) << "gravity is still 1 downwards";
 }
 
-TEST_F(CApi, AWorldIsThatOfItsBodies) {
+TEST_F(CApi, WorldsMatchTheirBodies) {
     ASSERT_EQ(relief_world_body_count(stage_.world), kItems);
     std::uint32_t found[] = {9, 9, 9};
     EXPECT_EQ(relief_world_find(stage_.world, "box 0", found, 1), 2U);
     EXPECT_EQ(found[0], 0U);
-    EXPECT_EQ(found[1], 9U) << "beyond the room";
+    EXPECT_EQ(found[1], 9U) << "beyond the array";
     EXPECT_EQ(relief_world_find(stage_.world, "box 0", found, 3), 2U);
     EXPECT_EQ(found[1], 3U);
-    EXPECT_EQ(found[2], 9U) << "beyond what there is";
+    EXPECT_EQ(found[2], 9U) << "beyond the last body";
     EXPECT_EQ(relief_world_find(stage_.world, "box 4", found, 2), 0U);
     expectError("'box 4'");
     EXPECT_STREQ(relief_world_node(stage_.world, 2), "box 2");
@@ -416,14 +417,14 @@ TEST_F(CApi, AWorldIsThatOfItsBodies) {
     relief_world_bounds(stage_.world, stage_.low, stage_.high);
     EXPECT_NEAR(stage_.low[0], -0.4F, 1e-6F);
     EXPECT_NEAR(stage_.high[0], 6.4F, 1e-6F);
-    EXPECT_NEAR(stage_.high[1], 0.4F, 1e-6F) << "of the second, which is twice as large";
+    EXPECT_NEAR(stage_.high[1], 0.4F, 1e-6F) << "of the second body, which is scaled by 2";
 
     const float points[] = {0.0F, 0.1F, 0.0F, 2.0F, 0.3F, 0.0F, 6.0F, 0.5F, 0.0F};
     relief_sample samples[3];
     relief_world_query(stage_.world, points, 3, samples);
     for (std::int32_t i = 0; i < 3; ++i) {
         EXPECT_NEAR(samples[i].distance, i == 2 ? 0.3F : -0.1F, 1e-4F);
-        EXPECT_EQ(samples[i].map, i == 2 ? 3 : i) << "the body";
+        EXPECT_EQ(samples[i].map, i == 2 ? 3 : i) << "the body index";
         EXPECT_NEAR(samples[i].normal[1], 1.0F, 1e-3F);
     }
 
@@ -445,13 +446,14 @@ TEST_F(CApi, AWorldIsThatOfItsBodies) {
     }
     ASSERT_EQ(relief_particles_read(particles, stage_.states, kItems), static_cast<std::int64_t>(kItems));
     for (std::size_t i = 0; i < kItems; ++i) {
-        EXPECT_EQ(stage_.states[i].collisions > 0, i != body) << "a body that has moved aside stops nothing";
-        EXPECT_EQ(stage_.states[i].position[0], stage_.births[i].position[0]) << "it falls straight down";
+        EXPECT_EQ(stage_.states[i].collisions > 0, i != body)
+            << "the particle collides unless its body moved aside";
+        EXPECT_EQ(stage_.states[i].position[0], stage_.births[i].position[0]) << "falls straight down";
     }
     relief_particles_free(particles);
 }
 
-TEST_F(CApi, ACharacterBends) {
+TEST_F(CApi, AnimatedCollidersPlayClips) {
     ASSERT_EQ(relief_animation_clip_count(stage_.animation), 2U);
     EXPECT_STREQ(relief_animation_clip_name(stage_.animation, 0), "bend");
     EXPECT_EQ(relief_animation_clip_seconds(stage_.animation, 0), 2.0F);
@@ -495,7 +497,7 @@ TEST_F(CApi, ACharacterBends) {
     EXPECT_GT(std::ranges::count_if(states, [](const relief_particle& one) { return one.collisions > 0; }),
               200);
 
-    EXPECT_EQ(relief_textures_play(textures, 0, "bend", 0.0), -1) << "a box moves by no clip";
+    EXPECT_EQ(relief_textures_play(textures, 0, "bend", 0.0), -1) << "a box has no clips";
     EXPECT_EQ(relief_textures_play(textures, body, "run", 0.0), -1);
     EXPECT_EQ(relief_textures_set_joints(textures, body, stage_.matrices, 1, stage_.weights, 1), -1);
     stage_.matrices[0] = 50.0F;
@@ -509,7 +511,7 @@ TEST_F(CApi, ACharacterBends) {
 }
 
 // A collider is uploaded when a ball reaches it. A missing one is reported once.
-TEST_F(CApi, AWorldIsStreamed) {
+TEST_F(CApi, WorldsAreStreamed) {
     std::mt19937 random(5);
     const test::TemporaryFolder folder;
     World world;
@@ -554,7 +556,7 @@ TEST_F(CApi, AWorldIsStreamed) {
     EXPECT_EQ(relief_textures_stream_world(path.c_str(), 64), nullptr);
 }
 
-TEST_F(CApi, PosesAndWorldsThatCannotBeAreRefused) {
+TEST_F(CApi, InvalidPosesAndWorldsAreRejected) {
     const auto refused = [&](relief_textures* textures, const std::string& what) {
         EXPECT_EQ(relief_textures_set_poses(textures, stage_.bodies, stage_.poses, kItems), -1) << what;
         expectError(what);
@@ -567,10 +569,10 @@ TEST_F(CApi, PosesAndWorldsThatCannotBeAreRefused) {
     refused(stage_.textures, "single collider");
     EXPECT_EQ(relief_picture_create(stage_.world_textures, stage_.collider), nullptr);
     EXPECT_EQ(relief_world_load("no such world.json"), nullptr);
-    EXPECT_EQ(relief_world_load(stage_.good<const char*>("path")), nullptr) << "a container is no world";
+    EXPECT_EQ(relief_world_load(stage_.good<const char*>("path")), nullptr) << "a container is not a world";
 }
 
-TEST_F(CApi, ThreadsDoNotDisturbEachOther) {
+TEST_F(CApi, ThreadsAreIndependent) {
     relief_sample expected[kItems];
     relief_collider_query(stage_.collider, stage_.points, kItems, expected);
     std::vector<std::thread> threads;

@@ -9,7 +9,7 @@
 namespace relief {
 namespace {
 
-TEST(Handles, NoneIsGivenOutTwiceAndOldOnesStayFreed) {
+TEST(Handles, AreUniqueAndStayFreed) {
     HandleTable table;
     std::set<std::uintptr_t> all;
     std::vector<std::uintptr_t> live;
@@ -25,7 +25,7 @@ TEST(Handles, NoneIsGivenOutTwiceAndOldOnesStayFreed) {
         EXPECT_EQ(table.remove(HandleKind::kCollider, old), nullptr);
         live[at] =
             table.add(i % 2 == 0 ? HandleKind::kParticles : HandleKind::kCollider, std::make_shared<int>(i));
-        EXPECT_TRUE(all.insert(live[at]).second) << "given out before";
+        EXPECT_TRUE(all.insert(live[at]).second) << "handle was reused";
         if (i % 2 == 0) {
             EXPECT_EQ(table.find(HandleKind::kCollider, live[at]), nullptr);
             EXPECT_NE(table.remove(HandleKind::kParticles, live[at]), nullptr);
@@ -39,11 +39,11 @@ TEST(Handles, NoneIsGivenOutTwiceAndOldOnesStayFreed) {
         EXPECT_EQ(*static_cast<int*>(table.find(HandleKind::kCollider, live[i])->get()), static_cast<int>(i));
     }
     for (const std::uintptr_t one : all) {
-        EXPECT_NE(one & 7U, 0U) << "an aligned pointer could be one";
+        EXPECT_NE(one & 7U, 0U) << "could be confused with an aligned pointer";
     }
 }
 
-TEST(Call, NoExceptionPasses) {
+TEST(Call, CatchesExceptions) {
     const std::uint64_t before = callErrors().count();
     EXPECT_EQ(answer("f", -1, [](const Call&) -> Result<int> { throw std::bad_alloc(); }), -1);
     EXPECT_STREQ(callErrors().last(), "out of memory");

@@ -25,7 +25,7 @@ class CApiEmitter : public testing::Test {
 };
 
 // Sparks from the group of the upper joint of a character that bends and moves.
-TEST_F(CApiEmitter, SparksComeOffACharacter) {
+TEST_F(CApiEmitter, BirthsLieOnAnAnimatedCollider) {
     constexpr float kDt = 0.02F;
     stage_.options.capacity = 4096;
     stage_.options.gravity[1] = 0.0F;
@@ -57,7 +57,7 @@ TEST_F(CApiEmitter, SparksComeOffACharacter) {
         EXPECT_EQ(spark.type, 7U);
         // The upper half rotates towards -x about height 1: ω × r at its end, plus the body's velocity.
         const double up = spark.position[1] - kDt * spark.velocity[1] - 1.0;
-        EXPECT_GT(up, -1.0 / 3.0 - 0.05) << "a triangle of the group";
+        EXPECT_GT(up, -1.0 / 3.0 - 0.05) << "outside the triangles of the group";
         EXPECT_NEAR(spark.velocity[0], 2.0 - std::acos(0.0) * up, up < 0.34 ? 1.0 : 0.01);
     }
     relief_emitter_free(emitter);
@@ -65,7 +65,7 @@ TEST_F(CApiEmitter, SparksComeOffACharacter) {
 }
 
 // Dust from a rotated box that moves: on its faces, with the body's velocity.
-TEST_F(CApiEmitter, DustComesOffACollider) {
+TEST_F(CApiEmitter, BirthsLieOnACollider) {
     constexpr float kDt = 0.02F;
     constexpr int kCount = 4000;
     stage_.options.capacity = 2 * kCount;
@@ -115,7 +115,7 @@ TEST_F(CApiEmitter, DustComesOffACollider) {
     expectError("material: ");
 }
 
-TEST_F(CApiEmitter, ErrorsOfEmittersAreNamed) {
+TEST_F(CApiEmitter, EmitterErrorsAreNamed) {
     relief_emitter_options& options = stage_.emitter_options;
     const auto refused = [&](const char* group, const char* material, const std::string& what) {
         EXPECT_EQ(relief_emitter_create(stage_.animation, group, material, &options), nullptr) << what;

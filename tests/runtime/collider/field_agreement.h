@@ -137,7 +137,7 @@ inline void expectAgreement(const Collider& collider, std::span<const glm::vec3>
         }
     }
     EXPECT_EQ(none, 0U);
-    EXPECT_GT(votes, points.size() / 8) << "the points hardly meet the maps: this would prove nothing";
+    EXPECT_GT(votes, points.size() / 8) << "too few points get votes: the test proves nothing";
     EXPECT_LE(static_cast<double>(at_border), border_share_max * static_cast<double>(points.size()));
     testing::Test::RecordProperty("at_border", static_cast<int>(at_border));
 }

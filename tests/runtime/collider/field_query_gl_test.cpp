@@ -191,7 +191,7 @@ TEST_P(FieldQueryGlTest, PatchesAgreeWithTheCpuAloneAndAmongOtherMaps) {
     EXPECT_LT(by_patches, asked - asked / 5);
 }
 
-TEST_P(FieldQueryGlTest, TexelBordersFallToEitherSideAndCornersOfCubesToo) {
+TEST_P(FieldQueryGlTest, TexelBordersAndCubeCornersFallToEitherSide) {
     std::mt19937 random(13);
     for (const Kind& kind : kKinds) {
         Collider collider;
@@ -216,7 +216,7 @@ TEST_P(FieldQueryGlTest, TexelBordersFallToEitherSideAndCornersOfCubesToo) {
     }
 }
 
-TEST_P(FieldQueryGlTest, ExtremePointsGiveAnAnswerAndNoNan) {
+TEST_P(FieldQueryGlTest, ExtremePointsNeverGiveNan) {
     std::mt19937 random(17);
     Collider collider;
     for (const Kind& kind : kKinds) {
@@ -239,7 +239,7 @@ TEST_P(FieldQueryGlTest, ExtremePointsGiveAnAnswerAndNoNan) {
     }
 }
 
-TEST_P(FieldQueryGlTest, TheEarlyOutAgreesWithTheCpu) {
+TEST_P(FieldQueryGlTest, EarlyOutAgreesWithTheCpu) {
     std::mt19937 random(29);
     std::size_t inside = 0;
     constexpr std::size_t kPoints = 10'000;
@@ -279,7 +279,7 @@ TEST_P(FieldQueryGlTest, TheEarlyOutAgreesWithTheCpu) {
     EXPECT_LT(inside, 12 * kPoints / 2);
 }
 
-TEST_P(FieldQueryGlTest, TooManyMapsAndTooLargeMapsAreNamedErrors) {
+TEST_P(FieldQueryGlTest, TooManyOrTooLargeMapsAreErrors) {
     std::mt19937 random(19);
     Collider collider;
     EXPECT_EQ(FieldQuery::create(collider).error().code, ErrorCode::kUnsupported);
@@ -291,7 +291,7 @@ TEST_P(FieldQueryGlTest, TooManyMapsAndTooLargeMapsAreNamedErrors) {
 }
 
 /// A map may have more texels per row than GL textures allow, and the GPU uses only the maps' own bytes.
-TEST_P(FieldQueryGlTest, MapsOfAnyShapeLieTogetherWithoutAGap) {
+TEST_P(FieldQueryGlTest, MapsOfAnyShapeArePackedWithoutGaps) {
     std::mt19937 random(20);
     Collider collider;
     for (const MapFormat format : {MapFormat::kFixed8, MapFormat::kFrontBackFixed, MapFormat::kFloat32}) {
@@ -305,7 +305,8 @@ TEST_P(FieldQueryGlTest, MapsOfAnyShapeLieTogetherWithoutAGap) {
     const auto textures = WorldTextures::create(collider);
     ASSERT_TRUE(textures);
     EXPECT_GE(textures->bytes(), collider.texelBytes());
-    EXPECT_LE(textures->bytes(), collider.texelBytes() + 1024 * (4 + 8 + 16)) << "less than a row each";
+    EXPECT_LE(textures->bytes(), collider.texelBytes() + 1024 * (4 + 8 + 16))
+        << "at most one row of padding each";
 }
 
 RELIEF_INSTANTIATE_GL_TESTS(FieldQueryGlTest);

@@ -64,7 +64,7 @@ std::string refused(const std::string& option, const std::string& word) {
     return error({option + "=" + word});
 }
 
-TEST(OptionValues, AreTakenExactly) {
+TEST(OptionValues, AreReadExactly) {
     EXPECT_EQ(taken("--count", "4000000000").count, 4'000'000'000U);
     EXPECT_EQ(taken("--count", "010").count, 10U) << "not octal";
     EXPECT_EQ(taken("--degrees", "0.1").degrees, 0.1F);
@@ -78,7 +78,7 @@ TEST(OptionValues, AreTakenExactly) {
     EXPECT_EQ(taken("--letter", "x").letter, 'x');
 }
 
-TEST(OptionValues, SayWhatToWriteInstead) {
+TEST(OptionValues, ErrorsSuggestAFix) {
     const auto allRefused = [](const std::string& option, std::initializer_list<const char*> words,
                                const std::string& must) {
         for (const std::string word : words) {
@@ -98,7 +98,7 @@ TEST(OptionValues, SayWhatToWriteInstead) {
     EXPECT_EQ(refused("--letter", "xy"), "--letter is 'xy' but must be a letter");
 }
 
-TEST(CommandLine, WhatCannotBeReadIsNamedWithACure) {
+TEST(CommandLine, ErrorsNameTheArgumentAndSuggestAFix) {
     EXPECT_EQ(error({"--cuont", "1"}), "unknown option --cuont; did you mean '--count'?");
     EXPECT_EQ(error({"--nothing-like-it"}), "unknown option --nothing-like-it; see tool --help");
     EXPECT_EQ(error({"word"}), "unexpected argument 'word'; see tool --help");

@@ -89,7 +89,7 @@ double centre(std::uint32_t i, std::uint32_t size) {
     return -1.0 + (i + 0.5) * 2.0 / size;
 }
 
-TEST_P(DepthMapRendererGlTest, APlaneIsWrittenToTheBit) {
+TEST_P(DepthMapRendererGlTest, PlanesAreExact) {
     constexpr std::uint32_t kSize = 16;
     constexpr float kZ = 0.25F;
     // Half of the image, with edges between texel centres, so that coverage is unambiguous.
@@ -109,7 +109,7 @@ TEST_P(DepthMapRendererGlTest, APlaneIsWrittenToTheBit) {
     }
 }
 
-TEST_P(DepthMapRendererGlTest, TiltedPlanesHaveTheirDepthAndNormal) {
+TEST_P(DepthMapRendererGlTest, TiltedPlanesHaveExactDepthAndNormal) {
     constexpr std::uint32_t kSize = 128;
     for (const glm::dvec2& slope : {glm::dvec2(0.3, -0.2), glm::dvec2(-0.7, 0.2), glm::dvec2(0.0, 0.9)}) {
         const auto height = [&](double x, double y) { return slope.x * x + slope.y * y + 0.03; };
@@ -134,7 +134,7 @@ TEST_P(DepthMapRendererGlTest, TiltedPlanesHaveTheirDepthAndNormal) {
     }
 }
 
-TEST_P(DepthMapRendererGlTest, SteepPlanesFaceTheViewerAndAllKeepTheirWord) {
+TEST_P(DepthMapRendererGlTest, SteepPlanesFaceTheViewerAndContainTheSurface) {
     // One steep sheet at every cosine from 0.5 down to 0.002: the stored distance at the surface point is 0.
     constexpr std::uint32_t kSize = 64;
     int faced = 0;
@@ -179,7 +179,7 @@ TEST_P(DepthMapRendererGlTest, SteepPlanesFaceTheViewerAndAllKeepTheirWord) {
     EXPECT_GT(faced, 100);
 }
 
-TEST_P(DepthMapRendererGlTest, RaysThatStartInsideLeaveTexelsEmpty) {
+TEST_P(DepthMapRendererGlTest, RaysFromInsideLeaveTexelsEmpty) {
     GpuMesh mesh = upload(sheet({-1.0F, -1.0F}, {1.0F, 1.0F}, 1, [](float, float) { return 0.25F; }));
     DepthMap frame = alongZ(8);
     // The view sees the inner side.
@@ -190,7 +190,7 @@ TEST_P(DepthMapRendererGlTest, RaysThatStartInsideLeaveTexelsEmpty) {
     }
 }
 
-TEST_P(DepthMapRendererGlTest, ScaleDoesNotMatter) {
+TEST_P(DepthMapRendererGlTest, IsIndependentOfScale) {
     // Powers of two, so that rounding does not change.
     std::vector<std::byte> first;
     for (const int power : {0, -40, 45}) {
@@ -209,7 +209,7 @@ TEST_P(DepthMapRendererGlTest, ScaleDoesNotMatter) {
     }
 }
 
-TEST_P(DepthMapRendererGlTest, VerticesMoveAndTheSurfacesMotionIsKnown) {
+TEST_P(DepthMapRendererGlTest, VerticesMoveAndTheSurfaceMotionIsCorrect) {
     const Mesh before = box({0.5F, 0.5F, 0.5F});
     Mesh after = before;
     const glm::vec3 way(0.125F, -0.0625F, 0.25F);
@@ -308,7 +308,7 @@ TEST_P(DepthMapRendererGlTest, EveryTriangleOwnsItsSlot) {
     EXPECT_GT(covered, 1500);
 }
 
-TEST_P(DepthMapRendererGlTest, TheCallersStateIsKeptAndDoesNoHarm) {
+TEST_P(DepthMapRendererGlTest, CallerStateIsKeptAndIgnored) {
     const Mesh mesh = sheet({-0.8F, -0.7F}, {0.6F, 0.8F}, 3, [](float x, float y) { return 0.5F * x * y; });
     const auto run = [&](const std::function<void(const char*)>& check) {
         GpuMesh gpu_mesh = upload(mesh);
@@ -339,7 +339,7 @@ TEST_P(DepthMapRendererGlTest, TheCallersStateIsKeptAndDoesNoHarm) {
     }
 }
 
-TEST_P(DepthMapRendererGlTest, WhatIsWrongIsRefused) {
+TEST_P(DepthMapRendererGlTest, InvalidArgumentsAreRejected) {
     const Mesh good = box({0.5F, 0.5F, 0.5F});
     Mesh bad = good;
     bad.positions[3].y = std::numeric_limits<float>::quiet_NaN();

@@ -21,7 +21,7 @@ class EventsGlTest : public CollisionTest {};
 
 // A ball of radius r at height h above the floor, initially at rest. After n steps of semi-implicit Euler its height is
 // h - g dt² n (n + 1) / 2 and its speed is g dt n; its path is straight within a step. It stops on contact.
-TEST_P(EventsGlTest, ADroppedBallHitsOnceAtThePlaceTimeAndSpeedOfTheClosedForm) {
+TEST_P(EventsGlTest, DroppedBallsHitOnceAsInTheClosedForm) {
     constexpr double kG = 9.81;
     constexpr double kH = 1.7;
     constexpr double kR = 0.13;
@@ -73,7 +73,7 @@ TEST_P(EventsGlTest, ADroppedBallHitsOnceAtThePlaceTimeAndSpeedOfTheClosedForm) 
 }
 
 // A plate that moves against the particle: speed is relative to the plate, and the hit is where both meet.
-TEST_P(EventsGlTest, AHitOnAMovingBodyIsRelativeToIt) {
+TEST_P(EventsGlTest, HitsAreRelativeToMovingBodies) {
     const Collider box = boxCollider();  // its top is at 0.2
     make({.capacity = 4});
     collideWith(ColliderBody{&box, {{0.0F, -1.0F, 0.0F}}});
@@ -151,7 +151,7 @@ Played played(ParticleSystem& particles, std::uint32_t count, int steps, OnColli
 // Every step in contact is a hit, except if the particle was found inside. With all hits listed, including lasting
 // contacts, the sums agree for each particle. A particle killed by a hit dies once: hit and death are one event, with
 // no later death of age.
-TEST_P(EventsGlTest, HitsAreTheCollisionsOfEachParticle) {
+TEST_P(EventsGlTest, HitsMatchTheCollisionsOfEachParticle) {
     for (const OnCollision reaction : {OnCollision::kBounce, OnCollision::kDie}) {
         const bool kills = reaction == OnCollision::kDie;
         SCOPED_TRACE(kills);
@@ -193,7 +193,7 @@ TEST_P(EventsGlTest, HitsAreTheCollisionsOfEachParticle) {
 
 // The extent shrinks when particles die, and the clock may be set back in the same step. Their events keep time,
 // position, id and type.
-TEST_P(EventsGlTest, TheLastOfTheirRowsDieInFullView) {
+TEST_P(EventsGlTest, DeathsAtTheEndOfTheExtentAreListed) {
     constexpr std::uint32_t kMany = 2500;
     const auto dt = static_cast<double>(kDt);
     make({.capacity = kMany, .epoch_seconds = 2.9 * dt});
@@ -216,7 +216,7 @@ TEST_P(EventsGlTest, TheLastOfTheirRowsDieInFullView) {
     EXPECT_EQ(particles_->extent(), 1U);
 }
 
-TEST_P(EventsGlTest, AskingChangesNoParticle) {
+TEST_P(EventsGlTest, RequestsDoNotChangeParticles) {
     std::vector<std::vector<ParticleState>> states;
     for (const bool ask : {false, true}) {
         make({.capacity = 5000});
@@ -242,7 +242,7 @@ TEST_P(EventsGlTest, AskingChangesNoParticle) {
 }
 
 // Enough hits in one step to need every level of counts.
-TEST_P(EventsGlTest, AQuarterOfAMillionHitsAreAllThere) {
+TEST_P(EventsGlTest, AQuarterOfAMillionHitsAreListed) {
     constexpr std::uint32_t kMany = (1U << 18) + 1000;
     make({.capacity = kMany});
     EXPECT_TRUE(particles_->setGround(0.0F));
@@ -263,7 +263,7 @@ TEST_P(EventsGlTest, AQuarterOfAMillionHitsAreAllThere) {
 
 // Alone or with others in one request, a list contains the events that match its options, in index order. A short list
 // keeps the lowest indices and counts the dropped events.
-TEST_P(EventsGlTest, EachListKeepsWhatItsOptionsAskFor) {
+TEST_P(EventsGlTest, ListsMatchTheirOptions) {
     const auto run = [&](std::span<const EventOptions> lists) {
         make({.capacity = 70'000});
         EXPECT_TRUE(setEvents(*particles_, lists));
@@ -311,7 +311,7 @@ TEST_P(EventsGlTest, EachListKeepsWhatItsOptionsAskFor) {
     }
 }
 
-TEST_P(EventsGlTest, TheListIsThereForShaders) {
+TEST_P(EventsGlTest, ShadersCanReadTheList) {
     make({.capacity = 5000});
     ASSERT_TRUE(setEvents(*particles_, EventOptions{.lasting = true, .most = 2000}));
     const Played run = played(*particles_, 60, 40, OnCollision::kBounce, false);

@@ -36,7 +36,7 @@ std::vector<Birth> birthsOf(const SpawnSettings& settings, const std::vector<Par
     return births;
 }
 
-TEST(Spawner, AHitMakesWhatItSays) {
+TEST(Spawner, HitsSpawnAsConfigured) {
     const SpawnSettings settings{.of = {},
                                  .material = {},
                                  .type = 1,
@@ -74,7 +74,7 @@ TEST(Spawner, AHitMakesWhatItSays) {
     EXPECT_GT(fastest, 3.95F);
 }
 
-TEST(Spawner, OnlyWhatIsAskedForCounts) {
+TEST(Spawner, OnlyMatchingEventsSpawn) {
     SpawnSettings settings{.of = 1, .min_speed = 2.0F, .material = {}, .count_min = 3, .count_max = 3};
     auto lasting = hitOf(3, 1, 5.0F);
     lasting.lasts = true;
@@ -89,7 +89,7 @@ TEST(Spawner, OnlyWhatIsAskedForCounts) {
     ASSERT_EQ(hits.size(), 3U);
     EXPECT_EQ(hits[0].position.x, 1.0F);
     settings.on = SpawnOn::kDeath;
-    EXPECT_EQ(birthsOf(settings, step).size(), 6U) << "one of age and one killed";
+    EXPECT_EQ(birthsOf(settings, step).size(), 6U) << "one died of age, one was killed";
     settings.of.reset();
     settings.on = SpawnOn::kCollision;
     settings.min_speed = 0.0F;
@@ -105,7 +105,7 @@ TEST(Spawner, OnlyWhatIsAskedForCounts) {
 }
 
 // Births and refusals add up to all that were due, for any limits. The same seed gives the same births.
-TEST(Spawner, NothingIsLostAboveTheLimits) {
+TEST(Spawner, RefusedBirthsAreCounted) {
     SpawnSettings settings{.of = {}, .material = {}, .count_min = 2, .count_max = 6};
     std::vector<ParticleEvent> hits;
     for (std::uint32_t i = 0; i < 1000; ++i) {
@@ -131,7 +131,7 @@ TEST(Spawner, NothingIsLostAboveTheLimits) {
 }
 
 // A list that ends after the last usable event.
-TEST(Spawner, AListOfWhatItHeedsMayBeShort) {
+TEST(Spawner, AFilteredListGivesTheSameBirths) {
     SpawnSettings settings{.of = 1, .min_speed = 2.0F, .material = 4, .count_max = 3, .most = 20};
     Spawner by_all(settings, 9);
     Spawner by_few(settings, 9);
@@ -168,7 +168,7 @@ TEST(Spawner, AListOfWhatItHeedsMayBeShort) {
               (EventOptions{.hits = false, .deaths = true, .most = 20, .type = 1}));
 }
 
-TEST(Spawner, DeathsOfAgeThrowAllRoundOrAlongTheWay) {
+TEST(Spawner, DeathsOfAgeThrowInAllDirectionsOrAlongTheVelocity) {
     ParticleEvent age;
     age.death = true;
     age.velocity = {3.0F, 0.0F, 0.0F};
@@ -196,7 +196,7 @@ TEST(Spawner, DeathsOfAgeThrowAllRoundOrAlongTheWay) {
 }
 
 // A lost particle's event causes no births: they count as refused.
-TEST(Spawner, WhatIsLostHasNoChildren) {
+TEST(Spawner, LostParticlesHaveNoChildren) {
     const SpawnSettings settings{.of = {}, .material = {}, .count_min = 3, .count_max = 3, .inherit = 1.0F};
     for (const float wrong : {std::nanf(""), std::numeric_limits<float>::infinity()}) {
         ParticleEvent lost = hitOf(7, 0, 4.0F);

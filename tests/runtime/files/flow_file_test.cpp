@@ -33,7 +33,7 @@ class FlowFileTest : public testing::Test {
         const std::string& message = loaded.error().message;
         EXPECT_EQ(loaded.error().code, code) << message;
         EXPECT_TRUE(message.starts_with(flow.origin)) << message;
-        EXPECT_NE(message.find(name), std::string::npos) << "names no file: " << message;
+        EXPECT_NE(message.find(name), std::string::npos) << "does not name the file: " << message;
         EXPECT_NE(message.find(part), std::string::npos) << message;
         EXPECT_EQ(message.find('\n'), std::string::npos) << message;
     }
@@ -41,7 +41,7 @@ class FlowFileTest : public testing::Test {
     const test::TemporaryFolder folder_;
 };
 
-TEST_F(FlowFileTest, ARawVolumeRunsAlongXFirst) {
+TEST_F(FlowFileTest, RawVolumesRunAlongXFirst) {
     for (const std::uint32_t components : {2U, 3U}) {
         std::vector<float> values;
         for (std::uint32_t i = 0; i < 4 * 3 * 2 * components; ++i) {
@@ -65,13 +65,13 @@ TEST_F(FlowFileTest, ARawVolumeRunsAlongXFirst) {
     }
 }
 
-TEST_F(FlowFileTest, AFileThatIsNotThereIsNamed) {
+TEST_F(FlowFileTest, MissingFilesAreNamed) {
     FlowFile from = file(folder_.path() / "none.raw");
     from.size = {1, 1, 1};
     expectError(from, ErrorCode::kIo, "none.raw", "");
 }
 
-TEST_F(FlowFileTest, VelocitiesMustBeFiniteAndNotAbsurd) {
+TEST_F(FlowFileTest, VelocitiesMustBeFiniteAndBounded) {
     for (const float bad : {std::nanf(""), std::numeric_limits<float>::infinity(), -1.1e6F}) {
         float values[12] = {};
         values[10] = bad;  // y of node 3: x = 1, y = 1

@@ -44,11 +44,12 @@ TEST(ObjMesh, VerticesAndFaces) {
     EXPECT_EQ(mesh.triangles, (Triangles{0, 1, 2, 0, 2, 3, 0, 1, 2, 0, 2, 3}));
 }
 
-TEST(ObjMesh, ColorsBehindEveryVertex) {
+TEST(ObjMesh, ReadsVertexColors) {
     const auto mesh = required(obj("v 0 0 0 1 0 0\nv 1 0 0 1 0.5 2\nv 0 1 0 1 0 -1 1\nf 1 2 3\n"));
     using Color = std::array<std::uint8_t, 4>;
     EXPECT_EQ(mesh.colors, (std::vector<Color>{{255, 0, 0, 255}, {255, 128, 255, 255}, {0, 0, 255, 255}}));
-    EXPECT_TRUE(obj("v 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")->colors.empty()) << "not of all";
+    EXPECT_TRUE(obj("v 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")->colors.empty())
+        << "only some vertices have colors";
     const PictureMesh smooth = withNormals(mesh);
     ASSERT_EQ(smooth.colors.size(), smooth.positions.size());
     for (std::size_t i = 0; i < 3; ++i) {
@@ -57,7 +58,7 @@ TEST(ObjMesh, ColorsBehindEveryVertex) {
 }
 
 // ImportText covers the reader's other errors.
-TEST(ObjMesh, Hostile) {
+TEST(ObjMesh, RejectsInvalidFiles) {
     const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
     expectError(obj(three + "f 1 2\n"), "a.obj: it has no faces");
     expectError(obj(std::string(1000, '\0')), "no faces");
@@ -65,7 +66,7 @@ TEST(ObjMesh, Hostile) {
          {"f 1 2 /1\n", "f 1 2 2x\n", "f 1 2 4\n", "v 0 0 nan\nf 1 2 4\n", "v 0 0 1e39\nf 1 2 4\n"}) {
         expectError(obj(three + line), "a.obj: line 4: ");
     }
-    EXPECT_TRUE(obj("f 1 2 3\n" + three)) << "vertices may come later";
+    EXPECT_TRUE(obj("f 1 2 3\n" + three)) << "vertices may follow the faces";
 }
 
 const std::string kHead =
@@ -141,7 +142,7 @@ std::string binaryPly(bool big) {
 }
 
 // ImportPly covers the reader's other errors.
-TEST(PlyMesh, Hostile) {
+TEST(PlyMesh, RejectsInvalidFiles) {
     const std::string xyz =
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
         "property float z\n";
@@ -168,7 +169,7 @@ TEST(PlyMesh, Hostile) {
     expectError(ply(xyz + "element face 18446744073709551615\nend_header\n0 0 0\n1 0 0\n0 1 0\n"), "");
 }
 
-TEST(PlyMesh, EveryPrefixAndEveryFlippedByteIsSurvived) {
+TEST(PlyMesh, SurvivesPrefixesAndFlippedBytes) {
     for (const bool big : {false, true}) {
         const std::string text = binaryPly(big);
         ASSERT_TRUE(ply(text));
@@ -199,7 +200,7 @@ TEST(MeshFile, ByExtension) {
 
 // A cube's corners have three normals each, a flat square's corners one, and the ridge of a flat roof has the mean of
 // both sides.
-TEST(MeshNormals, CreasesAreKeptAndCurvesAreSmoothed) {
+TEST(MeshNormals, KeepCreasesAndSmoothCurves) {
     PictureMesh cube;
     for (int i = 0; i < 8; ++i) {
         cube.positions.emplace_back(i & 1, i >> 1 & 1, i >> 2);
@@ -229,7 +230,7 @@ TEST(MeshNormals, CreasesAreKeptAndCurvesAreSmoothed) {
 }
 
 // A tube bends by 90°: rims stay sharp, and normals along its side rotate with their positions.
-TEST(MeshNormals, AMovingMeshKeepsItsCreasesAndTurnsItsNormals) {
+TEST(MeshNormals, MovingMeshesKeepCreasesAndRotateNormals) {
     constexpr std::uint32_t kRound = 24;
     constexpr std::uint32_t kRings = 9;
     PictureMesh tube;
@@ -259,7 +260,7 @@ TEST(MeshNormals, AMovingMeshKeepsItsCreasesAndTurnsItsNormals) {
         tube.triangles.insert(tube.triangles.end(), {0, i, i - 1});
     }
     MovingMesh moving(tube);
-    ASSERT_EQ(moving.mesh().positions.size(), (kRings + 1) * kRound) << "a crease round the lid";
+    ASSERT_EQ(moving.mesh().positions.size(), (kRings + 1) * kRound) << "a crease around the lid";
     moving.setPositions(bent);
     const PictureMesh& mesh = moving.mesh();
     ASSERT_EQ(mesh.triangles.size(), tube.triangles.size());
@@ -278,7 +279,7 @@ TEST(MeshNormals, AMovingMeshKeepsItsCreasesAndTurnsItsNormals) {
 
 // Three walls, each at 50° to the previous one: the first and the last are split at their common corners, and both are
 // smooth towards the middle one.
-TEST(MeshNormals, AMovingMeshIsAsSmoothAsAtRest) {
+TEST(MeshNormals, MovingMeshesAreAsSmoothAsAtRest) {
     PictureMesh walls;
     walls.positions = {{0.0F, 1.0F, 0.0F}};
     glm::vec3 at(1.0F, 0.0F, 0.0F);
@@ -300,7 +301,7 @@ TEST(MeshNormals, AMovingMeshIsAsSmoothAsAtRest) {
     EXPECT_GT(rest.positions.size(), walls.positions.size());
 }
 
-TEST(MeshNormals, TrianglesWithoutAreaHaveNone) {
+TEST(MeshNormals, DegenerateTrianglesHaveNone) {
     PictureMesh flat;
     flat.positions = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {0, 0, 0}};
     flat.triangles = {0, 1, 2, 0, 3, 0};

@@ -54,7 +54,7 @@ std::vector<std::byte> encoded(png_uint_32 format) {
 
 class PngWeb : public testing::TestWithParam<png_uint_32> {};
 
-TEST_P(PngWeb, ReadsWhatLibpngReads) {
+TEST_P(PngWeb, MatchesLibpng) {
     const std::vector<std::byte> bytes = encoded(GetParam());
     const auto web = decodePngWeb(bytes, "a.png");
     const auto native = required(decodePng(bytes, "a.png"));
@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(Formats, PngWeb,
                          testing::Values(PNG_FORMAT_GRAY, PNG_FORMAT_GA, PNG_FORMAT_RGB, PNG_FORMAT_RGBA,
                                          PNG_FORMAT_RGB_COLORMAP, PNG_FORMAT_RGBA_COLORMAP));
 
-TEST(PngWeb, RefusesWhatIsNoWholePng) {
+TEST(PngWeb, RejectsIncompletePngs) {
     std::vector<std::byte> bytes = encoded(PNG_FORMAT_RGB);
     EXPECT_FALSE(decodePngWeb({}, "a.png"));
     EXPECT_FALSE(decodePngWeb(std::span(bytes).first(50), "a.png"));

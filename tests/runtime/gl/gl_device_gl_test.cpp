@@ -40,9 +40,9 @@ EGLContext noRobustContext(EGLDisplay display, EGLConfig config, EGLContext shar
 
 using GlDeviceTest = GlTest;
 
-TEST_P(GlDeviceTest, ThePlatformIsNamed) {
+TEST_P(GlDeviceTest, DescriptionNamesThePlatform) {
     const auto any = required(GlContext::create(GetParam()));
-    EXPECT_EQ(ending(any->description()), "surfaceless") << "the first that is there";
+    EXPECT_EQ(ending(any->description()), "surfaceless") << "the first available platform";
     EXPECT_EQ(any->api(), GetParam());
 }
 
@@ -57,7 +57,8 @@ TEST_P(GlDeviceTest, MissingPlatformsAreNamed) {
     EXPECT_EQ(any.error().code, ErrorCode::kUnsupported);
     for (const char* name :
          {"surfaceless: not available", "device 0: not available", "default: not available"}) {
-        EXPECT_NE(any.error().message.find(name), std::string::npos) << "all that was tried is named";
+        EXPECT_NE(any.error().message.find(name), std::string::npos)
+            << "the error names all platforms that were tried";
     }
     EXPECT_EQ(any.error().message.find('\n'), std::string::npos);
     expectError(GlContext::create({.api = GetParam(), .device = std::size_t{0}}), ErrorCode::kUnsupported,
@@ -66,7 +67,7 @@ TEST_P(GlDeviceTest, MissingPlatformsAreNamed) {
     epoxy_eglGetDisplay = real_display;
 }
 
-TEST_P(GlDeviceTest, DevicesAreOpenedByTheirNumber) {
+TEST_P(GlDeviceTest, DevicesAreOpenedByNumber) {
     std::size_t opened = 0;
     std::size_t number = 0;
     for (;; ++number) {
@@ -80,17 +81,17 @@ TEST_P(GlDeviceTest, DevicesAreOpenedByTheirNumber) {
             break;
         }
     }
-    EXPECT_GT(opened, 0U) << "Mesa's llvmpipe, at least, is a device";
+    EXPECT_GT(opened, 0U) << "at least Mesa's llvmpipe is a device";
 }
 
-TEST_P(GlDeviceTest, ADriverThatCannotTellOfResetsStillGivesAContext) {
+TEST_P(GlDeviceTest, DriversWithoutResetNotificationGiveAContext) {
     real_create_context = epoxy_eglCreateContext;
     refused = 0;
     epoxy_eglCreateContext = noRobustContext;
     const auto context = GlContext::create(GetParam());
     epoxy_eglCreateContext = real_create_context;
     ASSERT_TRUE(context) << context.error().message;
-    EXPECT_EQ(refused, 1) << "Mesa's llvmpipe knows the attribute, and it was asked for first";
+    EXPECT_EQ(refused, 1) << "Mesa's llvmpipe supports the attribute, which is requested first";
 }
 
 TEST(NoContext, IsNamed) {

@@ -303,7 +303,7 @@ class GlFaultTest : public GlTest {
 };
 
 // Only the first allocation fails, then only the second, and so on. Each returns an error, until all succeed.
-TEST_P(GlFaultTest, EveryAllocationThatFailsIsNamed) {
+TEST_P(GlFaultTest, EveryFailedAllocationIsAnError) {
     std::vector<Work> all = allWork();
     for (Work& small : smallWork()) {
         all.push_back(std::move(small));
@@ -317,7 +317,7 @@ TEST_P(GlFaultTest, EveryAllocationThatFailsIsNamed) {
             const Result<void> done = one.work();
             if (allocations <= failing) {
                 EXPECT_TRUE(done) << done.error().message;
-                EXPECT_GT(failing, 0) << "nothing is allocated: the test does not test";
+                EXPECT_GT(failing, 0) << "nothing is allocated: the test proves nothing";
                 break;
             }
             ASSERT_FALSE(done) << "allocation " << failing << " failed in silence: " << failed_call;
@@ -327,11 +327,11 @@ TEST_P(GlFaultTest, EveryAllocationThatFailsIsNamed) {
 }
 
 // Tile memory is the only allocation that may fail without an error: the GL then draws the particles.
-TEST_P(GlFaultTest, ParticlesAreDrawnWhereTilesHaveNoRoom) {
+TEST_P(GlFaultTest, ParticlesAreDrawnWithoutTileMemory) {
     ASSERT_TRUE(drawParticles(std::nullopt, StepPath::kFragment));
     const std::vector<std::uint8_t> drawn = frame_.read();
     EXPECT_GT(*std::max_element(drawn.begin(), drawn.end()), 100)
-        << "nothing is drawn: the test does not test";
+        << "nothing is drawn: the test proves nothing";
     const CountedAllocations counted;
     ASSERT_TRUE(drawParticles(std::nullopt, StepPath::kFragment));
     const int first = std::exchange(allocations, 0);
@@ -353,7 +353,7 @@ TEST_P(GlFaultTest, ParticlesAreDrawnWhereTilesHaveNoRoom) {
     }
 }
 
-TEST_P(GlFaultTest, EveryTextureAboveTheLimitIsNamedWithBothNumbers) {
+TEST_P(GlFaultTest, TextureLimitErrorsNameSizeAndLimit) {
     const Replaced integers(epoxy_glGetIntegerv, &getInteger);
     texture_side = 31;  // below the smallest texture, 32x32 pixels, and all others
     for (const Work& one : allWork()) {
@@ -363,7 +363,7 @@ TEST_P(GlFaultTest, EveryTextureAboveTheLimitIsNamedWithBothNumbers) {
     }
 }
 
-TEST_P(GlFaultTest, AResetIsNamedWhereverSomethingIsReadBack) {
+TEST_P(GlFaultTest, ReadBacksReportAReset) {
     const auto query = FieldQuery::create(collider_);
     ASSERT_TRUE(query);
     const std::array<glm::vec3, 1> points{glm::vec3(0.0F)};
@@ -384,13 +384,13 @@ TEST_P(GlFaultTest, AResetIsNamedWhereverSomethingIsReadBack) {
 }
 
 // A lost context may return errors forever.
-TEST_P(GlFaultTest, ErrorsWithoutEndEnd) {
+TEST_P(GlFaultTest, EndlessErrorsEnd) {
     const Replaced errors(epoxy_glGetError, &endlessError);
     forgetGlErrors();
     expectFails(outcome(WorldTextures::create(collider_)), ErrorCode::kFailure, "0x0507");
 }
 
-TEST_P(GlFaultTest, AWaitThatFailsIsAnError) {
+TEST_P(GlFaultTest, FailedWaitsAreErrors) {
     const Replaced wait(epoxy_glClientWaitSync, &waitFails);
     expectFails(waitForGpu("steps 3 to 4"), ErrorCode::kFailure, "steps 3 to 4");
     GlFence fence;
@@ -401,7 +401,7 @@ TEST_P(GlFaultTest, AWaitThatFailsIsAnError) {
     EXPECT_TRUE(fence.failed());
 }
 
-TEST_P(GlFaultTest, FramebuffersAndShadersThatTheDriverRefuses) {
+TEST_P(GlFaultTest, RejectedFramebuffersAndShadersAreErrors) {
     {
         const Replaced status(epoxy_glCheckFramebufferStatus, &incomplete);
         expectFails(outcome(ParticleSystem::create({.capacity = 10})), ErrorCode::kUnsupported, "0x8cdd");

@@ -9,7 +9,7 @@
 namespace relief {
 namespace {
 
-TEST(TexelLayout, RectanglesLieApartBelowWhatIsPacked) {
+TEST(TexelLayout, RectanglesLieBelowPackedTexels) {
     TexelLayout layout;
     layout.addPacked(1000);
     const int sizes[][2] = {{256, 256}, {100, 7}, {3, 512}, {256, 512}, {200, 30}, {64, 384}};

@@ -110,7 +110,7 @@ class AnimatedColliderGlTest : public CollisionTest {
 };
 RELIEF_INSTANTIATE_STEP_TESTS(AnimatedColliderGlTest);
 
-TEST_P(AnimatedColliderGlTest, VerticesAreThoseOfTheCpu) {
+TEST_P(AnimatedColliderGlTest, VerticesMatchTheCpu) {
     const AnimatedMesh mesh = bendingTube(24, 200);
     std::vector<glm::vec3> normals(mesh.positions.size(), glm::vec3(0.0F, 1.0F, 0.0F));
     auto pass = SkinPass::create(mesh);
@@ -142,7 +142,7 @@ TEST_P(AnimatedColliderGlTest, VerticesAreThoseOfTheCpu) {
 
 // Against the winding number of the posed triangles, including points far outside the rest box. RELIEF_ANIMATED names a
 // container to test instead: every frame of every clip, at 30 frames per second.
-TEST_P(AnimatedColliderGlTest, InsideIsThatOfThePosedMesh) {
+TEST_P(AnimatedColliderGlTest, InsideMatchesThePosedMesh) {
     const Pose body{{3.0F, -1.0F, 0.5F}, glm::angleAxis(0.7F, glm::normalize(glm::vec3(1, 2, 3))), 1.5F};
     // The tube is 1/25 of the box thick, and half a texel is lost at its silhouettes.
     makeAnimated(shared(bendingTube()), body, {.resolution = 768, .room = {}});
@@ -158,7 +158,7 @@ TEST_P(AnimatedColliderGlTest, InsideIsThatOfThePosedMesh) {
         for (int frame = 0; frame <= static_cast<int>(30.0F * clip.seconds); ++frame) {
             worst = std::max(worst, wrongIn(poseAt(animated_->mesh(), clip, frame / 30.0), 1000));
         }
-        std::cout << clip.name << ": the worst frame has " << 100.0 * worst << " % wrong\n";
+        std::cout << clip.name << ": the worst frame has " << 100.0 * worst << " % wrong points\n";
         EXPECT_LE(worst, 0.02) << clip.name;
     }
 }
@@ -166,7 +166,7 @@ TEST_P(AnimatedColliderGlTest, InsideIsThatOfThePosedMesh) {
 // Closed forms. A box moves along +x with 1 unit per second: all its motion is that of the box of its maps. Another box
 // rotates by 90° per second about y around its fixed centre: the motion is that of its texels, ω × p at p, which
 // carries the end at +x towards −z.
-TEST_P(AnimatedColliderGlTest, AClipThrowsWhatItMeets) {
+TEST_P(AnimatedColliderGlTest, ClipsPushParticles) {
     const ParticleState pushed = metBy("go", {0.2F, 0.3F, 0.3F}, {0.3F, 0.05F, 0.1F}, {.restitution = 0.5F});
     EXPECT_NEAR(pushed.velocity.x, 1.5F, 0.02F);
     EXPECT_NEAR(pushed.velocity.y, 0.0F, 1e-3F);
@@ -178,7 +178,7 @@ TEST_P(AnimatedColliderGlTest, AClipThrowsWhatItMeets) {
 using AnimatedArgumentsGlTest = AnimatedColliderGlTest;
 RELIEF_INSTANTIATE_STEP_TESTS_ONCE(AnimatedArgumentsGlTest);
 
-TEST_P(AnimatedArgumentsGlTest, WhatMakesNoSenseIsRefused) {
+TEST_P(AnimatedArgumentsGlTest, InvalidArgumentsAreRejected) {
     const SharedMesh mesh = shared(movingBox({0.2F, 0.3F, 0.3F}));
     makeAnimated(mesh);
     const auto refused = [&](const std::function<void(MeshPose&)>& spoil) {
@@ -190,7 +190,7 @@ TEST_P(AnimatedArgumentsGlTest, WhatMakesNoSenseIsRefused) {
     EXPECT_TRUE(refused([](MeshPose& pose) { pose.joints.emplace_back(); }));
     EXPECT_TRUE(refused([](MeshPose& pose) { pose.weights.push_back(1.0F); }));
     EXPECT_TRUE(refused([](MeshPose& pose) { pose.joints[0].row[1].x = std::nanf(""); }));
-    EXPECT_TRUE(refused([](MeshPose& pose) { pose.joints[0].row[0].x = 5.0F; })) << "more than the room";
+    EXPECT_TRUE(refused([](MeshPose& pose) { pose.joints[0].row[0].x = 5.0F; })) << "outside the room";
     ASSERT_TRUE(animated_->setPose(clipPose(*mesh, "go", 0.5)));
     EXPECT_TRUE(refused([](MeshPose&) {})) << "twice";
     EXPECT_FALSE(SkinPass::create(*mesh, std::vector<glm::vec3>(3)));

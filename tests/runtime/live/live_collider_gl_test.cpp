@@ -113,7 +113,7 @@ std::vector<glm::vec3> randomPoints(std::size_t count, float half) {
 
 // The shader's field of the live rectangles matches the CPU's field of the same maps, rendered one by one and read
 // back. The shape is a sphere.
-TEST_P(LiveColliderGlTest, MapsAreThoseOfAStaticBakeOfTheMesh) {
+TEST_P(LiveColliderGlTest, MapsMatchAStaticRenderingOfTheMesh) {
     const Mesh mesh = sphere(0.5F);
     auto gpu_mesh = GpuMesh::create(mesh.positions, mesh.triangles);
     const auto renderer = DepthMapRenderer::create(96, 96);
@@ -146,7 +146,7 @@ TEST_P(LiveColliderGlTest, MapsAreThoseOfAStaticBakeOfTheMesh) {
 }
 
 // Closed form: a plate that rises with speed w hits a particle at rest, which leaves with (1 + e) w.
-TEST_P(LiveColliderGlTest, ARisingPlateThrowsWhatItMeets) {
+TEST_P(LiveColliderGlTest, RisingPlatesThrowParticles) {
     constexpr float kSpeed = 0.6F;  // 0.01 units per step
     struct Case {
         float restitution;
@@ -177,7 +177,7 @@ TEST_P(LiveColliderGlTest, ARisingPlateThrowsWhatItMeets) {
 }
 
 // The same with a pose: the plate is upright, scaled by 2, and pushes along −x.
-TEST_P(LiveColliderGlTest, ThePoseTurnsTheMotionToo) {
+TEST_P(LiveColliderGlTest, PosesRotateTheMotion) {
     makeLive(plate_, cube(0.6F), 128,
              {{0.3F, 1.0F, 0.0F}, turn({0.0F, 0.0F, 1.0F}, glm::radians(90.0F)), 2.0F});
     // The plate's top, y = 0.05, is at x = 0.3 − 0.1 in the world.
@@ -190,7 +190,7 @@ TEST_P(LiveColliderGlTest, ThePoseTurnsTheMotionToo) {
     EXPECT_NEAR(after.velocity.y, 0.0F, 1e-3F);
 }
 
-TEST_P(LiveColliderGlTest, WhatHasStoppedDoesNotMoveAnything) {
+TEST_P(LiveColliderGlTest, StoppedMeshesMoveNothing) {
     makeLive(plate_, cube(0.6F), 64);
     goTo(moved(plate_, {0.0F, 0.1F, 0.0F}));
     const std::uint64_t moving = textures_->revision();
@@ -198,14 +198,14 @@ TEST_P(LiveColliderGlTest, WhatHasStoppedDoesNotMoveAnything) {
     const std::uint64_t resting = textures_->revision();
     EXPECT_NE(resting, moving);
     update();
-    EXPECT_EQ(textures_->revision(), resting) << "a mesh at rest costs nothing";
+    EXPECT_EQ(textures_->revision(), resting) << "a resting mesh causes no update";
     oneParticle({}, {0.0F, 0.152F, 0.0F}, {0.0F, -0.3F, 0.0F});
     particles_->step(kDt);
     EXPECT_EQ(state().at(0).contact, Contact::kCollided);
     EXPECT_NEAR(state().at(0).velocity.y, 0.0F, 1e-6F);
 }
 
-TEST_P(LiveColliderGlTest, WhatStoppedGoesWithTheSurface) {
+TEST_P(LiveColliderGlTest, StoppedParticlesFollowTheSurface) {
     makeLive(plate_, cube(0.6F), 64);
     oneParticle({.on_collision = OnCollision::kStop}, {0.05F, 0.052F, 0.1F}, {0.0F, -0.3F, 0.0F});
     particles_->step(kDt);
@@ -223,7 +223,7 @@ TEST_P(LiveColliderGlTest, WhatStoppedGoesWithTheSurface) {
 // Drops at rest in the path of a box that is translated, scaled or rotated by its vertices. Each update draws its
 // silhouette into other texels, up to half a texel off. Every drop that the box passes over by more than a texel's
 // diagonal is still hit.
-TEST_P(LiveColliderGlTest, WhatTheSurfacePassesOverIsHit) {
+TEST_P(LiveColliderGlTest, PassedParticlesAreHit) {
     constexpr int kSteps = 12;
     constexpr std::uint32_t kDrops = 2048;
     const float texel = std::sqrt(2.0F) * 1.03F / 62.0F;
@@ -277,7 +277,7 @@ TEST_P(LiveColliderGlTest, WhatTheSurfacePassesOverIsHit) {
 }
 
 // Positions from a span equal those from a caller's buffer with an offset, for any caller state, which is kept.
-TEST_P(LiveColliderGlTest, PositionsComeFromTheCallersBuffer) {
+TEST_P(LiveColliderGlTest, PositionsMayComeFromACallerBuffer) {
     const Mesh mesh = sphere(0.3F);
     const std::vector<glm::vec3> points = randomPoints(5000, 0.6F);
     makeLive(mesh, cube(0.6F), 64);
@@ -305,7 +305,7 @@ TEST_P(LiveColliderGlTest, PositionsComeFromTheCallersBuffer) {
 }
 
 // A live body beside a static one, with another layout and with the same: each has the field that it has on its own.
-TEST_P(LiveColliderGlTest, StandsBesideStaticBodies) {
+TEST_P(LiveColliderGlTest, WorksBesideStaticBodies) {
     const Mesh mesh = sphere(0.3F);
     auto live = LiveCollider::create(mesh.positions, mesh.triangles, liveFrames(cube(0.5F), 64).value());
     ASSERT_TRUE(live) << live.error().message;
@@ -343,11 +343,11 @@ TEST_P(LiveColliderGlTest, StandsBesideStaticBodies) {
 using LiveArgumentsGlTest = LiveColliderGlTest;
 RELIEF_INSTANTIATE_STEP_TESTS_ONCE(LiveArgumentsGlTest);
 
-TEST_P(LiveArgumentsGlTest, MisuseIsRefused) {
+TEST_P(LiveArgumentsGlTest, MisuseIsRejected) {
     const Mesh& plate = plate_;
     makeLive(plate, cube(0.5F), 32);
     EXPECT_EQ(live_->setPositions(moved(plate, {0.0F, 0.6F, 0.0F})).error().code, ErrorCode::kUsage)
-        << "leaves the box";
+        << "outside the box";
     ASSERT_TRUE(live_->setPositions(moved(plate, {0.0F, 0.1F, 0.0F})));
     EXPECT_EQ(live_->setPositions(plate.positions).error().code, ErrorCode::kUsage) << "twice";
     update();

@@ -60,7 +60,7 @@ class WobblePassGlTest : public GlTest {
 };
 RELIEF_INSTANTIATE_GL_TESTS(WobblePassGlTest);
 
-TEST_P(WobblePassGlTest, FollowsItsFormulaAndKeepsTheCallersState) {
+TEST_P(WobblePassGlTest, MatchesItsFormulaAndKeepsCallerState) {
     const Points points = somePoints(5000);
     const CallerState caller;
     auto pass = required(WobblePass::create(kSome, points.positions, points.normals));
@@ -83,7 +83,7 @@ TEST_P(WobblePassGlTest, FollowsItsFormulaAndKeepsTheCallersState) {
     EXPECT_GT(moved, 0.05F);  // the vertices do move
 }
 
-TEST_P(WobblePassGlTest, NormalsAreThoseOfTheMovedSurface) {
+TEST_P(WobblePassGlTest, NormalsMatchTheMovedSurface) {
     // The plane z = 0 becomes z = f(x, y) = amplitude/3 · Σ sin(…), with normal (-df/dx, -df/dy, 1).
     Points points;
     std::vector<glm::vec3> wanted;
@@ -106,7 +106,7 @@ TEST_P(WobblePassGlTest, NormalsAreThoseOfTheMovedSurface) {
     }
 }
 
-TEST_P(WobblePassGlTest, WhatMakesNoSenseIsRefused) {
+TEST_P(WobblePassGlTest, InvalidArgumentsAreRejected) {
     const Points points = somePoints(3);
     const auto refused = [&](const Wobble& wobble, std::span<const glm::vec3> positions,
                              std::span<const glm::vec3> normals) {

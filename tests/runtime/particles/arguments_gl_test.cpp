@@ -56,7 +56,7 @@ TEST_P(ArgumentsGlTest, SystemsOutOfRange) {
     EXPECT_EQ(particles_->counts().alive, 0U);
 }
 
-TEST_P(ArgumentsGlTest, NumbersThatAreNone) {
+TEST_P(ArgumentsGlTest, NonFiniteNumbers) {
     ASSERT_TRUE(particles_->setForces({.gravity = {0.0F, -8.0F, 0.0F}, .drag = 0.0F}));
     ASSERT_TRUE(particles_->setGround(-100.0F));
     spawnOne({{}, {}, 1000.0F, 0});
@@ -125,15 +125,15 @@ TEST_P(ArgumentsGlTest, Events) {
     }
     EXPECT_TRUE(refused(setEvents(*particles_, std::vector<EventOptions>(kEventLists + 1))));
     ASSERT_TRUE(setEvents(*particles_, EventOptions{}));
-    EXPECT_TRUE(takeEvents().events.empty()) << "nobody was there";
+    EXPECT_TRUE(takeEvents().events.empty()) << "there are no particles";
     for (int i = 0; i < EventList::kInFlightMax; ++i) {
         EXPECT_TRUE(requestEvents(*particles_, 0));
     }
-    EXPECT_FALSE(requestEvents(*particles_, 0)) << "more lists than there is room for";
+    EXPECT_FALSE(requestEvents(*particles_, 0)) << "too many lists";
 }
 
 // Events can distinguish 254 material names.
-TEST_P(ArgumentsGlTest, MoreMaterialsThanEventsCanTellApart) {
+TEST_P(ArgumentsGlTest, TooManyMaterialsForEvents) {
     std::vector<Collider> colliders(2, boxCollider());
     std::vector<ColliderBody> bodies;
     for (int i = 0; i < 255; ++i) {

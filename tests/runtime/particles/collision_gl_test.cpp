@@ -68,12 +68,12 @@ TEST_P(CollisionGlTest, BallsTouchEdgesAndCorners) {
         return std::count_if(nearest.begin(), nearest.end(), [=](float one) { return one < gap; });
     };
     EXPECT_GT(nearerThan(1.2F * kRadius), 3900);
-    EXPECT_LE(nearerThan(0.7F * kRadius), 4) << "a texel's rim may hide one";
+    EXPECT_LE(nearerThan(0.7F * kRadius), 4) << "one may be missed at a texel's rim";
 }
 
 // A ball that lies slightly below a floor and rolls into a wall bounces off the wall according to its type. Its floor
 // contact must not mark it as caught by the wall, which would return it at full speed.
-TEST_P(CollisionGlTest, ABallOnAFloorBouncesOffAWall) {
+TEST_P(CollisionGlTest, BallsOnAFloorBounceOffWalls) {
     constexpr float kRadius = 0.1F;
     const Collider corner =
         analytic::frontBackCollider(analytic::unite({analytic::box({-1.0, -0.2, -0.5}, {1.0, 0.0, 0.5}),
@@ -98,7 +98,7 @@ TEST_P(CollisionGlTest, ABallOnAFloorBouncesOffAWall) {
     }
 }
 
-TEST_P(CollisionGlTest, EachTypeReactsInItsOwnWay) {
+TEST_P(CollisionGlTest, EachTypeHasItsReaction) {
     for (const Integrator integrator : kIntegrators) {
         SCOPED_TRACE(nameOf(integrator));
         make({.capacity = 16, .integrator = integrator});
@@ -127,7 +127,7 @@ TEST_P(CollisionGlTest, EachTypeReactsInItsOwnWay) {
     }
 }
 
-TEST_P(CollisionGlTest, ATypeGoesThroughWhatItDoesNotCollideWith) {
+TEST_P(CollisionGlTest, TypesPassThroughExcludedBodies) {
     std::vector<ParticleType> types(4);
     types[1].collides = kCollidesWithGround;
     types[2].collides = 1;
@@ -168,7 +168,7 @@ TEST_P(CollisionGlTest, ATypeGoesThroughWhatItDoesNotCollideWith) {
 }
 
 // Three shelves above each other, and a mask for each subset: particles stop at the highest shelf in their mask.
-TEST_P(CollisionGlTest, MasksOfSeveralBodies) {
+TEST_P(CollisionGlTest, MasksSelectBodies) {
     const Collider box = boxCollider();
     std::vector<ColliderBody> bodies;
     for (const float height : {2.0F, 1.0F, 0.0F}) {
@@ -196,7 +196,7 @@ TEST_P(CollisionGlTest, MasksOfSeveralBodies) {
     }
 }
 
-TEST_P(CollisionGlTest, ARunMayBeginBeforeTimeZero) {
+TEST_P(CollisionGlTest, RunsMayStartBeforeTimeZero) {
     std::vector<ParticleState> of[2];
     for (const double start : {0.0, -2.0}) {
         make({.capacity = 16, .epoch_seconds = 0.5, .start_time = start});
@@ -207,7 +207,7 @@ TEST_P(CollisionGlTest, ARunMayBeginBeforeTimeZero) {
         EXPECT_NEAR(particles_->time(), start + 1.0, 1e-6);
         of[start < 0.0 ? 1 : 0] = state();
         step(31);
-        EXPECT_TRUE(state().empty()) << "it lives for a second and a half";
+        EXPECT_TRUE(state().empty()) << "it lives for 1.5 s";
     }
     ASSERT_EQ(of[0].size(), 1U);
     EXPECT_EQ(of[0][0].position, of[1][0].position);
@@ -216,7 +216,7 @@ TEST_P(CollisionGlTest, ARunMayBeginBeforeTimeZero) {
 
 // Snow on a rotating, moving body keeps its position on that body, even on the last of many: the body index passes
 // through the texture of either integrator.
-TEST_P(CollisionGlTest, WhatStoppedOnABodyGoesWithIt) {
+TEST_P(CollisionGlTest, StoppedParticlesFollowTheirBody) {
     const Collider box = boxCollider();
     const auto poseAt = [](float t) {
         return Pose{{20.0F + t, 0.5F * t, 0.0F}, turn({0.3F, 1.0F, 0.2F}, 1.5F * t), 1.7F};
@@ -259,7 +259,7 @@ TEST_P(CollisionGlTest, WhatStoppedOnABodyGoesWithIt) {
     }
 }
 
-TEST_P(CollisionGlTest, WhatStoppedOnABodyThatIsGoneStays) {
+TEST_P(CollisionGlTest, ParticlesStoppedOnARemovedBodyStay) {
     const Collider box = boxCollider();
     make({.capacity = 4});
     std::vector<ColliderBody> bodies(8, ColliderBody{&box, {}});
@@ -280,7 +280,7 @@ TEST_P(CollisionGlTest, WhatStoppedOnABodyThatIsGoneStays) {
 
 // The surface velocity is part of the reaction: a wall that moves at w gives a particle at rest (1 + ε) w. The wall
 // also overtakes particles that slide along it; a sweep must carry them for the whole step.
-TEST_P(CollisionGlTest, AMovingWallPushes) {
+TEST_P(CollisionGlTest, MovingWallsPush) {
     constexpr float kSpeed = 1.2F;
     const Collider box = boxCollider();
     struct Case {
@@ -309,7 +309,7 @@ TEST_P(CollisionGlTest, AMovingWallPushes) {
             const bool rounds = integrator == Integrator::kVerlet || sweep > 0.0F;
             EXPECT_NEAR(particle.velocity.x, (1.0F + restitution) * kSpeed, rounds ? 2e-3F : 2e-4F);
             EXPECT_GT(particle.position.x, 0.4F + kSpeed * kDt * static_cast<float>(steps) - 0.01F)
-                << "it stays ahead of the wall";
+                << "stays ahead of the wall";
         }
     }
 }
@@ -335,7 +335,7 @@ Collider hollowBox() {
 
 // No particle passes through a closed body that is thicker than the sweep's step, at any speed. Without a sweep most
 // do. With RELIEF_SOAK in the environment a million particles run a thousand steps.
-TEST_P(CollisionGlTest, ASweptStepNeverTunnels) {
+TEST_P(CollisionGlTest, SweptStepsNeverTunnel) {
     const bool soak = std::getenv("RELIEF_SOAK") != nullptr;
     const std::uint32_t count = soak ? 1'000'000 : 2000;
     const int steps = soak ? 1000 : 60;
@@ -379,7 +379,7 @@ TEST_P(CollisionGlTest, ASweptStepNeverTunnels) {
 }
 
 // The velocity of Verlet is the displacement of the last step: a swept bounce must not shorten or rotate it.
-TEST_P(CollisionGlTest, ASweptBounceKeepsTheVelocity) {
+TEST_P(CollisionGlTest, SweptBouncesKeepTheVelocity) {
     for (const Integrator integrator : kIntegrators) {
         SCOPED_TRACE(nameOf(integrator));
         make({.capacity = 4, .integrator = integrator});
@@ -395,7 +395,7 @@ TEST_P(CollisionGlTest, ASweptBounceKeepsTheVelocity) {
 
 // Particles that bounce and slide come to rest under any gravity: no bit changes for a thousand steps, and nothing
 // creeps into the floor. A type with upward gravity rests under the slab.
-TEST_P(CollisionGlTest, WhatBouncesComesToRest) {
+TEST_P(CollisionGlTest, BouncingParticlesComeToRest) {
     const Collider slab = analytic::frontBackCollider(analytic::box({-2.0, -0.5, -2.0}, {2.0, 0.0, 2.0}), 64);
     std::vector<ParticleType> types(3, ParticleType{.restitution = 0.6F, .friction = 0.3F});
     types[1].gravity = 0.125F;
@@ -432,7 +432,7 @@ TEST_P(CollisionGlTest, WhatBouncesComesToRest) {
 
 // Results do not depend on the caller's GL state, which is kept: with a swept collider, whose compute shader uses
 // storage buffers, a moving body, a flow, and events read back.
-TEST_P(CollisionGlTest, TheCallersStateIsKeptAndDoesNoHarm) {
+TEST_P(CollisionGlTest, CallerStateIsKeptAndIgnored) {
     const Collider box = boxCollider();
     AirSettings air;
     air.wind = {0.1F, 0.0F, 0.0F};
@@ -484,7 +484,7 @@ TEST_P(CollisionGlTest, TheCallersStateIsKeptAndDoesNoHarm) {
 }
 
 // New values must not trigger a compilation, because compilers are slow.
-TEST_P(CollisionGlTest, NumbersDoNotCompile) {
+TEST_P(CollisionGlTest, NewValuesDoNotRecompile) {
     const auto programs = [] {
         std::vector<GLuint> names;
         for (GLuint name = 1; name < 65536; ++name) {

@@ -90,7 +90,7 @@ TEST(DeathQueue, OneFloatDecides) {
     EXPECT_TRUE(pop(queue, due).empty());
 }
 
-TEST(DeathQueue, WhatIsNeverDueHidesNothingThatIs) {
+TEST(DeathQueue, EntriesThatAreNeverDueHideNoOthers) {
     DeathQueue queue;
     queue.push(std::numeric_limits<float>::quiet_NaN(), 1);
     queue.push(std::numeric_limits<float>::infinity(), 2);

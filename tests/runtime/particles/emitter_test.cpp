@@ -70,7 +70,7 @@ EmitterSettings aimed(const EmitterAim& aim) {
     return settings;
 }
 
-TEST(Emitter, DrawsFollowTheirDistributions) {
+TEST(Emitter, DrawsMatchTheirDistributions) {
     using Value = std::function<double(const Birth&)>;
     using Cdf = std::function<double(double)>;
     const auto uniform = [](double low, double high) -> Cdf {
@@ -144,7 +144,7 @@ TEST(Emitter, DrawsFollowTheirDistributions) {
     }
 }
 
-TEST(Emitter, PointsAreChosenEvenlyAndTheirNormalsFollowed) {
+TEST(Emitter, PointsAreChosenUniformlyWithTheirNormals) {
     EmitterSettings settings = aimed({std::nullopt, 0.0F, 2.0F, 2.0F, 0.0F});
     settings.shape = EmitterShape::kPoints;
     constexpr std::size_t kPoints = 50;
@@ -164,7 +164,7 @@ TEST(Emitter, PointsAreChosenEvenlyAndTheirNormalsFollowed) {
 }
 
 // Without a direction the cone's axis is the surface normal.
-TEST(Emitter, AimFollowsTheNormalOfItsShape) {
+TEST(Emitter, AimDefaultsToTheNormal) {
     for (const EmitterShape shape : {EmitterShape::kSphere, EmitterShape::kShell, EmitterShape::kDisc}) {
         EmitterSettings settings = round(shape);
         settings.normal = {0.0F, 0.0F, -2.0F};
@@ -214,7 +214,7 @@ EmitterSettings fountain() {
     return settings;
 }
 
-TEST(Emitter, CountsAreThoseOfTheClosedForm) {
+TEST(Emitter, CountsMatchTheClosedForm) {
     for (const int rate : {16, 60}) {  // steps per second; sixty also give exactly one second's births
         Emitter emitter(fountain(), 1);
         std::vector<Birth> births;
@@ -233,7 +233,7 @@ TEST(Emitter, CountsAreThoseOfTheClosedForm) {
     }
 }
 
-TEST(Emitter, BirthsAreTheSameHoweverTimeIsCut) {
+TEST(Emitter, BirthsDoNotDependOnTheStep) {
     std::vector<std::vector<Birth>> runs;
     for (const int cuts : {1, 2, 7, 60, 1000}) {
         Emitter emitter(fountain(), 3);
@@ -281,7 +281,7 @@ TEST(Emitter, AgesSpreadBirthsOverTheStep) {
     }
 }
 
-TEST(Emitter, ADayOfStepsEndsWithOneLongStep) {
+TEST(Emitter, ADayOfStepsMatchesOneLongStep) {
     EmitterSettings settings;
     settings.rate = 1.0;
     Emitter emitter(settings, 1);
@@ -292,7 +292,7 @@ TEST(Emitter, ADayOfStepsEndsWithOneLongStep) {
     EXPECT_EQ(births.size(), 86400U);
 }
 
-TEST(Emitter, RefusedBirthsAreSkippedAcrossBursts) {
+TEST(Emitter, RefusedBirthsAreSkipped) {
     Emitter emitter(fountain(), 1);
     std::vector<Birth> births;
     EXPECT_EQ(emitter.emit(2.0, 100, births), 5U * 70U + 1500U - 100U);
@@ -300,7 +300,7 @@ TEST(Emitter, RefusedBirthsAreSkippedAcrossBursts) {
     EXPECT_EQ(births.size(), 100U + 70U + 750U);
 }
 
-TEST(Emitter, AbsurdNumbersEndQuickly) {
+TEST(Emitter, HugeNumbersAreFast) {
     EmitterSettings settings = fountain();
     settings.rate = 1e300;
     settings.burst = ~std::uint64_t{0};
@@ -314,7 +314,7 @@ TEST(Emitter, AbsurdNumbersEndQuickly) {
     EXPECT_LE(births.size(), 70U);
 }
 
-TEST(Emitter, EarlierEmittersTakeTheRoom) {
+TEST(Emitter, EarlierEmittersHavePriority) {
     EmitterSettings settings;
     settings.burst = 60;
     std::vector<Emitter> emitters;
@@ -329,7 +329,7 @@ TEST(Emitter, EarlierEmittersTakeTheRoom) {
     EXPECT_EQ(births[60].type, 2U);
 }
 
-TEST(Emitter, CheckNamesTheWrongSetting) {
+TEST(Emitter, CheckNamesTheInvalidSetting) {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     EXPECT_TRUE(Emitter::check(fountain()));
     EmitterSettings points = fountain();
@@ -380,7 +380,7 @@ void expectNear(const glm::vec3& a, const glm::vec3& b, float bound, const char*
     EXPECT_LT(glm::length(a - b), bound) << what << ": " << a.x << ' ' << a.y << ' ' << a.z;
 }
 
-TEST(EmitterMotion, EachBirthIsCarriedAtItsOwnMoment) {
+TEST(EmitterMotion, BirthsUseThePoseAtTheirOwnTime) {
     EmitterMotion motion;
     motion.keys = spin();
     std::vector<Birth> births(2, Birth{{1.0F, 0.5F, 0.0F}, {0.0F, 0.0F, 3.0F}});
@@ -395,7 +395,7 @@ TEST(EmitterMotion, EachBirthIsCarriedAtItsOwnMoment) {
 }
 
 // Composes both motions: positions by hand, velocities by their differences.
-TEST(EmitterMotion, AnAttachedEmitterGoesWithItsBody) {
+TEST(EmitterMotion, AttachedEmittersFollowTheirBody) {
     EmitterMotion motion;
     motion.keys = spin();
     motion.body = {

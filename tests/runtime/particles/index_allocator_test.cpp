@@ -16,7 +16,7 @@ class IndexAllocatorCapacity : public testing::TestWithParam<std::uint32_t> {};
 
 // Fails on any wrong summary bit at any level: the capacities are just below, at and above a full word of each level of
 // the tree.
-TEST_P(IndexAllocatorCapacity, AgreesWithASetOverManyRandomCalls) {
+TEST_P(IndexAllocatorCapacity, AgreesWithASet) {
     const std::uint32_t capacity = GetParam();
     IndexAllocator allocator(capacity);
     std::set<std::uint32_t> free;
@@ -60,7 +60,7 @@ TEST_P(IndexAllocatorCapacity, AgreesWithASetOverManyRandomCalls) {
 INSTANTIATE_TEST_SUITE_P(Capacities, IndexAllocatorCapacity,
                          testing::Values(1U, 2U, 63U, 64U, 65U, 1000U, 4095U, 4096U, 4097U, 20'000U));
 
-TEST(IndexAllocator, KnowsNothingBeyondItsCapacity) {
+TEST(IndexAllocator, RejectsIndicesBeyondItsCapacity) {
     IndexAllocator allocator(64);
     EXPECT_FALSE(allocator.isLive(64));
     EXPECT_FALSE(allocator.release(64));

@@ -158,7 +158,7 @@ TEST_P(ParticleSystemGlTest, StepEqualsTheReferenceParticleByParticle) {
                     continue;
                 }
                 const ParticleState& gpu = found->second;
-                ASSERT_EQ(gpu.id, before.id) << "a birth landed on another texel";
+                ASSERT_EQ(gpu.id, before.id) << "a birth was written to the wrong texel";
                 const ReferenceState cpu = referenceStep(reference, before.position, before.velocity);
                 const float way = glm::length(gpu.position - cpu.position);
                 const float speed = glm::length(gpu.velocity - cpu.velocity);
@@ -167,7 +167,7 @@ TEST_P(ParticleSystemGlTest, StepEqualsTheReferenceParticleByParticle) {
                 if (!(way <= position) || !(speed <= velocity) || gpu.contact != cpu.contact) {
                     ++excused;
                     ASSERT_TRUE(cpu.ambiguous)
-                        << "step " << i << " index " << index << " off by " << way << ", velocity " << speed
+                        << "step " << i << " index " << index << " error " << way << ", velocity " << speed
                         << ", contact " << static_cast<int>(gpu.contact) << " for "
                         << static_cast<int>(cpu.contact);
                 }
@@ -188,7 +188,7 @@ TEST_P(ParticleSystemGlTest, StepEqualsTheReferenceParticleByParticle) {
 
 // Wind and drag: v' = (v + dt (g + k w)) / (1 + dt k) approaches the terminal velocity w + g/k without overshoot, for
 // any dt · k. k is drag / mass, or 6π η r / m by Stokes' law.
-TEST_P(ParticleSystemGlTest, DragIsThatOfTheClosedForm) {
+TEST_P(ParticleSystemGlTest, DragMatchesTheClosedForm) {
     struct Case {
         Forces forces;
         ParticleType type;
@@ -225,7 +225,7 @@ TEST_P(ParticleSystemGlTest, DragIsThatOfTheClosedForm) {
 // a sphere than the error of its maps. A point with an outside vote lies in front of that map's surface point at the
 // texel's centre, at most 0.71 texel aside. So it is at most that far from a point of the sphere. A half-float depth is
 // off by half an ulp, 2^-12 of the depth range.
-TEST_P(ParticleSystemGlTest, SnowRestsExactlyOnASphereAndNotInIt) {
+TEST_P(ParticleSystemGlTest, SnowRestsExactlyOnASphere) {
     constexpr std::uint32_t kSize = 256;
     constexpr double kRadius = 0.5;
     constexpr std::uint32_t kFlakes = 10'000;
@@ -291,7 +291,7 @@ TEST_P(ParticleSystemGlTest, CaughtParticlesLeave) {
                           glm::length(births[particle.index].velocity) * (1.0F + 3e-6F));
             }
         }
-        EXPECT_EQ(inside, 0) << (gravity ? "pressed in by gravity" : "in free flight");
+        EXPECT_EQ(inside, 0) << (gravity ? "pulled in by gravity" : "in free flight");
     }
 }
 
@@ -331,7 +331,7 @@ TEST_P(ParticleSystemGlTest, DeathsOnCpuAndGpuAgree) {
             for (std::uint32_t index = 0; index < particles_->extent(); ++index) {
                 ASSERT_EQ(raw->position[4 * index + 3] >= 0.0F, particles_->isLive(index)) << "step " << step;
                 if (!particles_->isLive(index)) {
-                    ASSERT_EQ(raw->position[4 * index + 1], -1e30F) << "out of sight";
+                    ASSERT_EQ(raw->position[4 * index + 1], -1e30F) << "moved out of sight";
                 }
             }
             std::set<std::uint32_t> alive;
@@ -353,15 +353,15 @@ TEST_P(ParticleSystemGlTest, DeathsOnCpuAndGpuAgree) {
             least = step < 200 ? least : std::min(least, counts.extent);
             most = step < 200 ? most : std::max(most, counts.extent);
         }
-        EXPECT_LT(least, 1024U) << "one row";
-        EXPECT_GT(most, 2048U) << "three";
+        EXPECT_LT(least, 1024U) << "shrinks to one row";
+        EXPECT_GT(most, 2048U) << "grows to three rows";
         EXPECT_NEAR(particles_->time(), time, 1e-9);
     }
 }
 
 // The age of a birth is an extra step before the first one, v' = (v + t (g + k w)) / (1 + t k), in the step's air,
 // whose wind replaces that of the forces. The age also counts towards death.
-TEST_P(ParticleSystemGlTest, AnAgeIsAStepOfItsOwn) {
+TEST_P(ParticleSystemGlTest, BirthAgeIsAnExtraStep) {
     constexpr float kTime = 0.25F;
     constexpr float kDrag = 3.0F;
     const glm::vec3 wind(2.0F, 0.0F, -1.0F);

@@ -36,7 +36,7 @@ TEST(Random, IsThePublishedGenerator) {
     }
 }
 
-TEST(Random, BelowIsEvenAndInRange) {
+TEST(Random, BelowIsUniformAndInRange) {
     for (const std::uint32_t count : {1U, 2U, 7U, 1000U}) {
         Pcg32 random(count);
         std::vector<std::size_t> hits(count);
@@ -90,7 +90,7 @@ TEST(Random, ConeIsUniformInSolidAngle) {
     }
 }
 
-TEST(Random, OneMinusCosineIsThatOfTheLibrary) {
+TEST(Random, OneMinusCosineMatchesLibm) {
     EXPECT_EQ(oneMinusCosine(0.0), 0.0);
     EXPECT_DOUBLE_EQ(oneMinusCosine(90.0), 1.0);
     EXPECT_DOUBLE_EQ(oneMinusCosine(180.0), 2.0);
@@ -115,7 +115,7 @@ TEST(Random, BasesAreRightHandedAndOrthonormal) {
     }
 }
 
-TEST(Random, UnitVectorsOfAnyLength) {
+TEST(Random, NormalizesVectorsOfAnyLength) {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     EXPECT_EQ(unitVector({0.0F, -1e-40F, 0.0F}), glm::vec3(0.0F, -1.0F, 0.0F));
     EXPECT_EQ(unitVector({3e38F, 0.0F, 0.0F}), glm::vec3(1.0F, 0.0F, 0.0F));
@@ -126,7 +126,7 @@ TEST(Random, UnitVectorsOfAnyLength) {
 }
 
 // Pins the bits: they must be the same on every machine, because seeded runs depend on them.
-TEST(Random, TheBitsOfEveryKindOfDrawArePinned) {
+TEST(Random, BitsOfEveryDrawArePinned) {
     Pcg32 random(42, 54);
     float sum = 0.0F;
     for (int i = 0; i < 1000; ++i) {

@@ -249,7 +249,7 @@ TEST_P(StepPathGlTest, BothPathsGiveTheSameParticles) {
 }
 
 // Checks that tours are used; otherwise the test above proves nothing about them.
-TEST_P(StepPathGlTest, ToursAreForSweepsOfASingleCollider) {
+TEST_P(StepPathGlTest, ToursAreUsedForSweepsOfASingleCollider) {
     const auto tours = [](const Result<WorldTextures>& textures, StepVariant variant) {
         variant.collider = &*textures;
         return required(StepPass::create(variant)).usesStorage();
@@ -277,7 +277,7 @@ TEST_P(StepPathGlTest, TheAutomaticPathFollowsTheDevice) {
 
 // More births than one dispatch handles, on texels in random order, because the short lives of the first batch have
 // ended.
-TEST_P(StepPathGlTest, ManyBirthsAtOnceAreTheSame) {
+TEST_P(StepPathGlTest, ManyBirthsAtOnceAreIdentical) {
     constexpr std::uint32_t kMany = 300'000;
     std::vector<std::vector<ParticleState>> states;
     for (const StepPath path : {StepPath::kFragment, StepPath::kCompute}) {

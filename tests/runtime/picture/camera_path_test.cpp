@@ -14,7 +14,7 @@ const std::array<CameraKey, 3> kKeys{CameraKey{1.0, {0.0F, 0.0F, 5.0F}, {0.0F, 0
                                      CameraKey{2.0, {2.0F, 1.0F, 5.0F}, {1.0F, 0.0F, 0.0F}, 50.0F},
                                      CameraKey{5.0, {8.0F, 4.0F, 5.0F}, {4.0F, 0.0F, 0.0F}, 20.0F}};
 
-TEST(CameraPath, PassesThroughItsKeysAndStandsStillBesideThem) {
+TEST(CameraPath, PassesThroughItsKeysAndRestsOutside) {
     for (const CameraKey& key : kKeys) {
         const Camera camera = cameraAt(kKeys, key.time);
         EXPECT_EQ(camera.eye, key.eye);
@@ -27,7 +27,7 @@ TEST(CameraPath, PassesThroughItsKeysAndStandsStillBesideThem) {
 
 // These keys lie on straight lines in time (2 and 1 per second along x and y). Catmull-Rom with speeds by time
 // reproduces the lines although the keys are 1 and 3 seconds apart; by index it would not.
-TEST(CameraPath, SmoothKeepsAnEvenSpeed) {
+TEST(CameraPath, SmoothKeepsConstantSpeed) {
     for (const double time : {1.25, 1.75, 2.5, 3.5, 4.9}) {
         const auto t = static_cast<float>(time);
         const Camera camera = cameraAt(kKeys, time);

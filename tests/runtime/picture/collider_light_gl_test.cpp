@@ -33,7 +33,7 @@ struct Light {
 constexpr const char* kQuery = R"(
 uniform highp sampler2D u_points;  // xyz: object space
 
-layout(location = 0) out vec4 o_light;  // shares of sun and sky, each the mean over all turns and jitters
+layout(location = 0) out vec4 o_light;  // visible fractions of sun and sky, means over all rotations and jitters
 
 void main() {
     vec3 point = texelFetch(u_points, ivec2(gl_FragCoord.xy), 0).xyz;
@@ -106,7 +106,7 @@ double sunPastSphere(const glm::dvec3& p, const glm::dvec3& center, double radiu
 
 // On a plane below a sphere: full light and full shade as in the geometry, and the visible fraction of the disc between
 // them. Fails if a map is rotated, shifted or scaled, if the penumbra has another width, or if shade has no cause.
-TEST_P(ColliderLightGlTest, ASphereCastsItsShade) {
+TEST_P(ColliderLightGlTest, SpheresCastShade) {
     use(analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, 0.5), 128));
     for (const float height : {-0.55F, -1.0F, -2.5F}) {
         std::vector<glm::vec3> points;
@@ -151,7 +151,7 @@ TEST_P(ColliderLightGlTest, ASphereCastsItsShade) {
 }
 
 // On the sphere itself: its own texels do not shade the side towards the sun, but they do shade the other side.
-TEST_P(ColliderLightGlTest, ASurfaceDoesNotShadeItself) {
+TEST_P(ColliderLightGlTest, SurfacesDoNotShadeThemselves) {
     use(analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, 0.5), 128));
     std::vector<glm::vec3> points;
     std::vector<float> facing;
@@ -184,7 +184,7 @@ TEST_P(ColliderLightGlTest, NoLightLeaksThroughAThinSheet) {
     std::vector<glm::vec3> points;
     const float behind = light_->sunBias() / sunDirection().y + 0.01F;
     const float under = 1.5F * light_->voxel() + 0.002F;
-    EXPECT_LT(behind, 0.03F) << "of a side of 2";
+    EXPECT_LT(behind, 0.03F) << "for a side of 2";
     for (int i = 0; i < 400; ++i) {  // random central points, at the bias and deeper
         const float x = -0.2F + 0.02F * static_cast<float>(i % 20);
         const float z = -0.2F + 0.02F * static_cast<float>(i / 20);
@@ -204,13 +204,13 @@ TEST_P(ColliderLightGlTest, NoLightLeaksThroughAThinSheet) {
     for (const float share : {0.3F, 0.5F, 0.7F, 0.85F}) {
         EXPECT_NEAR(at({0.0F, -share * reach, 0.0F}).sky, share * share, 0.12F) << share;
     }
-    EXPECT_GT(at({0.0F, -1.2F * reach, 0.0F}).sky, 0.95F) << "beyond the reach of shade";
+    EXPECT_GT(at({0.0F, -1.2F * reach, 0.0F}).sky, 0.95F) << "beyond the reach";
     EXPECT_EQ(at({0.0F, 3.0F, 0.0F}).sky, 1.0F);
     EXPECT_EQ(at({30.0F, -0.3F, 0.0F}).sun, 1.0F);
     EXPECT_EQ(at({30.0F, -0.3F, 0.0F}).sky, 1.0F);
 }
 
-TEST_P(ColliderLightGlTest, LightFollowsABodyThatMoves) {
+TEST_P(ColliderLightGlTest, LightFollowsMovingBodies) {
     const Collider ball = analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, 0.25), 64);
     ColliderBody body;
     body.collider = &ball;
@@ -225,7 +225,7 @@ TEST_P(ColliderLightGlTest, LightFollowsABodyThatMoves) {
     };
     EXPECT_EQ(lightUnder(0.0F).sun, 0.0F);
     EXPECT_LT(lightUnder(0.0F).sky, 0.8F);
-    EXPECT_EQ(light_->updates(), 1U) << "a body at rest costs nothing";
+    EXPECT_EQ(light_->updates(), 1U) << "a resting body causes no update";
     for (const float x : {1.0F, -1.0F, 0.0F}) {
         Pose pose;
         pose.position = {x, 0.0F, 0.0F};
@@ -239,7 +239,7 @@ TEST_P(ColliderLightGlTest, LightFollowsABodyThatMoves) {
     EXPECT_EQ(light_->updates(), 4U);
 }
 
-TEST_P(ColliderLightGlTest, LightFollowsABodyThatDeforms) {
+TEST_P(ColliderLightGlTest, LightFollowsDeformingBodies) {
     // A slab that grows on both sides.
     const auto slab = [](float half) { return movingBox({half, 0.1F, 0.5F}); };
     Bounds box;

@@ -95,11 +95,11 @@ class ColliderMeshGlTest : public GlTest {
     const RenderTarget target_ = frame_.target();
 };
 
-TEST_P(ColliderMeshGlTest, ASphereLooksTheSameFromMeshAndMaps) {
+TEST_P(ColliderMeshGlTest, SpheresLookTheSameFromMeshAndMaps) {
     const Camera camera = cameraAt({0.0F, 0.0F, kDistance});
     const auto [maps_rgb, maps_depth] = draw(camera, {}, nullptr);
     const auto [mesh_rgb, mesh_depth] = draw(camera, {}, &mesh_);
-    EXPECT_NE(maps_rgb, mesh_rgb) << "drawn from the maps both times";
+    EXPECT_NE(maps_rgb, mesh_rgb) << "both pictures were drawn from the maps";
     EXPECT_GT(maps_rgb[3 * (kWidth * (kHeight / 2 - 5) + kWidth / 2 - 5)], 60)
         << "the side towards the sun is lit";
 
@@ -143,7 +143,7 @@ TEST_P(ColliderMeshGlTest, ASphereLooksTheSameFromMeshAndMaps) {
     EXPECT_LT(difference / static_cast<double>(mesh_rgb.size()), 2.0);
 }
 
-TEST_P(ColliderMeshGlTest, TheFloorHidesWhatLiesBelowIt) {
+TEST_P(ColliderMeshGlTest, FloorHidesGeometryBelow) {
     const Camera camera = cameraAt({0.0F, 1.5F, 3.0F});
     ColliderStyle style;
     style.ground = 0.0F;
@@ -155,11 +155,11 @@ TEST_P(ColliderMeshGlTest, TheFloorHidesWhatLiesBelowIt) {
                      camera.tanHalfFov();
     const glm::vec3 d = camera.forward() + up * camera.up();
     const float floor = -camera.eye.y / d.y;
-    ASSERT_GT(camera.eye.z + floor * d.z, kRadius) << "the ray meets the floor before the sphere";
+    ASSERT_GT(camera.eye.z + floor * d.z, kRadius) << "the ray hits the floor before the sphere";
     EXPECT_NEAR(depth[pixel(target_.width / 2, y)], floor, 1e-3F);
 }
 
-TEST_P(ColliderMeshGlTest, HostileMeshesAreRefused) {
+TEST_P(ColliderMeshGlTest, HostileMeshesAreRejected) {
     EXPECT_TRUE(ColliderMesh::create(sphereMesh(8, 4)));
     const std::vector<std::function<void(PictureMesh&)>> faults{
         [](PictureMesh& mesh) { mesh = {}; }, [](PictureMesh& mesh) { mesh.triangles.push_back(0); },

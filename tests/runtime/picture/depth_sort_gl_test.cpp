@@ -144,7 +144,7 @@ class DepthSortGlTest : public DepthSorterTest {};
 class DepthSortNetworkGlTest : public DepthSorterTest {};  // only fragments
 
 // In compute, a row is 256 elements. A block is one row, or two for more than 512 rows: one sorter sees both in turn.
-TEST_P(DepthSortGlTest, AWholeSequenceIsAStableSort) {
+TEST_P(DepthSortGlTest, WholeSequencesAreStableSorts) {
     Pcg32 random(3);
     std::vector<std::uint32_t> counts{1, 2, 3, 1000, 1024, 1025, 70'000};
     if (exact()) {
@@ -175,7 +175,7 @@ TEST_P(DepthSortGlTest, AWholeSequenceIsAStableSort) {
     }
 }
 
-TEST(DepthSort, SequencesHaveTheLengthOfThePaper) {
+TEST(DepthSort, SequencesAreAsLongAsInThePaper) {
     const std::array<std::array<std::uint32_t, 2>, 9> lengths{
         {{0, 0}, {1, 0}, {2, 1}, {3, 3}, {4, 3}, {5, 6}, {1024, 55}, {1025, 66}, {1U << 20, 210}}};
     for (const auto& [count, passes] : lengths) {
@@ -189,7 +189,7 @@ TEST(DepthSort, SequencesHaveTheLengthOfThePaper) {
 }
 
 // Batcher's network as loops over its pairs (Knuth, Algorithm M), compared element by element after each pass.
-TEST_P(DepthSortNetworkGlTest, EveryPassIsThatOfTheNetwork) {
+TEST_P(DepthSortNetworkGlTest, EveryPassMatchesTheNetwork) {
     constexpr std::uint32_t kCount = 2048;
     Pcg32 random(5);
     const Cloud cloud = latticeCloud(kCount, 1024, random);
@@ -215,7 +215,7 @@ TEST_P(DepthSortNetworkGlTest, EveryPassIsThatOfTheNetwork) {
     EXPECT_TRUE(std::is_sorted(expected.begin(), expected.end(), before));
 }
 
-TEST_P(DepthSortNetworkGlTest, ARestartBeginsAWholeSequence) {
+TEST_P(DepthSortNetworkGlTest, RestartsBeginAWholeSequence) {
     constexpr std::uint32_t kCount = 4000;
     Pcg32 random(6);
     const Cloud first = latticeCloud(kCount, 1024, random);
@@ -234,7 +234,7 @@ TEST_P(DepthSortNetworkGlTest, ARestartBeginsAWholeSequence) {
 }
 
 // For numbers of all magnitudes, so that every digit of a key has many values, and for NaN.
-TEST_P(DepthSortGlTest, KeysAreDistancesAndTheDeadHaveNone) {
+TEST_P(DepthSortGlTest, KeysAreDistancesAndZeroForTheDead) {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     constexpr std::uint32_t kExtent = 4900;
@@ -265,7 +265,7 @@ TEST_P(DepthSortGlTest, KeysAreDistancesAndTheDeadHaveNone) {
         const bool alive = element.index < kExtent && element.index % 5 != 0;  // stale data beyond the extent
         ASSERT_EQ(element.key != 0, alive) << element.index;
         if (rank < odd.size()) {
-            EXPECT_EQ(element.index % 600, 2U) << "what is nowhere, or farther than floats go, comes first";
+            EXPECT_EQ(element.index % 600, 2U) << "NaN and infinite distances come first";
         } else if (alive && element.index > 2) {
             // Three roundings, 3 · 2^-24 of the total, plus those of the differences, 2 · 2^-24.
             const glm::dvec3 away = glm::dvec3(cloud.particles[element.index]) - glm::dvec3(eye);
@@ -275,7 +275,7 @@ TEST_P(DepthSortGlTest, KeysAreDistancesAndTheDeadHaveNone) {
     }
 }
 
-TEST_P(DepthSortGlTest, CapacitiesOutOfRangeAreErrorsAndExtentsBeyondAreLeftOut) {
+TEST_P(DepthSortGlTest, InvalidCapacitiesAreErrorsAndLargerExtentsAreIgnored) {
     EXPECT_EQ(DepthSorter::create(0).error().code, ErrorCode::kUsage);
     EXPECT_EQ(DepthSorter::create(DepthSorter::kCapacityMax + 1).error().code, ErrorCode::kUsage);
     Pcg32 random(31);
@@ -291,7 +291,7 @@ TEST_P(DepthSortGlTest, CapacitiesOutOfRangeAreErrorsAndExtentsBeyondAreLeftOut)
 
 class DepthSortMotionGlTest : public DepthSorterTest {};
 
-TEST_P(DepthSortMotionGlTest, APermutationWhateverTheExtentDoes) {
+TEST_P(DepthSortMotionGlTest, IsAPermutationForChangingExtents) {
     constexpr std::uint32_t kCapacity = 5000;
     Pcg32 random(17);
     make(kCapacity);
@@ -348,7 +348,7 @@ struct Disorder {
 // bounds leave a margin of at least a fifth for other roundings. New particles wait at the end for one or two
 // sequences, so short lives have an effect. Neighbours may be as close in depth as 0.0003, so 4 in 10 of them are
 // easily out of order.
-TEST_P(DepthSortMotionGlTest, SpreadOverFramesItKeepsUpWithMotion) {
+TEST_P(DepthSortMotionGlTest, KeepsUpWithMotionWhenSpreadOverFrames) {
     constexpr std::uint32_t kCount = 12'000;  // 16,384 ranks, 105 passes
     struct Case {
         std::uint32_t frames;  // frames per sequence

@@ -101,10 +101,10 @@ TEST_P(MeshRendererGlTest, MeshesHaveTheirColorsAndTheSunCastsShadows) {
     EXPECT_GT(at({-3.0F, 0.0F, 1.0F}).light(), 0.85F * open.light());
 
     draw({.sun = 0.0F}, meadow());
-    EXPECT_GT(at(shadow).light(), 0.8F * at(open_).light()) << "without a sun there is none";
+    EXPECT_GT(at(shadow).light(), 0.8F * at(open_).light()) << "there is no shadow without a sun";
 }
 
-TEST_P(MeshRendererGlTest, SnowLiesOnWhatTheSkySeesAndIsLevel) {
+TEST_P(MeshRendererGlTest, SnowLiesOnLevelSurfacesBelowTheSky) {
     draw({.snow = 1.0F}, meadow());
     EXPECT_TRUE(at(open_).white());
     EXPECT_TRUE(at(roof_).white());
@@ -112,10 +112,10 @@ TEST_P(MeshRendererGlTest, SnowLiesOnWhatTheSkySeesAndIsLevel) {
     EXPECT_GT(below.g, below.b + 10.0F);
     EXPECT_FALSE(below.white());
     draw({.snow = 1.0F}, {{0, {}, false}, {1, {}, true}});
-    EXPECT_TRUE(at(below_).white()) << "what moves shelters nothing";
+    EXPECT_TRUE(at(below_).white()) << "moving meshes give no shelter";
 }
 
-TEST_P(MeshRendererGlTest, SnowDoesNotStayWhereTheColorSaysSo) {
+TEST_P(MeshRendererGlTest, ColorsCanExcludeSnow) {
     PictureMesh warm = box({-8, -1, -8}, {8, 0, 8}, kGreen);
     for (auto& color : warm.colors) {
         color[3] = 0;
@@ -127,7 +127,7 @@ TEST_P(MeshRendererGlTest, SnowDoesNotStayWhereTheColorSaysSo) {
     EXPECT_GT(at(open_).g, at(open_).b + 10.0F);
 }
 
-TEST_P(MeshRendererGlTest, RainDarkensWhatItReaches) {
+TEST_P(MeshRendererGlTest, RainDarkensSurfaces) {
     draw({.sun = 0.0F}, meadow());
     const Rgb dry = at(open_);
     const Rgb dry_below = at(below_);
@@ -136,7 +136,7 @@ TEST_P(MeshRendererGlTest, RainDarkensWhatItReaches) {
     EXPECT_NEAR(at(below_).light(), dry_below.light(), 2.0F);
 }
 
-TEST_P(MeshRendererGlTest, FogTakesOnTheBackground) {
+TEST_P(MeshRendererGlTest, FogHasTheBackgroundColor) {
     MeshStyle style{.background = {0.2F, 0.3F, 0.9F}, .fog = 0.1F};
     draw(style, meadow());
     const Rgb far = at(open_);
@@ -144,7 +144,7 @@ TEST_P(MeshRendererGlTest, FogTakesOnTheBackground) {
     EXPECT_GT(far.b, far.g + 60.0F);
 }
 
-TEST_P(MeshRendererGlTest, FeetLeaveTheirPrintsInSnowAndNowhereElse) {
+TEST_P(MeshRendererGlTest, FeetLeavePrintsOnlyInSnow) {
     const glm::vec3 pressed(3.0F, 0.0F, -1.0F);
     const glm::vec3 lifted(3.0F, 0.3F, 3.5F);
     const glm::vec3 untouched(4.5F, 0.0F, 1.0F);
@@ -165,7 +165,8 @@ TEST_P(MeshRendererGlTest, FeetLeaveTheirPrintsInSnowAndNowhereElse) {
     ASSERT_TRUE(renderer_.press(places, 1.0F, around_));
     places.back().pose.position = away;
     draw({.snow = 1.0F}, places);
-    EXPECT_LT(at({-3.0F, 0.0F, 3.5F}).light(), 0.93F * at(untouched).light()) << "between two pictures";
+    EXPECT_LT(at({-3.0F, 0.0F, 3.5F}).light(), 0.93F * at(untouched).light())
+        << "pressed between two pictures";
     draw({}, places);
     EXPECT_NEAR(at(open_).light(), at(untouched).light(), 0.1F * fresh);
     places.back().mesh = 3;
@@ -189,13 +190,13 @@ TEST_P(MeshRendererGlTest, VerticesMove) {
     const glm::vec3 last = std::exchange(moved.back(), glm::vec3(std::numeric_limits<float>::infinity()));
     EXPECT_EQ(renderer_.setPositions(2, moved).error().code, ErrorCode::kInvalidInput);
     moved.back() = last;
-    EXPECT_TRUE(renderer_.setPositions(2, moved)) << "again, of buffers that are there";
+    EXPECT_TRUE(renderer_.setPositions(2, moved)) << "again, with existing buffers";
     moved.pop_back();
     EXPECT_EQ(renderer_.setPositions(2, moved).error().code, ErrorCode::kUsage);
     EXPECT_EQ(renderer_.setPositions(3, moved).error().code, ErrorCode::kUsage);
 }
 
-TEST_P(MeshRendererGlTest, WrongMeshesAreErrors) {
+TEST_P(MeshRendererGlTest, InvalidMeshesAreErrors) {
     const std::vector<MeshPlace> places{{3, {}, false}};
     EXPECT_EQ(renderer_.draw({camera_, 1.0F}, {}, places, around_, frame_.target()).error().code,
               ErrorCode::kUsage);

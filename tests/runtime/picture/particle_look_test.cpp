@@ -9,7 +9,7 @@
 namespace relief {
 namespace {
 
-TEST(ParticleLook, EveryTrackMayHaveItsOwnAges) {
+TEST(ParticleLook, TracksHaveTheirOwnAges) {
     ParticleLook look;
     for (std::size_t i = 0; i < kLookKeysMax; ++i) {
         const auto age = [&](float shift) { return (static_cast<float>(i) + shift) / kLookKeysMax; };
@@ -22,10 +22,10 @@ TEST(ParticleLook, EveryTrackMayHaveItsOwnAges) {
     ASSERT_TRUE(texels) << texels.error().message;
     EXPECT_EQ(texels->texels[1].w, 4.0F * kLookKeysMax);
     EXPECT_EQ(texels->texels.back(), glm::vec4(1.0F, 1.0F, 1.0F, 0.0F)) << "the row is full";
-    EXPECT_LE(texels->width, 2048U) << "more than OpenGL ES 3.0 promises";
+    EXPECT_LE(texels->width, 2048U) << "larger than OpenGL ES 3.0 guarantees";
 }
 
-TEST(ParticleLook, WhatCannotBeIsRefused) {
+TEST(ParticleLook, InvalidTracksAreRejected) {
     const auto refused = [](const auto& change) {
         ParticleLook look;
         change(look);

@@ -11,7 +11,7 @@
 namespace relief {
 namespace {
 
-TEST(Png, RefusesSizesThatDoNotFit) {
+TEST(Png, RejectsWrongSizes) {
     const std::vector<std::uint8_t> rgb(12);
     for (const auto& [width, height] :
          {std::pair{0U, 4U}, {4U, 0U}, {2U, 3U}, {70000U, 1U}, {0xffffffffU, 0xffffffffU}}) {
@@ -20,7 +20,7 @@ TEST(Png, RefusesSizesThatDoNotFit) {
     EXPECT_TRUE(encodePng(rgb, 2, 2));
 }
 
-TEST(Png, LibpngReadsBackWhatWasWritten) {
+TEST(Png, LibpngReadsTheFileBack) {
     constexpr std::uint32_t kWidth = 37;
     constexpr std::uint32_t kHeight = 11;
     std::vector<std::uint8_t> rgb;
@@ -43,7 +43,7 @@ TEST(Png, LibpngReadsBackWhatWasWritten) {
     EXPECT_EQ(decodePng(*encodePng(row, kPngReadSideMax + 1, 1), "'a.png'").error().code, ErrorCode::kLimit);
 }
 
-TEST(Ply, HeaderAndVerticesByHand) {
+TEST(Ply, HeaderAndVerticesMatchTheFormat) {
     std::vector<ParticleState> particles(2);
     particles[0] = {.id = 0x01020304,
                     .position = {1.0F, -2.0F, 0.5F},
@@ -68,7 +68,7 @@ TEST(Ply, HeaderAndVerticesByHand) {
     // Little-endian: 1.0F is 3f 80 00 00.
     EXPECT_EQ(text.substr(head.size() + 40, 4), std::string("\0\0\x80\x3f", 4));
     EXPECT_EQ(text.substr(head.size() + 72), std::string("\4\3\2\1\x0c\x0b\x0a\0", 8));
-    EXPECT_TRUE(ply({}).ends_with("end_header\n")) << "no particles are a file too";
+    EXPECT_TRUE(ply({}).ends_with("end_header\n")) << "a file without particles is valid";
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ class RendererGlTest : public GlTest {
     ParticleSystem particles_ = required(ParticleSystem::create({.capacity = 100}));
 };
 
-TEST_P(RendererGlTest, ParticlesAreHiddenBehindAndShownInFront) {
+TEST_P(RendererGlTest, ParticlesAreOccludedByDepth) {
     const ParticleStyle style{.diameter = 0.06F, .opacity = 1.0F};
     drawCollider();
     const std::vector<std::uint8_t> bare = frame_.read();
@@ -92,7 +92,7 @@ TEST_P(RendererGlTest, ParticlesAreHiddenBehindAndShownInFront) {
     }
 }
 
-TEST_P(RendererGlTest, TheDeadAreNotDrawn) {
+TEST_P(RendererGlTest, DeadParticlesAreNotDrawn) {
     drawCollider();
     const std::vector<std::uint8_t> bare = frame_.read();
     const std::array<Birth, 2> births{Birth{{0.6F, 0.3F, 0.5F}, glm::vec3(0.0F), 0.5F, 0},
@@ -123,7 +123,7 @@ TEST_P(RendererGlTest, OpacityFadesInAndOut) {
     EXPECT_GT(brightness[13], brightness[14] + 10);
 }
 
-TEST_P(RendererGlTest, TheKeptPictureIsTheFreshOneAndFollowsEveryChange) {
+TEST_P(RendererGlTest, CachedPicturesMatchNewOnes) {
     style_.ground = -0.5F;
     drawCollider();
     const std::vector<std::uint8_t> first = frame_.read();
@@ -141,7 +141,7 @@ TEST_P(RendererGlTest, TheKeptPictureIsTheFreshOneAndFollowsEveryChange) {
     EXPECT_NE(frame_.read(), first);
 }
 
-TEST_P(RendererGlTest, TheFloorIsShadedBelowTheCollider) {
+TEST_P(RendererGlTest, FloorIsShadedBelowTheCollider) {
     style_.ground = -0.5F;
     camera_.eye = {0.0F, 1.5F, 3.0F};
     drawCollider();
@@ -153,7 +153,7 @@ TEST_P(RendererGlTest, TheFloorIsShadedBelowTheCollider) {
 
 // The finest body of a world determines the ray step, however large the others are. Rays must still cross the whole
 // box.
-TEST_P(RendererGlTest, RaysReachThroughABoxOfManyTexels) {
+TEST_P(RendererGlTest, RaysCrossBoxesOfManyTexels) {
     const auto clay = [&](float texel) {
         auto renderer = required(ColliderRenderer::create({&textures_, collider_.bounds, texel}));
         EXPECT_TRUE(renderer.draw(camera_, style_, frame_.target()));
@@ -169,7 +169,7 @@ TEST_P(RendererGlTest, RaysReachThroughABoxOfManyTexels) {
     EXPECT_NEAR(clay(1e-5F), all, 0.02 * all);
 }
 
-TEST_P(RendererGlTest, FrameSizesAreChecked) {
+TEST_P(RendererGlTest, FrameSizesAreValidated) {
     EXPECT_EQ(Frame::create(0, 5).error().code, ErrorCode::kUsage);
     EXPECT_EQ(Frame::create(5, 0).error().code, ErrorCode::kUsage);
     EXPECT_EQ(Frame::create(1000000, 5).error().code, ErrorCode::kLimit);
@@ -181,7 +181,7 @@ TEST_P(RendererGlTest, FrameSizesAreChecked) {
 
 // Pictures do not depend on the caller's state, which is kept. The maps are uploaded in that state as well: its unpack
 // parameters must have no effect.
-TEST_P(RendererGlTest, TheCallersStateIsKeptAndDoesNoHarm) {
+TEST_P(RendererGlTest, CallerStateIsKeptAndIgnored) {
     style_.ground = -0.5F;
     spawnAt({0.0F, 0.8F, 0.9F});
     spawnAt({0.0F, 0.7F, 0.0F});

@@ -135,7 +135,7 @@ const glm::vec4 kClear{0, 0, 0, 0};
 
 // A quarter turn anticlockwise moves the right side to the top, and the top to the left. For quads and points: the
 // centres of the four texels, and pixels beyond them, are free of filtering. The sprite's half side is 16 pixels.
-TEST_P(SpriteGlTest, ACellTurnsAnticlockwise) {
+TEST_P(SpriteGlTest, CellsRotateAnticlockwise) {
     useAtlas();
     const auto expectCorners = [&](const std::array<glm::vec4, 4>& wanted, const char* what) {
         expectNear(pixel(20, 43), wanted[0], kHalf, what);
@@ -162,7 +162,7 @@ TEST_P(SpriteGlTest, ACellTurnsAnticlockwise) {
 
 // Rotated by 45°, the corner of a quad of half side 16 reaches 16·√2 = 22.6 pixels; a point's corner stays in its
 // square.
-TEST_P(SpriteGlTest, AQuadTurnsWithItsCorners) {
+TEST_P(SpriteGlTest, QuadsRotateWithTheirCorners) {
     useAtlas();
     ParticleLook one = cells(0, 0);
     one.rotation = {{0.0F, 0.25F * kPi}};
@@ -176,7 +176,7 @@ TEST_P(SpriteGlTest, AQuadTurnsWithItsCorners) {
     EXPECT_EQ(pixel(31, 31 + 22).a, 0.0F);
 }
 
-TEST_P(SpriteGlTest, AQuadIsNoSmallerThanItSays) {
+TEST_P(SpriteGlTest, QuadsHaveTheirFullSize) {
     GLfloat sizes[2] = {};
     glGetFloatv(GL_ALIASED_POINT_SIZE_RANGE, sizes);
     useAtlas();
@@ -191,7 +191,7 @@ TEST_P(SpriteGlTest, AQuadIsNoSmallerThanItSays) {
 }
 
 // Keys at ages 0, ½ and 1 of a lifetime of 8 seconds: at 4 s the middle key itself, at 2 s and 6 s the means.
-TEST_P(SpriteGlTest, KeyFramesAtExactAges) {
+TEST_P(SpriteGlTest, KeyFramesApplyAtExactAges) {
     ParticleLook one = look(glm::vec3(1.0F), 1.0F, 1.0F);
     one.color = {{0.0F, {1.0F, 0.0F, 0.0F}}, {0.5F, {0.0F, 1.0F, 0.0F}}, {1.0F, {0.0F, 0.0F, 1.0F}}};
     one.opacity = {{0.0F, 0.0F}, {0.5F, 1.0F}, {1.0F, 0.5F}};
@@ -217,7 +217,7 @@ TEST_P(SpriteGlTest, KeyFramesAtExactAges) {
 }
 
 // A curve with the maximum number of keys: a sawtooth with a tooth at each tested age.
-TEST_P(SpriteGlTest, ManyKeysAtExactAges) {
+TEST_P(SpriteGlTest, ManyKeysApplyAtExactAges) {
     style_.looks = {look(glm::vec3(1.0F), 1.0F, 1.0F)};
     AgeTrack<float>& saw = style_.looks[0].opacity;
     saw.clear();
@@ -234,7 +234,7 @@ TEST_P(SpriteGlTest, ManyKeysAtExactAges) {
 
 // One unit is 32 pixels, so a sprite of ½ is 16 across. At speed 1 with 1 s of stretch, it extends 32 pixels backwards,
 // in any direction: right, up, and along a diagonal of the same length. Round ends: the ellipse of the whole.
-TEST_P(SpriteGlTest, AStretchedSpriteReachesBackAlongItsWay) {
+TEST_P(SpriteGlTest, StretchedSpritesExtendBackwards) {
     ParticleLook one = look(glm::vec3(1.0F), 1.0F, 0.5F);
     one.stretch = 1.0F;
     style_.looks = {one};
@@ -264,7 +264,7 @@ TEST_P(SpriteGlTest, AStretchedSpriteReachesBackAlongItsWay) {
 }
 
 // The right side of a cell is the head.
-TEST_P(SpriteGlTest, AStretchedCellHasItsRightSideInFront) {
+TEST_P(SpriteGlTest, StretchedCellsHaveTheirRightSideInFront) {
     useAtlas();
     ParticleLook one = cells(1, 1, 0.5F);
     one.stretch = 1.0F;
@@ -280,7 +280,7 @@ TEST_P(SpriteGlTest, AStretchedCellHasItsRightSideInFront) {
 }
 
 // The tail of a particle that flies away from the viewer may lie behind the viewer: the sprite must not flip over.
-TEST_P(SpriteGlTest, ATailBehindTheViewerIsCutOff) {
+TEST_P(SpriteGlTest, TailsBehindTheViewerAreClipped) {
     ParticleLook one = look(glm::vec3(1.0F), 1.0F, 0.5F);
     one.stretch = 8.0F;
     style_.looks = {one};
@@ -290,7 +290,7 @@ TEST_P(SpriteGlTest, ATailBehindTheViewerIsCutOff) {
     EXPECT_EQ(pixel(48, 32).a, 0.0F);
 }
 
-TEST_P(SpriteGlTest, CellsArePlayedOverAge) {
+TEST_P(SpriteGlTest, CellsAnimateOverAge) {
     useAtlas();
     drawOne(cells(0, 1), 3.9F);  // 0.49 of its lifetime
     EXPECT_NEAR(pixel(20, 43).g, 0.2158605F, kHalf) << "128 of sRGB in linear light";
@@ -308,7 +308,7 @@ TEST_P(SpriteGlTest, EachTypeHasItsLook) {
 }
 
 // Opacities of whole 64ths are exact in half floats, and so is their sum in any order.
-TEST_P(SpriteGlTest, AdditiveSumsInAnyOrder) {
+TEST_P(SpriteGlTest, AdditiveIsIndependentOfOrder) {
     style_.blend = Blend::kAdditive;
     float sum = 0.0F;
     std::vector<std::uint32_t> types;
@@ -379,20 +379,20 @@ TEST_P(SpriteGlTest, SoftEdgesFadeByDistance) {
     EXPECT_EQ(pixel(32, 32).a, 1.0F) << "nothing to compare with";
 }
 
-TEST_P(SpriteGlTest, RandomTurnsAreThoseOfTheParticle) {
+TEST_P(SpriteGlTest, RandomRotationsArePerParticle) {
     useAtlas();
     ParticleLook one = cells(1, 1);
     one.turn = kPi;
     drawOne(one);
     const std::vector<float> first = pixels_;
     drawOne(one, 2.0F);
-    EXPECT_EQ(pixels_, first) << "the start stays";
+    EXPECT_EQ(pixels_, first) << "the initial angle is constant";
     style_.looks[0].spin = 1.0F;
     draw();
-    EXPECT_NE(pixels_, first) << "the speed turns it";
+    EXPECT_NE(pixels_, first) << "the angular speed rotates it";
 }
 
-TEST_P(SpriteGlTest, WhatCannotBeDrawnIsRefused) {
+TEST_P(SpriteGlTest, InvalidStylesAreRejected) {
     spawnTypes({0}, 1.0F);
     const auto refused = [&] {
         const auto drawn = renderer_.draw(*particles_, camera_, style_, {framebuffer_.name(), kSide, kSide});

@@ -113,7 +113,7 @@ class TilePainterGlTest : public GlTest {
         const Difference difference = between(drawn, tiles, kMargin);
         EXPECT_LT(difference.mean, 0.002);
         EXPECT_LT(difference.most, most);
-        EXPECT_NE(drawn, tiles) << "tiles round otherwise: they were not painted";
+        EXPECT_NE(drawn, tiles) << "tiles round differently: they were not painted";
         const std::vector<ParticleLook> looks = style_.looks;
         for (ParticleLook& look : style_.looks) {
             look.opacity = {{0.0F, 0.0F}};
@@ -140,7 +140,7 @@ class TilePainterGlTest : public GlTest {
     const GlFramebuffer framebuffer_ = required(makeFramebuffer({color_.name()}, depth_.name()));
 };
 
-TEST_P(TilePainterGlTest, EveryStyleLooksAsPointsDo) {
+TEST_P(TilePainterGlTest, EveryStyleMatchesPoints) {
     spawn(1500);
     expectTheSame("in order", true, true);
     expectTheSame("as they come", false, false);
@@ -169,7 +169,7 @@ TEST_P(TilePainterGlTest, EveryStyleLooksAsPointsDo) {
 }
 
 // Cells rotate in the picture, and stretched sprites lie along their velocity; both have corners.
-TEST_P(TilePainterGlTest, QuadsCellsAndStretchedSprites) {
+TEST_P(TilePainterGlTest, QuadsCellsAndStretchedSpritesMatch) {
     // Two cells that fade towards their edges: a smooth picture, unlike a grain.
     constexpr std::uint32_t kSide = 32;
     std::vector<std::uint8_t> rgba;
@@ -209,7 +209,7 @@ TEST_P(TilePainterGlTest, QuadsCellsAndStretchedSprites) {
     expectTheSame("stretched, added", false, false);
 }
 
-TEST_P(TilePainterGlTest, SpritesOfEverySize) {
+TEST_P(TilePainterGlTest, SpritesOfEverySizeMatch) {
     spawn(300);
     const auto compare = [&](float diameter, int margin) {
         style_.diameter = diameter;
@@ -238,7 +238,7 @@ TEST_P(TilePainterGlTest, SpritesOfEverySize) {
 }
 
 // Tiles have room for 2^18 entries of few sprites. Beyond that, identical points or quads are drawn.
-TEST_P(TilePainterGlTest, WithoutRoomSpritesAreDrawn) {
+TEST_P(TilePainterGlTest, SpritesAreDrawnIfTilesAreFull) {
     spawn(8000, 0.7F);
     style_.diameter = 2.0F;
     style_.opacity = 0.01F;
@@ -253,7 +253,7 @@ TEST_P(TilePainterGlTest, WithoutRoomSpritesAreDrawn) {
 }
 
 // So far away that all particles are in a few tiles, whose work groups would process all of them: points are drawn.
-TEST_P(TilePainterGlTest, ACloudFarAway) {
+TEST_P(TilePainterGlTest, ACloudFarAwayIsDrawnAsPoints) {
     spawn(90'000);
     style_.diameter = 0.2F;
     camera_.far_plane = 1000.0F;
@@ -264,7 +264,7 @@ TEST_P(TilePainterGlTest, ACloudFarAway) {
     EXPECT_NE(points, draw(renderers_[1], true, false));
 }
 
-TEST_P(TilePainterGlTest, NothingAliveNothingInSightAndNoRanks) {
+TEST_P(TilePainterGlTest, EmptyPicturesAreValid) {
     spawn(300);
     ASSERT_EQ(sorter_->count(), 0U) << "before its first update";
     EXPECT_TRUE(renderers_[1].draw(*particles_, camera_, style_, target(), {&sorter_->order(), 0}));
@@ -277,7 +277,7 @@ TEST_P(TilePainterGlTest, NothingAliveNothingInSightAndNoRanks) {
     EXPECT_EQ(draw(renderers_[0], true, false), draw(renderers_[1], true, false));
 }
 
-TEST_P(TilePainterGlTest, APictureOfAnotherSizeAndATargetWithoutDepth) {
+TEST_P(TilePainterGlTest, ResizedPicturesAndTargetsWithoutDepthMatch) {
     spawn(500);
     for (const GLsizei side : {40, 17, 300}) {
         std::vector<std::vector<float>> pictures;
@@ -297,7 +297,7 @@ TEST_P(TilePainterGlTest, APictureOfAnotherSizeAndATargetWithoutDepth) {
 }
 
 // A depth renderbuffer cannot be read: identical points are drawn.
-TEST_P(TilePainterGlTest, DepthThatIsNoTexture) {
+TEST_P(TilePainterGlTest, DepthRenderbuffersFallBackToPoints) {
     spawn(500);
     GLuint depth = 0;
     glGenRenderbuffers(1, &depth);

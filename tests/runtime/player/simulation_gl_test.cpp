@@ -22,7 +22,7 @@ namespace {
 class SimulationGlTest : public GlTest {};
 RELIEF_INSTANTIATE_GL_TESTS(SimulationGlTest);
 
-TEST_P(SimulationGlTest, DropsStayOutOfCharactersThatMove) {
+TEST_P(SimulationGlTest, DropsStayOutsideAnimatedCharacters) {
     const test::TemporaryFolder folder;
     const AnimatedMesh mesh = bendingTube(24, 24);
     ASSERT_TRUE(saveCollider(folder.path() / "tube.relief", animatedContainer(mesh)));
@@ -72,7 +72,7 @@ rate = 6000
 }
 
 // Event lists are as short as spawns can use, or long for a log: the particles are the same.
-TEST_P(SimulationGlTest, ALogOfHitsChangesNoBirth) {
+TEST_P(SimulationGlTest, HitLogsDoNotChangeBirths) {
     const test::TemporaryFolder folder;
     ASSERT_TRUE(saveCollider(folder.path() / "tube.relief", animatedContainer(bendingTube(12, 8))));
     const std::string scene = R"(
@@ -121,7 +121,7 @@ most = 30
     std::size_t longest = 0;
     const auto [refused, plain] = run(false, longest);
     const auto [refused_logged, logged] = run(true, longest);
-    EXPECT_GT(longest, 60U) << "more than can be used";
+    EXPECT_GT(longest, 60U) << "more events than spawns can use";
     EXPECT_EQ(refused_logged, refused);
     ASSERT_EQ(logged.size(), plain.size());
     std::size_t splashes = 0;
@@ -136,7 +136,7 @@ most = 30
 
 // Every host creates its simulation this way: relief-sim, the page's player and Python. A host may step by more than
 // the scene's dt, and spawn its own particles.
-TEST_P(SimulationGlTest, SweepsWhereAStepIsLongerThanAColliderIsThick) {
+TEST_P(SimulationGlTest, SweepsIfAStepExceedsTheColliderThickness) {
     const test::TemporaryFolder folder;
     const analytic::Shape floor = analytic::box({-2.0, -0.105, -2.0}, {2.0, 0.0, 2.0});
     ASSERT_TRUE(saveCollider(folder.path() / "floor.relief", analytic::frontBackCollider(floor, 64)));
@@ -178,7 +178,7 @@ forces = { gravity = [0, 0, 0], drag = 0 }
         << "a step of 1.05 times the thickness";
     births[0] = {{0.0F, 3.0F, 0.0F}, {0.0F, -50.0F, 0.0F}, 9.0F, 1};
     EXPECT_EQ(below("time = { dt = 0.02 }\ntype = [{}, { radius = 0.4 }]\n", 0.02F), 0)
-        << "a larger, faster one among them";
+        << "with a larger, faster emitter";
 }
 
 }  // namespace

@@ -103,7 +103,7 @@ double distanceTo(const std::vector<glm::dvec3>& at, const std::vector<glm::uvec
 }
 
 // Births by rate have their own times, between two poses.
-TEST_P(SurfaceBirthsGlTest, LieWhereItWasAtTheirOwnMoment) {
+TEST_P(SurfaceBirthsGlTest, LieOnTheSurfaceAtTheirOwnTime) {
     const std::vector<ParticleState> sparks = played("rate = 2000\nspeed = 0.5\n", 12);
     ASSERT_NEAR(static_cast<double>(sparks.size()), 480.0, 1.0);
     double worst = 0.0;
@@ -117,11 +117,11 @@ TEST_P(SurfaceBirthsGlTest, LieWhereItWasAtTheirOwnMoment) {
     // r (ω dt)² / 8 for the clip's 90° per second at an arm of 2.2.
     constexpr double kTurn = 1.5708;
     EXPECT_LT(worst, 2.2 * kTurn * kTurn * kDt * kDt / 8 + 2e-5);
-    EXPECT_GT(still, 10 * worst) << "half a step later it has gone on";
+    EXPECT_GT(still, 10 * worst) << "half a step later the surface has moved on";
 }
 
 // Poses of the program are a jump at first. After that they move like the same clip.
-TEST_P(SurfaceBirthsGlTest, FollowPosesOfTheProgram) {
+TEST_P(SurfaceBirthsGlTest, FollowPosesSetByTheProgram) {
     const std::string keys = "rate = 1000\nspeed = 0\ninherit = 1\nstart = 0.1\n";
     const std::vector<ParticleState> by_clip = played(keys, 12);
     const std::vector<ParticleState> by_program = played(keys, 12, false, true);
@@ -134,7 +134,7 @@ TEST_P(SurfaceBirthsGlTest, FollowPosesOfTheProgram) {
 }
 
 // A clip whose end differs from its start jumps when it repeats: no spark is born on the way.
-TEST_P(SurfaceBirthsGlTest, AJumpThrowsNothing) {
+TEST_P(SurfaceBirthsGlTest, JumpsThrowNothing) {
     const std::vector<ParticleState> sparks =
         played("play = { clip = \"grow\", start = 0.5, resolution = 64 }\n",
                "rate = 5000\nspeed = 0\ninherit = 1\n", 50);
@@ -148,10 +148,10 @@ TEST_P(SurfaceBirthsGlTest, AJumpThrowsNothing) {
         ASSERT_GE(glm::dot(away, velocity), 0.0F);
         still += velocity == glm::vec2(0.0F) ? 1 : 0;
     }
-    EXPECT_NEAR(static_cast<double>(still), 100.0, 2.0) << "those of the step of the jump";
+    EXPECT_NEAR(static_cast<double>(still), 100.0, 2.0) << "births in the step of the jump";
 }
 
-TEST_P(SurfaceBirthsGlTest, StayOutsideOfWhatThrowsThem) {
+TEST_P(SurfaceBirthsGlTest, StayOutsideTheirSurface) {
     const std::vector<ParticleState> sparks =
         played("rate = 5000\nspeed = 1\ninherit = 1\ncone = 30\n", 50, true);
     ASSERT_GT(sparks.size(), 4900U);

@@ -26,14 +26,14 @@ void feedAndWait(std::chrono::milliseconds first, std::chrono::milliseconds then
     std::this_thread::sleep_for(kForEver);
 }
 
-TEST(Watchdog, StarvedItEndsTheProcessAndNamesWhatWasWaitedFor) {
+TEST(Watchdog, EndsTheProcessAndNamesTheOperationOnTimeout) {
     constexpr const char* kLine =
         "^tool: error: the GPU has not finished steps 1 to 16 within 0.001 seconds; .*--gpu-timeout";
     EXPECT_EXIT(feedAndWait(1ms, 1ms), testing::ExitedWithCode(4), kLine);
     EXPECT_EXIT(feedAndWait(0ms, 1ms), testing::ExitedWithCode(4), kLine);
 }
 
-TEST(Watchdog, AtRestFedOrWithoutLimitItIsQuiet) {
+TEST(Watchdog, DoesNothingIfIdleFedOrUnlimited) {
     for (const auto& [first, then] : {std::pair{5ms, 5ms},
                                       {0ms, 0ms},
                                       {1ms, std::chrono::milliseconds(kForEver)},
@@ -62,7 +62,7 @@ TEST(GpuTool, OptionsAndTheirErrors) {
     EXPECT_EQ(gpuOptions("--device", "12")->device, 12U);
     EXPECT_EQ(gpuOptions("--gpu-timeout", "0")->limit(false), 0ms);
     EXPECT_EQ(gpuOptions("--gpu-timeout", "2.5")->limit(false), 2500ms);
-    EXPECT_EQ(gpuOptions("--gpu-timeout", "0.0001")->limit(false), 1ms) << "not never";
+    EXPECT_EQ(gpuOptions("--gpu-timeout", "0.0001")->limit(false), 1ms) << "not " no limit "";
     EXPECT_FALSE(gpuOptions("--device", "-1"));
     EXPECT_FALSE(gpuOptions("--gpu-timeout", "1e7"));
     EXPECT_GT(GpuOptions{}.limit(true), GpuOptions{}.limit(false));

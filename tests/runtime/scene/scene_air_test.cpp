@@ -13,7 +13,7 @@ namespace {
 
 const std::string kBox = "box_min = [0, 0, 0]\nbox_max = [1, 2, 3]\n";
 
-TEST(SceneAir, KeysReachTheAir) {
+TEST(SceneAir, KeysSetTheAir) {
     const Scene scene = sceneWith(
         "[[attractor]]\nposition = [1, 2, 3]\nstrength = 4\nradius = 0.5\n"
         "[[attractor]]\nposition = [0, 0, 0]\nstrength = -1\nradius = 1\nfalloff = 0\nreach = 2.5\n"
@@ -38,7 +38,7 @@ TEST(SceneAir, KeysReachTheAir) {
     EXPECT_TRUE(checkAir(sceneWith("[curl_noise]\namplitude = 1e-300\nscale = 1e-300\n").air));
 }
 
-TEST(SceneAir, TheReportHasWhatThePlayerPlays) {
+TEST(SceneAir, ReportListsTheActiveAir) {
     const auto report = [&](const std::string& more) {
         const auto scene = withDefaults(sceneWith(more), unitBounds());
         EXPECT_TRUE(scene);
@@ -70,7 +70,7 @@ TEST(SceneAir, TheReportHasWhatThePlayerPlays) {
           "\"curl_noise\":{\"amplitude\":0.3,\"scale\":2.0,\"octaves\":2,\"drift\":0.0,\"seed\":1}"}) {
         EXPECT_NE(all.find(part), std::string::npos) << part << "\n" << all;
     }
-    EXPECT_EQ(all.find("drag"), std::string::npos) << "the viscosity takes its place";
+    EXPECT_EQ(all.find("drag"), std::string::npos) << "viscosity replaces it";
 }
 
 }  // namespace

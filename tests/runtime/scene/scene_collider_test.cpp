@@ -32,7 +32,7 @@ SceneCollider turning() {
     return collider;
 }
 
-TEST(SceneCollider, EveryKey) {
+TEST(SceneCollider, ReadsEveryKey) {
     const Scene scene = goodScene(
         "[[collider]]\nfile = \"a.relief\"\nposition = [1, 2, 3]\naxis = [0, 0, 5]\nangle = 90\nscale = 0.5\n"
         "restitution = 0.25\nfriction = 0.75\n"
@@ -47,7 +47,7 @@ TEST(SceneCollider, EveryKey) {
     expectNear(toWorld(first.pose, {2.0F, 0.0F, 0.0F}), {1.0F, 3.0F, 3.0F}, 1e-6F);
     ASSERT_EQ(first.keys.size(), 2U);
     EXPECT_EQ(first.keys[0].time, 1.0);
-    EXPECT_EQ(first.keys[0].pose, first.pose) << "what a key leaves open is the collider's";
+    EXPECT_EQ(first.keys[0].pose, first.pose) << "missing values of a key are the collider's";
     EXPECT_EQ(poseAt(first, 9.0), first.keys[1].pose);
     // Half a turn about y, the default axis of an angle; the collider's scale.
     expectNear(toWorld(first.keys[1].pose, {2.0F, 0.0F, 0.0F}), {3.0F, 5.0F, 6.0F}, 1e-6F);
@@ -59,7 +59,7 @@ TEST(SceneCollider, EveryKey) {
     expectNear(toWorld(tiny.colliders.front().pose, {1.0F, 0.0F, 0.0F}), {0.0F, 1.0F, 0.0F}, 1e-6F);
 }
 
-TEST(SceneCollider, AnyKeyOfItsPlacePosesIt) {
+TEST(SceneCollider, AnyPoseKeyPosesIt) {
     EXPECT_FALSE(sceneWith("").colliders.front().posed);
     for (const char* key : {"position = [0, 0, 0]", "angle = 0", "scale = 1", "restitution = 1",
                             "friction = 0", "[[collider.key]]\ntime = 0\n[[collider.key]]\ntime = 1"}) {
@@ -67,7 +67,7 @@ TEST(SceneCollider, AnyKeyOfItsPlacePosesIt) {
     }
 }
 
-TEST(WorldBounds, HoldEveryPlaceOfATurningBox) {
+TEST(WorldBounds, ContainARotatingBoxAtEveryTime) {
     Bounds object;
     object.add({-1.0F, -1.0F, -1.0F});
     object.add({1.0F, 1.0F, 1.0F});
@@ -90,7 +90,7 @@ TEST(WorldBounds, HoldEveryPlaceOfATurningBox) {
     EXPECT_EQ(worldBounds(still, object).max, glm::vec3(4.0F, 3.0F, 3.0F));
 }
 
-TEST(SceneTypes, WhatTheyLeaveOpenIsThatOfCollisions) {
+TEST(SceneTypes, DefaultsAreThoseOfCollisions) {
     const Scene scene = sceneWith(
         "[collision]\nrestitution = 0.2\nfriction = 0.3\nfriction_threshold = 0.4\n[[type]]\n"
         "[[type]]\nname = \"rain\"\nmass = 2\nradius = 0.25\nrestitution = 0.5\nfriction = 0.75\n"
@@ -110,7 +110,7 @@ TEST(SceneTypes, WhatTheyLeaveOpenIsThatOfCollisions) {
     EXPECT_EQ(rain.lifetime_loss, 1.5F);
 }
 
-TEST(SceneLive, Keys) {
+TEST(SceneLive, ReadsKeys) {
     const SceneCollider collider =
         goodScene(
             "[collider]\nmesh = \"a.obj\"\nresolution = 100\n"
@@ -124,7 +124,7 @@ TEST(SceneLive, Keys) {
     EXPECT_EQ(collider.live->wavelength, 3.0F);
 }
 
-TEST(SceneLive, TheMeshIsReadAndItsMapsHoldTheMotion) {
+TEST(SceneLive, MapsContainTheMotionOfTheMesh) {
     const test::TemporaryFolder folder;
     SceneCollider collider;
     collider.path = folder.write("bar.obj",
@@ -135,7 +135,7 @@ TEST(SceneLive, TheMeshIsReadAndItsMapsHoldTheMotion) {
     collider.live->amplitude = 0.25F;
     collider.live->phase = 180.0F;
     const auto live = required(loadLiveMesh(collider));
-    EXPECT_EQ(live.mesh.positions.size(), 5U) << "no vertex is doubled";
+    EXPECT_EQ(live.mesh.positions.size(), 5U) << "no vertex is duplicated";
     EXPECT_EQ(live.mesh.normals.size(), 5U);
     EXPECT_FLOAT_EQ(live.wobble.phase, std::numbers::pi_v<float>);
     EXPECT_EQ(live.wobble.wavelength, 2.0F) << "half of the longest side";

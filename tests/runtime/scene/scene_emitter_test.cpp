@@ -19,7 +19,7 @@ SceneEmitter good(const std::string& keys) {
     return goodScene(kSceneHead + "[emitter]\n" + keys).emitters.at(0);
 }
 
-TEST(SceneEmitter, WhatMovesIt) {
+TEST(SceneEmitter, ReadsMotion) {
     const std::string keys =
         "[[emitter.key]]\ntime = 1\nposition = [1, 2, 3]\n"
         "[[emitter.key]]\ntime = 2\nangle = 90\n";
@@ -35,7 +35,7 @@ TEST(SceneEmitter, WhatMovesIt) {
     auto motions = emitterMotions(std::span(&moves, 1), std::span(&collider, 1));
     ASSERT_EQ(motions.size(), 1U);
     EXPECT_EQ(motions[0].keys.size(), 2U);
-    ASSERT_EQ(motions[0].body.size(), 1U) << "a collider at rest";
+    ASSERT_EQ(motions[0].body.size(), 1U) << "attached to a resting collider";
     EXPECT_EQ(motions[0].body[0].pose, collider.pose);
     EXPECT_EQ(motions[0].inherit, 0.5F);
     collider.keys = moves.keys;
@@ -43,7 +43,7 @@ TEST(SceneEmitter, WhatMovesIt) {
     EXPECT_TRUE(emitterMotions(std::span(&rests, 1), std::span(&collider, 1))[0].none());
 }
 
-TEST(SceneEmitter, Shapes) {
+TEST(SceneEmitter, ReadsShapes) {
     const SceneEmitter point = good("shape = \"point\"\npoint = [1, 2, 3]\n");
     EXPECT_EQ(point.shape, EmitterShape::kBox);
     EXPECT_EQ(point.box_min, glm::vec3(1, 2, 3));
@@ -55,7 +55,7 @@ TEST(SceneEmitter, Shapes) {
     EXPECT_EQ(disc.normal, glm::vec3(1, 0, 0));
 }
 
-TEST(SceneEmitter, MomentsAndSpeeds) {
+TEST(SceneEmitter, ReadsTimesAndSpeeds) {
     const SceneEmitter timed =
         good("start = 1.5\nburst = 10\nburst_every = 0.5\nduration = 3\nspread = false\n");
     EXPECT_EQ(timed.start, 1.5);
@@ -76,7 +76,7 @@ TEST(SceneEmitter, MomentsAndSpeeds) {
     EXPECT_EQ(good("type = \"b\"\n[[type]]\nname = \"a\"\n[[type]]\nname = \"b\"\n").type, 1U);
 }
 
-TEST(SceneEmitter, DefaultsOfSeveral) {
+TEST(SceneEmitter, SharesDefaultsAmongEmitters) {
     const auto scene = required(withDefaults(
         goodScene(kSceneHead +
                   "[time]\ndt = 0.1\nsteps = 100\n[particles]\ncapacity = 10000\n"
@@ -96,7 +96,7 @@ TEST(SceneEmitter, DefaultsOfSeveral) {
     EXPECT_FALSE(withDefaults(goodScene(full), unitBounds()));
 }
 
-TEST(SceneSpawn, EveryKeyIsRead) {
+TEST(SceneSpawn, ReadsEveryKey) {
     const Scene scene =
         goodScene(kSceneHead +
                   "[[type]]\nname = \"drop\"\n[[type]]\nname = \"splash\"\n"
@@ -126,7 +126,7 @@ TEST(SceneSpawn, EveryKeyIsRead) {
     EXPECT_EQ(scene.spawns.at(2).cone_degrees, 60.0F);
 }
 
-TEST(SceneEmitter, MadeEmittersGiveBirth) {
+TEST(SceneEmitter, EmittersSpawn) {
     const test::TemporaryFolder folder;
     folder.write("points.csv", "1,2,3\n");
     const auto make = [&](const std::string& keys) {

@@ -26,7 +26,7 @@ void writeBox(const test::TemporaryFolder& folder) {
     EXPECT_TRUE(saveCollider(folder.path() / "box.relief", box));
 }
 
-TEST(SceneMaterial, ResponsesReachTheCollidersByName) {
+TEST(SceneMaterial, ResponsesAreAppliedByName) {
     const test::TemporaryFolder folder;
     writeBox(folder);
     const auto loaded = required(loadAll(
@@ -60,7 +60,7 @@ TEST(SceneMaterial, UnknownNamesAreErrors) {
     }
 }
 
-TEST(SceneMaterial, WorldsHaveThemToo) {
+TEST(SceneMaterial, WorldsHaveMaterials) {
     World world;
     world.materials = {{"oak", 0.5F, {}, {}}, {"ice", {}, 0.0F, 1.0F}};
     world.colliders.resize(1);

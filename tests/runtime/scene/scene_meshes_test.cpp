@@ -56,7 +56,7 @@ World namedWorld() {
     return world;
 }
 
-TEST_F(DrawnMeshesTest, AMeshIsReadOnceAndDrawnForEachBody) {
+TEST_F(DrawnMeshesTest, MeshesAreReadOnceAndDrawnForEachBody) {
     const LoadedScene scene = loaded(
         namedWorld(), "world = \"world.json\"\n[[collider]]\nfile = \"own.relief\"\nposition = [0, 5, 0]\n");
     const auto meshes = loadDrawnMeshes(scene);
@@ -67,14 +67,14 @@ TEST_F(DrawnMeshesTest, AMeshIsReadOnceAndDrawnForEachBody) {
                                      folder_.path() / "own.obj"}));
     ASSERT_EQ(meshes->places.size(), 4U);
     EXPECT_FALSE(meshes->floor) << "the scene has no ground";
-    EXPECT_EQ(meshes->places[2].mesh, meshes->places[3].mesh) << "door and gate are one mesh";
+    EXPECT_EQ(meshes->places[2].mesh, meshes->places[3].mesh) << "door and gate share a mesh";
     const std::vector<MeshPlace> places = meshPlaces(scene, *meshes, 0.0);
     EXPECT_EQ(places[0].pose.position, glm::vec3(0.0F, 5.0F, 0.0F));
     EXPECT_EQ(places[2].pose, scene.scene.colliders[2].pose);
     EXPECT_FALSE(places[2].moves);
 }
 
-TEST_F(DrawnMeshesTest, AFileHasTheNameThatAContainerHas) {
+TEST_F(DrawnMeshesTest, MeshFilesAreNamedAsInTheContainer) {
     for (const char* name : {"props/chair", "props\\chair"}) {
         folder_.write("props_chair.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
         World world = namedWorld();
@@ -98,7 +98,7 @@ TEST_F(DrawnMeshesTest, LinksOutOfTheFolderAreNotRead) {
     expectErrorOf(loadDrawnMeshes(scene), "scene.toml:5:", "floor.obj' is a link out of its folder");
 }
 
-TEST_F(DrawnMeshesTest, AllFilesAreThoseOfAnyRun) {
+TEST_F(DrawnMeshesTest, AllFilesCoverEveryRun) {
     World world = namedWorld();
     world.colliders[0].coarse = WorldFile{"floor.coarse.relief", "", 0};
     world.colliders[1].mesh = "missing";
@@ -120,7 +120,7 @@ TEST_F(DrawnMeshesTest, TilesOfAMeshAreDrawnOnce) {
     EXPECT_EQ(loadDrawnMeshes(loaded(world, "world = \"world.json\"\n"))->places.size(), 4U);
 }
 
-TEST_F(DrawnMeshesTest, NamesThatAreNoFilesAreErrors) {
+TEST_F(DrawnMeshesTest, MissingFilesAreErrors) {
     for (const char* name : {"", ".", "..", "../door", "a/b", "a\\b"}) {
         World world = namedWorld();
         world.colliders[1].mesh = name;
@@ -132,7 +132,7 @@ TEST_F(DrawnMeshesTest, NamesThatAreNoFilesAreErrors) {
               std::string::npos);
 }
 
-TEST(SceneWeather, ChangesEvenlyBetweenItsTimes) {
+TEST(SceneWeather, InterpolatesLinearly) {
     const std::string meshes = kSceneHead + "[render]\nmeshes = \"m\"\n";
     const Scene scene = goodScene(meshes +
                                   "fog = 5\n[[render.weather]]\ntime = 1\nsnow = 0.2\nsun = 0.5\n"
@@ -146,7 +146,7 @@ TEST(SceneWeather, ChangesEvenlyBetweenItsTimes) {
     EXPECT_EQ(meshStyle(goodScene(meshes), 1.0).sun, 1.0F);
 }
 
-TEST(SceneLooks, EveryKey) {
+TEST(SceneLooks, ReadsEveryKey) {
     const Scene scene = sceneWith(
         "[render]\nsprite = \"quad\"\nblend = \"additive\"\nsoft = 0.5\natlas = \"a.png\"\natlas_cells = [4, "
         "2]\n"
@@ -180,7 +180,7 @@ TEST(SceneLooks, EveryKey) {
     EXPECT_EQ(scene.types[2].look.fade_out, 2.0F);
 }
 
-TEST(SceneCamera, KeysAreFollowedAndFilledFromTheCamera) {
+TEST(SceneCamera, KeysDefaultToTheCamera) {
     const auto scene = required(
         withDefaults(sceneWith("[camera]\ntarget = [0, 1, 0]\nfov = 40\n"
                                "[[camera.key]]\ntime = 0\neye = [4, 1, 0]\n"

@@ -35,7 +35,7 @@ TEST(ScenePlay, IsLoadedWithItsClip) {
     EXPECT_FALSE(loaded.played[2]) << "at rest";
     EXPECT_EQ(loaded.played[0]->mesh, loaded.played[1]->mesh) << "read once";
     const AnimatedMesh& mesh = *loaded.played[0]->mesh;
-    EXPECT_EQ(loaded.played[0]->poseAt(2.5), poseAt(mesh, mesh.clips[0], 0.5)) << "again from the beginning";
+    EXPECT_EQ(loaded.played[0]->poseAt(2.5), poseAt(mesh, mesh.clips[0], 0.5)) << "repeats from the start";
     EXPECT_EQ(loaded.played[1]->poseAt(0.5), poseAt(mesh, mesh.clips[1], 0.75));
     EXPECT_EQ(loaded.played[1]->poseAt(7.0), poseAt(mesh, mesh.clips[1], 1.0));
     // The tube bends to -x by slightly more than 1.
@@ -60,7 +60,7 @@ TEST(ScenePlay, MissingClipsAndMeshesAreNamed) {
     expectRefused("--animated");
 }
 
-TEST(ScenePlay, MaterialsHaveTheirColoursInPictures) {
+TEST(ScenePlay, MaterialsHaveColours) {
     const test::TemporaryFolder folder;
     const AnimatedMesh mesh = dressedTube("arm", "sleeve");
     ASSERT_TRUE(saveCollider(folder.path() / "tube.relief", animatedContainer(mesh)));

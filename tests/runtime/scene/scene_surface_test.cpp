@@ -58,7 +58,7 @@ class SceneSurface : public testing::Test {
     const test::TemporaryFolder folder_;
 };
 
-TEST_F(SceneSurface, IsThatOfTheColliderByGroupsAndMaterials) {
+TEST_F(SceneSurface, SelectsGroupsAndMaterials) {
     const std::vector<glm::vec3> bent = posed(mesh_, poseAt(mesh_, mesh_.clips[0], 0.5));
     EXPECT_NEAR(area(kPlayed + kSurface + "attach = 0\n"), areaOf(bent, mesh_.triangles), 1e-6);
     EXPECT_NEAR(area(kCollider + kSurface + "attach = 0\n"), areaOf(mesh_.positions, mesh_.triangles), 1e-6)
@@ -84,7 +84,7 @@ TEST_F(SceneSurface, IsThatOfTheColliderByGroupsAndMaterials) {
     EXPECT_GT(both, 0.5 * skin);
 }
 
-TEST_F(SceneSurface, MayBeThatOfAMeshFile) {
+TEST_F(SceneSurface, MayBeAMeshFile) {
     const std::string head = kCollider + kSurface + "mesh = \"cube.obj\"\n";
     EXPECT_NEAR(area(head), 4.0, 1e-6);
     EXPECT_NEAR(area(head + "group = \"lid top\"\n"), 2.0, 1e-6);
@@ -101,7 +101,7 @@ TEST_F(SceneSurface, MayBeThatOfAMeshFile) {
     EXPECT_NE(std::find(files.begin(), files.end(), folder_.path() / "cube.obj"), files.end());
 }
 
-TEST_F(SceneSurface, OfCollidersWithoutABakedMesh) {
+TEST_F(SceneSurface, CollidersWithoutAMeshGiveASurface) {
     const glm::dvec3 half(0.5, 0.3, 0.2);
     ASSERT_TRUE(saveCollider(folder_.path() / "box.relief",
                              analytic::frontBackCollider(analytic::box(-half, half), 128)));
@@ -117,7 +117,7 @@ TEST_F(SceneSurface, OfCollidersWithoutABakedMesh) {
     expectRefused(wobbles + kSurface + "attach = 0\ngroup = \"a\"\n", "4:1", "emitter.group");
 }
 
-TEST_F(SceneSurface, PartsThatAreNotThereAreErrors) {
+TEST_F(SceneSurface, MissingPartsAreErrors) {
     const std::string head = kPlayed + kSurface + "attach = 0\n";
     expectRefused(head + "group = \"Head\"\n", "4:1", "emitter.group");
     expectRefused(head + "material = \"hair\"\n", "4:1", "emitter.material");

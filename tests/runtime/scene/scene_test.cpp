@@ -14,7 +14,7 @@
 namespace relief {
 namespace {
 
-TEST(Scene, FramesFromOneStepToAnother) {
+TEST(Scene, FramesMatchTheirSteps) {
     const auto due = [](const std::string& render, const std::string& time = "steps = 25\n") {
         const Scene scene = sceneWith("[time]\n" + time + "[render]\n" + render);
         std::vector<std::uint32_t> steps;
@@ -40,12 +40,12 @@ TEST(Scene, FramesFromOneStepToAnother) {
 TEST(Scene, PrewarmIsWholeSteps) {
     EXPECT_EQ(prewarmSteps(sceneWith("")), 0U);
     EXPECT_EQ(prewarmSteps(sceneWith("[time]\ndt = 0.1\nprewarm = 0.3\n")), 3U)
-        << "0.1 of a float is not 0.1";
+        << "0.1 as a float is not exactly 0.1";
     EXPECT_EQ(prewarmSteps(sceneWith("[time]\ndt = 0.1\nprewarm = 0.31\n")), 4U);
     EXPECT_EQ(prewarmSteps(sceneWith("[time]\nprewarm = 2\n")), 120U);
 }
 
-TEST(Scene, BodiesThatATypeCollidesWith) {
+TEST(Scene, CollidesMasksBodies) {
     const auto collides = [](const std::string& list, const std::string& more = "") {
         const Scene scene = goodScene(kSceneHead + kSceneHead + more + "[[type]]\ncollides = " + list + "\n");
         return particleTypes(scene).at(0).collides;
@@ -56,10 +56,10 @@ TEST(Scene, BodiesThatATypeCollidesWith) {
     EXPECT_EQ(collides("[0, \"ground\"]"), 1U + kCollidesWithGround);
     EXPECT_EQ(collides("[1, 0, \"ground\"]"), kCollidesWithAll);
     EXPECT_EQ(collides("[1, 0]"), 3U);
-    EXPECT_EQ(collides("[1, 0]", "[ground]\nenabled = false\n"), kCollidesWithAll) << "nothing is left out";
+    EXPECT_EQ(collides("[1, 0]", "[ground]\nenabled = false\n"), kCollidesWithAll) << "no body is excluded";
 }
 
-TEST(Scene, OnlyWhatIsLeftOpenIsFilledFromTheBounds) {
+TEST(Scene, OnlyMissingKeysDefaultToTheBounds) {
     const auto scene = withDefaults(sceneWith(""), unitBounds());
     ASSERT_TRUE(scene);
     // The longest side is 2: births start above the box, and the floor is its lower end.
@@ -84,7 +84,7 @@ TEST(Scene, OnlyWhatIsLeftOpenIsFilledFromTheBounds) {
     EXPECT_EQ(*given->camera.eye, glm::vec3(1.0F));
     EXPECT_EQ(*given->render.point_size, 0.5F);
     EXPECT_FALSE(withDefaults(sceneWith("[camera]\neye = [0, 50, 0]\n"), unitBounds()))
-        << "straight above a target that is filled in";
+        << "directly above the default target";
     EXPECT_FALSE(withDefaults(sceneWith(""), Bounds{}));
     EXPECT_FALSE(withDefaults(sceneWith(""), {glm::vec3(-3e38F), glm::vec3(3e38F)}));
     const auto flat = withDefaults(sceneWith(""), {glm::vec3(1.0F), glm::vec3(1.0F)});
@@ -92,7 +92,7 @@ TEST(Scene, OnlyWhatIsLeftOpenIsFilledFromTheBounds) {
     EXPECT_TRUE(std::isfinite(flat->camera.eye->x));
 }
 
-TEST(Scene, EveryPrefixAndEveryFlippedByteIsSurvived) {
+TEST(Scene, SurvivesPrefixesAndFlippedBytes) {
     const std::string text =
         kSceneHead +
         "[time]\ndt = 0.01\nsteps = 10\n[[emitter]]\nbox_min = [0, 0, 0]\nbox_max = [1, 1, 1]\n"

@@ -95,7 +95,7 @@ class SceneTouch : public testing::Test {
             EXPECT_EQ(stays, wanted.value_or(stays))
                 << p.x << " " << p.y << " " << p.z << " at " << one.moment;
         }
-        EXPECT_EQ(next, kept.size()) << "births that are not among all";
+        EXPECT_EQ(next, kept.size()) << "births that the unfiltered run does not have";
         EXPECT_LT(unknown, all.size() / 10);
         return kept.size();
     }
@@ -115,7 +115,7 @@ const std::string kStep =
     "[[emitter.key]]\ntime = 0\nposition = [0, 0.3, 0]\n[[emitter.key]]\ntime = 1\n"
     "[[emitter.key]]\ntime = 2\n[[emitter.key]]\ntime = 3\nposition = [0, 0.3, 0]\n";
 
-TEST_F(SceneTouch, AFootRaisesDustWhereAndWhileItIsDown) {
+TEST_F(SceneTouch, FeetRaiseDustOnlyWhileDown) {
     const auto dust = [&](const std::string& names, bool only_earth) {
         return expectTruth(
             kNoGround + kBox + kFoot, "within = 0.05" + names, 3.0,
@@ -133,7 +133,7 @@ TEST_F(SceneTouch, AFootRaisesDustWhereAndWhileItIsDown) {
     EXPECT_NEAR(static_cast<double>(dust("", false)), 4000.0, 240.0);
 }
 
-TEST_F(SceneTouch, ABodyThatComesToTheSurface) {
+TEST_F(SceneTouch, MovingBodiesTouchTheSurface) {
     const std::string rises = kNoGround + kBox +
                               "[[collider.key]]\ntime = 0\nposition = [0.2, -1, 0]\n"
                               "[[collider.key]]\ntime = 1\nposition = [0.2, 0, 0]\n" +
@@ -152,7 +152,7 @@ TEST_F(SceneTouch, ABodyThatComesToTheSurface) {
     EXPECT_TRUE(run(deep, 0.1).births.empty());
 }
 
-TEST_F(SceneTouch, SpeedIsRelativeToWhatIsTouched) {
+TEST_F(SceneTouch, SpeedIsRelativeToTheTouchedBody) {
     const auto keys = [](const std::string& of) {
         return "[[" + of + ".key]]\ntime = 0\nposition = [-0.2, 0, 0]\n[[" + of +
                ".key]]\ntime = 1\nposition = [0.2, 0, 0]\n";
@@ -170,11 +170,11 @@ TEST_F(SceneTouch, SpeedIsRelativeToWhatIsTouched) {
     EXPECT_EQ(count(slides, "", "0.41"), 0U);
     EXPECT_NEAR(static_cast<double>(count("", along, "0.39")), 2940.0, 1.0) << "the foot slides";
     EXPECT_EQ(count("", along, "0.41"), 0U);
-    EXPECT_EQ(count(slides, along, "0.001"), 0U) << "both go together";
+    EXPECT_EQ(count(slides, along, "0.001"), 0U) << "both move together";
     EXPECT_EQ(count(slides, along, "0"), 3000U);
 }
 
-TEST_F(SceneTouch, ATurningBodyIsFasterFartherOut) {
+TEST_F(SceneTouch, RotatingBodiesAreFasterFartherOut) {
     const std::string turns =
         kNoGround + kBox + "[[collider.key]]\ntime = 0\n[[collider.key]]\ntime = 1\nangle = 90\n" + kFoot;
     expectTruth(turns, "within = 0.05, min_speed = 0.5", 0.9, [](const glm::dvec3& p, double time) {
@@ -183,7 +183,7 @@ TEST_F(SceneTouch, ATurningBodyIsFasterFartherOut) {
     });
 }
 
-TEST_F(SceneTouch, TheColliderItLiesOnDoesNotCount) {
+TEST_F(SceneTouch, TheColliderOfTheSurfaceIsIgnored) {
     const std::string two = kNoGround + kBox +
                             "[[collider]]\nfile = \"bare.relief\"\nposition = [0.5, 0.55, 0]\n" +
                             "[[emitter]]\nshape = \"surface\"\nattach = 0\nrate = 4000\nspeed = 0\n";
@@ -194,7 +194,7 @@ TEST_F(SceneTouch, TheColliderItLiesOnDoesNotCount) {
     EXPECT_GT(touching, 900U);
 }
 
-TEST_F(SceneTouch, TheNearestOfManyBodiesDecides) {
+TEST_F(SceneTouch, NearestOfManyBodiesDecides) {
     std::string scene = kNoGround;
     std::vector<glm::dvec3> places;
     for (int i = 0; i < 500; ++i) {
@@ -228,7 +228,7 @@ TEST_F(SceneTouch, TheNearestOfManyBodiesDecides) {
     EXPECT_GT(expectTruth(scene, "within = 0.04, material = \"earth\"", 0.5, truth), 300U);
 }
 
-TEST_F(SceneTouch, TheGroundIsNoMaterial) {
+TEST_F(SceneTouch, GroundHasNoMaterial) {
     const std::string scene =
         "ground = { height = -0.03 }\n[collider]\nfile = \"box.relief\"\n"
         "position = [0.8, -0.02, 0]\n" +
@@ -242,7 +242,7 @@ TEST_F(SceneTouch, TheGroundIsNoMaterial) {
                 [](const glm::dvec3& p, double) { return below(-p.x, 0.2 + std::sqrt(5e-4), 0.02); });
 }
 
-TEST_F(SceneTouch, DroppedBirthsTakeNoRoom) {
+TEST_F(SceneTouch, DroppedBirthsUseNoCapacity) {
     const std::string scene = kNoGround + kBox + kFoot;
     const std::string earth = "touching = { within = 0.05, material = \"earth\" }\n";
     const Played whole = run(scene + earth, 0.2);
@@ -253,7 +253,7 @@ TEST_F(SceneTouch, DroppedBirthsTakeNoRoom) {
     EXPECT_EQ(tight.births[19].birth.position, whole.births[19].birth.position);
 }
 
-TEST_F(SceneTouch, AnUnknownMaterialIsAnError) {
+TEST_F(SceneTouch, UnknownMaterialsAreErrors) {
     expectErrorOf(load(kBox + kFoot + "touching = { within = 1, material = [\"oak\", \"erth\"] }\n"),
                   "scene.toml:3:1: emitter[0].touching.material = 'erth'", "");
 }

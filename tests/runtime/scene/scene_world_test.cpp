@@ -27,20 +27,20 @@ Scene placed(const std::string& text) {
     return scene;
 }
 
-TEST(SceneWorld, BodiesAreCollidersAsTheWorldPlacesThem) {
+TEST(SceneWorld, BodiesBecomeCollidersWithTheirPoses) {
     const Scene scene = placed("");
     ASSERT_EQ(scene.colliders.size(), 3U);
     const SceneCollider& door = scene.colliders[1];
     EXPECT_EQ(door.path, std::filesystem::path("dir/level/door.relief"));
     EXPECT_EQ(door.node, "door");
     EXPECT_TRUE(door.posed);
-    EXPECT_EQ(door.pose, poseOf(test::threeBodies().bodies[1])) << "to the bit";
+    EXPECT_EQ(door.pose, poseOf(test::threeBodies().bodies[1])) << "bit-identical";
     EXPECT_EQ(door.restitution, 0.25F);
     EXPECT_EQ(door.friction, 0.75F);
     EXPECT_EQ(scene.colliders[2].node, "gate");
 }
 
-TEST(SceneWorld, ATableOfANodeComesFirstAndKeepsWhatItLeavesOpen) {
+TEST(SceneWorld, NodeTablesComeFirstAndKeepUnsetValues) {
     const Scene scene = placed(
         "[[collider]]\nfile = \"own.relief\"\n"
         "[[collider]]\nnode = \"door\"\n[[collider.key]]\ntime = 1\n[[collider.key]]\ntime = 2\nposition = "
@@ -61,7 +61,7 @@ TEST(SceneWorld, ATableOfANodeComesFirstAndKeepsWhatItLeavesOpen) {
 }
 
 // Also detected if every second body is elsewhere.
-TEST(SceneWorld, BodiesMayNotAllBeAtOnePlace) {
+TEST(SceneWorld, TooManyCoincidentBodiesAreErrors) {
     const auto collider = std::make_shared<const Collider>(test::readmeExample());
     const auto scene = [&](std::size_t bodies, std::size_t every, float apart) {
         LoadedScene loaded;
@@ -87,7 +87,7 @@ TEST(SceneWorld, BodiesMayNotAllBeAtOnePlace) {
 }
 
 // A level is wide and low. Seen from above, it fills nine tenths of the picture's width or height.
-TEST(SceneWorld, TheDefaultCameraFramesALevel) {
+TEST(SceneWorld, DefaultCameraFramesALevel) {
     for (const glm::vec3& half :
          {glm::vec3(90.0F, 12.0F, 90.0F), glm::vec3(4.0F, 30.0F, 2.0F), glm::vec3(300.0F, 0.0F, 5.0F)}) {
         const Bounds bounds{-half, half};
@@ -112,7 +112,7 @@ World threeBodiesAndATile() {
     return world;
 }
 
-TEST(SceneWorld, ATableOfANodeMovesAllItsTiles) {
+TEST(SceneWorld, NodeTablesMoveAllTiles) {
     const auto scene = [](const std::string& text) {
         Scene read = goodScene("world = \"w.json\"\n" + text);
         EXPECT_TRUE(placeBodies(read, threeBodiesAndATile()));
@@ -123,7 +123,7 @@ TEST(SceneWorld, ATableOfANodeMovesAllItsTiles) {
         "position = [4, 0.5, 1]\n");
     ASSERT_EQ(moved.colliders.size(), 4U);
     EXPECT_EQ(moved.colliders[1].node, "floor");
-    EXPECT_EQ(moved.colliders[2].node, "gate") << "has the number that it has without the tile";
+    EXPECT_EQ(moved.colliders[2].node, "gate") << "has the same index as without the tile";
     const SceneCollider& door = moved.colliders[0];
     const SceneCollider& tile = moved.colliders[3];
     EXPECT_EQ(tile.path, std::filesystem::path("dir/door-1.relief"));
@@ -140,7 +140,7 @@ TEST(SceneWorld, ATableOfANodeMovesAllItsTiles) {
     EXPECT_FALSE(still.colliders[2].tile_of);
 }
 
-TEST(SceneWorld, ANodeHasOnePlaceInTheWorld) {
+TEST(SceneWorld, NodesHaveOnePlaceInTheWorld) {
     World elsewhere = threeBodiesAndATile();
     elsewhere.bodies[2].position.x += 1.0F;
     for (const auto& [node, world] : {std::pair("door", elsewhere), {"window", test::threeBodies()}}) {

@@ -43,7 +43,7 @@ float sampledDistance(const StreamBody& body, const glm::vec3& point, int count)
     return least;
 }
 
-TEST(StreamPlan, WantsWhatReachesIntoABallAndTheNearestFirst) {
+TEST(StreamPlan, RequestsBodiesInRangeNearestFirst) {
     std::mt19937 random(3);
     const std::vector<StreamBody> bodies = randomBodies(random);
     StreamPlan plan(bodies, kColliders);
@@ -73,7 +73,7 @@ TEST(StreamPlan, WantsWhatReachesIntoABallAndTheNearestFirst) {
     EXPECT_LT(plan.wanted().size(), kColliders);
 }
 
-TEST(StreamPlan, APartAtATimeIsTheWholeOfTheFirstPoints) {
+TEST(StreamPlan, PartialUpdatesMatchAFullUpdate) {
     std::mt19937 random(4);
     const std::vector<StreamBody> bodies = randomBodies(random);
     StreamPlan whole(bodies, kColliders);
@@ -96,7 +96,7 @@ TEST(StreamPlan, APartAtATimeIsTheWholeOfTheFirstPoints) {
     whole.lookAtAll(later);
     EXPECT_TRUE(std::ranges::equal(parts.wanted(), whole.wanted()));
     EXPECT_TRUE(parts.look({}, 1'000'000));
-    EXPECT_TRUE(parts.wanted().empty()) << "nothing without points";
+    EXPECT_TRUE(parts.wanted().empty()) << "nothing is wanted without points";
 }
 
 }  // namespace

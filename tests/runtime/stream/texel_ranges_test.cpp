@@ -11,7 +11,7 @@ namespace relief {
 namespace {
 
 /// Compared with an array of flags.
-TEST(TexelRanges, GivesTheFirstGapThatFitsAndJoinsWhatComesBack) {
+TEST(TexelRanges, AllocatesTheFirstFitAndMergesFreedRanges) {
     constexpr std::size_t kFirst = 1000;
     constexpr std::size_t kCount = 400;
     TexelRanges ranges(kFirst, kCount);

@@ -167,7 +167,7 @@ class WorldStreamGlTest : public GlTest {
 // Only the CPU decides what is wanted, loaded, evicted and reported, so one API is enough.
 using WorldStreamBooksGlTest = WorldStreamGlTest;
 
-TEST_P(WorldStreamGlTest, TheFieldIsThatOfWhatIsThere) {
+TEST_P(WorldStreamGlTest, FieldMatchesThePresentColliders) {
     open({});
     EXPECT_EQ(stream_->counts().gpu_bytes, coarse_bytes_);
     expectFine({});
@@ -180,7 +180,7 @@ TEST_P(WorldStreamGlTest, TheFieldIsThatOfWhatIsThere) {
     EXPECT_TRUE(stream_->takeWarnings().empty());
 }
 
-TEST_P(WorldStreamGlTest, BodiesThatMoveTakeTheirMapsAlong) {
+TEST_P(WorldStreamGlTest, MovingBodiesKeepTheirMaps) {
     open({});
     static_cast<void>(finish({2}));
     std::vector<Pose> poses;
@@ -196,10 +196,10 @@ TEST_P(WorldStreamGlTest, BodiesThatMoveTakeTheirMapsAlong) {
         pose.position.x -= 10.0F;
     }
     stream_->setPoses(poses);
-    EXPECT_EQ(finish({2}), std::vector<std::size_t>{3}) << "where 3 has moved to";
+    EXPECT_EQ(finish({2}), std::vector<std::size_t>{3}) << "3 has moved there";
 }
 
-TEST_P(WorldStreamGlTest, AnUpdateCopiesSoManyBytesAndTheCoarseMapsStandInUntilAllIsThere) {
+TEST_P(WorldStreamGlTest, CoarseMapsAreUsedUntilTheUploadIsComplete) {
     open({.upload_bytes = 64});
     const PointOfInterest here = at(3);
     std::uint64_t before = 0;
@@ -218,7 +218,7 @@ TEST_P(WorldStreamGlTest, AnUpdateCopiesSoManyBytesAndTheCoarseMapsStandInUntilA
     EXPECT_EQ(stream_->counts().uploaded, fine_[3].texelBytes());
 }
 
-TEST_P(WorldStreamBooksGlTest, WhatWasNotWantedForTheLongestTimeGoes) {
+TEST_P(WorldStreamBooksGlTest, LeastRecentlyWantedIsEvicted) {
     // The first to be evicted is the largest, so that its memory suffices for any other.
     std::vector<std::size_t> by_size{0, 1, 2, 3, 4, 5};
     std::ranges::sort(by_size, std::greater(), [&](std::size_t i) { return fine_[i].texelBytes(); });
@@ -232,7 +232,7 @@ TEST_P(WorldStreamBooksGlTest, WhatWasNotWantedForTheLongestTimeGoes) {
     expectFine({old, first, second});
     EXPECT_EQ(finish({late}), std::vector<std::size_t>{late});
     EXPECT_LE(stream_->counts().gpu_bytes, room);
-    EXPECT_EQ(finish({first, second}), std::vector<std::size_t>()) << "the old one has gone";
+    EXPECT_EQ(finish({first, second}), std::vector<std::size_t>()) << "the least recently wanted was evicted";
     expectFine({first, second, late});
     // More colliders than fit: the nearest are loaded, and nothing is loaded in vain.
     const PointOfInterest all{{0.0F, 3.0F, 0.0F}, 200.0F};
@@ -244,7 +244,7 @@ TEST_P(WorldStreamBooksGlTest, WhatWasNotWantedForTheLongestTimeGoes) {
     EXPECT_TRUE(source_->asked.empty());
 }
 
-TEST_P(WorldStreamBooksGlTest, ThereIsRoomAgainWhenWhatWasInTheWayIsNoLongerWanted) {
+TEST_P(WorldStreamBooksGlTest, UnwantedCollidersMakeRoom) {
     open({.gpu_bytes = coarse_bytes_ + 2 * largest_});
     // In any order and number: in the end the only wanted collider is present, and nothing was loaded in vain.
     Pcg32 random(12);
@@ -266,7 +266,7 @@ TEST_P(WorldStreamBooksGlTest, ThereIsRoomAgainWhenWhatWasInTheWayIsNoLongerWant
     EXPECT_TRUE(stream_->takeWarnings().empty());
 }
 
-TEST_P(WorldStreamBooksGlTest, TwoThatAreAsNearDoNotTakeTurns) {
+TEST_P(WorldStreamBooksGlTest, EquallyNearCollidersDoNotAlternate) {
     open({.gpu_bytes = coarse_bytes_ + largest_});
     for (int i = 0; i < 12; ++i) {
         const PointOfInterest between{{15.0F + (i % 2 == 0 ? 0.1F : -0.1F), 3.0F, 0.0F}, 20.0F};
@@ -275,7 +275,7 @@ TEST_P(WorldStreamBooksGlTest, TwoThatAreAsNearDoNotTakeTurns) {
     EXPECT_EQ(source_->asked.size(), 1U);
 }
 
-TEST_P(WorldStreamBooksGlTest, WhatIsBrokenIsNamedOnceAndItsCoarseMapsStay) {
+TEST_P(WorldStreamBooksGlTest, BrokenCollidersAreReportedOnceAndStayCoarse) {
     open({});
     source_->broken = 2;
     EXPECT_EQ(finish({1, 2}), (std::vector<std::size_t>{1, 2}));
@@ -290,7 +290,7 @@ TEST_P(WorldStreamBooksGlTest, WhatIsBrokenIsNamedOnceAndItsCoarseMapsStay) {
     expectFine({1});
 }
 
-TEST_P(WorldStreamBooksGlTest, WhatIsLateWaitsForNobodyAndMayNoLongerBeWanted) {
+TEST_P(WorldStreamBooksGlTest, LateLoadsDoNotBlockAndMayBeDiscarded) {
     open({});
     source_->holds_back = true;
     updates(5, {at(1)});
@@ -302,7 +302,7 @@ TEST_P(WorldStreamBooksGlTest, WhatIsLateWaitsForNobodyAndMayNoLongerBeWanted) {
     expectFine({4});
 }
 
-TEST_P(WorldStreamBooksGlTest, SoManyAreUnderWayAtOnce) {
+TEST_P(WorldStreamBooksGlTest, ConcurrentLoadsAreLimited) {
     for (const std::size_t most : {1U, 4U}) {
         open({.under_way = most});
         source_->holds_back = true;
@@ -311,7 +311,7 @@ TEST_P(WorldStreamBooksGlTest, SoManyAreUnderWayAtOnce) {
     }
 }
 
-TEST_P(WorldStreamBooksGlTest, TooLittleMemoryIsSaid) {
+TEST_P(WorldStreamBooksGlTest, TooLittleMemoryIsReported) {
     EXPECT_EQ(make({.gpu_bytes = coarse_bytes_ - 1}).error().code, ErrorCode::kLimit);
     open({.gpu_bytes = coarse_bytes_ + largest_ - 8});
     EXPECT_EQ(stream_->takeWarnings().size(), 1U);
@@ -324,7 +324,7 @@ TEST_P(WorldStreamBooksGlTest, TooLittleMemoryIsSaid) {
 }
 
 // Drops rest on the fine or the coarse plane of a tile, whichever is present; the two are half a unit apart.
-TEST_P(WorldStreamGlTest, NothingFallsThroughTilesThatComeAndGo) {
+TEST_P(WorldStreamGlTest, NothingFallsThroughStreamedTiles) {
     const auto plane = [](double height) {
         const PatchHeights codes = PatchHeights::of(std::vector(4, height), 2);
         Collider tile =
@@ -378,7 +378,7 @@ TEST_P(WorldStreamGlTest, NothingFallsThroughTilesThatComeAndGo) {
     }
 }
 
-TEST_P(WorldStreamBooksGlTest, FilesThatAreMissingOrOthersAreNamed) {
+TEST_P(WorldStreamBooksGlTest, MissingAndReplacedFilesAreNamed) {
     const test::TemporaryFolder folder;
     const auto write = [&](WorldFile& file, const Collider& collider) {
         const std::vector<std::byte> bytes = required(writeContainer(collider));
@@ -404,7 +404,7 @@ TEST_P(WorldStreamBooksGlTest, FilesThatAreMissingOrOthersAreNamed) {
     EXPECT_NE((warnings[0] + warnings[1]).find("'thing 5') does not match its hash"), std::string::npos)
         << warnings[0] << warnings[1];
     fs::remove(folder.path() / "thing 2 coarse");
-    EXPECT_FALSE(WorldStream::open(path)) << "there is nothing to stand in";
+    EXPECT_FALSE(WorldStream::open(path)) << "there is no coarse collider";
 }
 
 }  // namespace

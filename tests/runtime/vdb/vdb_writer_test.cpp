@@ -68,7 +68,7 @@ std::map<std::uint32_t, VdbPoint> particlesOf(const PointDataGrid& grid) {
     return out;
 }
 
-TEST(VdbPoints, AReaderFindsEachParticle) {
+TEST(VdbPoints, ReadersFindEachParticle) {
     const std::vector<VdbPoint> particles = someParticles(5000);
     const auto bytes = encodeVdbPoints(particles);
     ASSERT_TRUE(bytes.has_value()) << bytes.error().message;
@@ -88,7 +88,7 @@ TEST(VdbPoints, AReaderFindsEachParticle) {
     }
 }
 
-TEST(VdbPoints, TheSameBytesForAnyOrder) {
+TEST(VdbPoints, BytesDoNotDependOnOrder) {
     std::vector<VdbPoint> particles = someParticles(2000);
     const auto bytes = encodeVdbPoints(particles);
     ASSERT_TRUE(bytes.has_value());
@@ -98,7 +98,7 @@ TEST(VdbPoints, TheSameBytesForAnyOrder) {
     EXPECT_NE(*bytes, *encodeVdbPoints(particles));
 }
 
-TEST(VdbPoints, NoneOneAndFarAway) {
+TEST(VdbPoints, HandlesNoParticlesOneAndFarPositions) {
     const auto none = encodeVdbPoints({});
     ASSERT_TRUE(none.has_value()) << none.error().message;
     EXPECT_EQ(openvdb::points::pointCount(gridOf(*none)->tree()), 0U);
@@ -112,7 +112,7 @@ TEST(VdbPoints, NoneOneAndFarAway) {
     }
 }
 
-TEST(VdbPoints, APositionThatIsNotFiniteIsRefused) {
+TEST(VdbPoints, NonFinitePositionsAreRejected) {
     std::vector<VdbPoint> particles = someParticles(3);
     particles[1].position.y = std::numeric_limits<float>::quiet_NaN();
     const auto bytes = encodeVdbPoints(particles);

@@ -9,7 +9,7 @@
 namespace relief {
 namespace {
 
-TEST(SceneErrors, OfTheFile) {
+TEST(SceneErrors, File) {
     expectErrors("", {{"", "1:1", "collider.file"},
                       {"[[collider]]\nfile = \"a\"\n[[collider]]\n", "3:1", "collider.file"},
                       {"[collider]\nfile = \"\"\n", "2:8", "file"},
@@ -24,7 +24,7 @@ TEST(SceneErrors, OfTheFile) {
                       {kSceneHead + "[attractor]\nstrength = 1\n", "3:1", "[[attractor]]"}});
 }
 
-TEST(SceneErrors, OfTheSyntax) {
+TEST(SceneErrors, Syntax) {
     for (const auto& [text, line] : {std::pair<std::string, int>{"[collider\n", 1},
                                      {kSceneHead + "[time]\ndt = \n", 4},
                                      {kSceneHead + "[time]\ndt = 1\ndt = 1\n", 5},
@@ -37,7 +37,7 @@ TEST(SceneErrors, OfTheSyntax) {
     }
 }
 
-TEST(SceneErrors, OfNumbersOfTables) {
+TEST(SceneErrors, TableCounts) {
     for (const auto& [table, count, line] :
          {std::tuple{"[[attractor]]\nposition = [0, 0, 0]\nstrength = 1\nradius = 1\n", 9U, 35U},
           {"[[type]]\n", 17U, 19U},
@@ -53,10 +53,10 @@ TEST(SceneErrors, OfNumbersOfTables) {
     for (std::size_t i = 0; i <= WorldTextures::kBodiesMax; ++i) {
         many += kSceneHead;
     }
-    EXPECT_FALSE(sceneOf(many)) << "more bodies than a step takes";
+    EXPECT_FALSE(sceneOf(many)) << "more bodies than a step allows";
 }
 
-TEST(SceneErrors, OfTimeAndFrames) {
+TEST(SceneErrors, TimeAndFrames) {
     expectErrors(kSceneHead, {{"[time]\ndt = 1e-5\nprewarm = 101\n", "5:11", "time.dt"},
                               {"[render]\nfirst = 5\nlast = 4\n", "5:8", "render.first"},
                               {"[render]\nfirst = 301\n", "4:9", "choose 0 to 300"},
@@ -64,7 +64,7 @@ TEST(SceneErrors, OfTimeAndFrames) {
                               {"[render]\nsort_frames = 1\n", "4:15", "2 to 200"}});
 }
 
-TEST(SceneErrors, OfTheAir) {
+TEST(SceneErrors, Air) {
     const std::string flow =
         "[flow]\nraw = \"a.raw\"\nsize = [1, 1, 1]\nbox_min = [0, 0, 0]\nbox_max = [1, 2, 3]\n";
     expectErrors(
@@ -86,7 +86,7 @@ TEST(SceneErrors, OfTheAir) {
           "vortex.axis"}});
 }
 
-TEST(SceneErrors, OfPlacesAndWaysOfColliders) {
+TEST(SceneErrors, ColliderPosesAndKeys) {
     const std::string key = "[[collider.key]]\ntime = 1\n";
     expectErrors(kSceneHead, {{"axis = [0, 1, 0]\n", "3:8", "collider.angle"},
                               {"axis = [0, 0, 0]\nangle = 3\n", "3:8", "collider.axis"},
@@ -96,7 +96,7 @@ TEST(SceneErrors, OfPlacesAndWaysOfColliders) {
                               {key + "scale = 2\n" + key, "5:1", "collider.key.scale"}});
 }
 
-TEST(SceneErrors, OfCollidersThatDeformOrPlay) {
+TEST(SceneErrors, LiveAndAnimatedColliders) {
     const std::string wobble = "deform = { amplitude = 40, frequency = 1 }\n";
     expectErrors(
         "", {{"[collider]\nmesh = \"a.obj\"\n", "2:8", "collider.deform"},
@@ -109,7 +109,7 @@ TEST(SceneErrors, OfCollidersThatDeformOrPlay) {
                               {"[[collider.material]]\nname = \"a\"\ncolor = [1, 1, 1]\n", "3:1", "play"}});
 }
 
-TEST(SceneErrors, OfCollidersOfAWorld) {
+TEST(SceneErrors, WorldColliders) {
     expectErrors("", {{"[[collider]]\nnode = \"door\"\n", "2:8", "world"},
                       {"world = \"/etc/world.json\"\n", "1:9", "world"}});
     expectErrors("world = \"w.json\"\n[collider]\nnode = ",
@@ -118,7 +118,7 @@ TEST(SceneErrors, OfCollidersOfAWorld) {
                   {"\"door\"\n[[collider.key]]\ntime = 1\n", "4:1", "collider.key"}});
 }
 
-TEST(SceneErrors, OfTypesAndMaterials) {
+TEST(SceneErrors, TypesAndMaterials) {
     expectErrors(kSceneHead, {{"[[type]]\nname = \"\"\n", "4:8", "type.name"},
                               {"[[type]]\nname = \"a\"\n[[type]]\nname = \"a\"\n", "6:8", "type"},
                               {"[[type]]\nstretch = 0.1\n", "4:11", "render.sprite"},
@@ -132,7 +132,7 @@ TEST(SceneErrors, OfTypesAndMaterials) {
                   {"[ground]\nenabled = false\n[[type]]\ncollides = [\"ground\"]\n", "8:13", "disables"}});
 }
 
-TEST(SceneErrors, OfLooksAndPictures) {
+TEST(SceneErrors, LooksAndPictures) {
     const std::string mesh = "[render]\nmesh = \"m.obj\"\n";
     const std::string atlas = "[render]\natlas = \"a.png\"\natlas_cells = [2, 2]\n";
     std::string keys;
@@ -165,7 +165,7 @@ TEST(SceneErrors, OfLooksAndPictures) {
                    "8:8", "is not ascending"}});
 }
 
-TEST(SceneErrors, OfTheCamera) {
+TEST(SceneErrors, Camera) {
     const std::string key = "[[camera.key]]\ntime = 1\neye = [1, 2, 3]\n";
     expectErrors(kSceneHead, {{"[camera]\neye = [1, 1, 1]\ntarget = [1, 1, 1]\n", "4:7", "camera.target"},
                               {"[camera]\neye = [1, 9, 1]\ntarget = [1, 1, 1]\n", "4:7", "aside"},
@@ -175,7 +175,7 @@ TEST(SceneErrors, OfTheCamera) {
                               {"[camera]\neye = [1, 2, 3]\n" + key, "4:7", "exclude each other"}});
 }
 
-TEST(SceneErrors, OfEmitters) {
+TEST(SceneErrors, Emitters) {
     const std::string sphere = "shape = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\n";
     const std::string key = "[[emitter.key]]\ntime = 1\n";
     expectErrors(
@@ -209,7 +209,7 @@ TEST(SceneErrors, OfEmitters) {
          {"velocity = [1, 0, 0]\ndirection = [0, 1, 0]\n", "4:12", "exclude each other"}});
 }
 
-TEST(SceneErrors, OfNamesOfTypes) {
+TEST(SceneErrors, TypeNames) {
     const std::string types = "[[type]]\nname = \"snow\"\n[[type]]\nname = \"smoke\"\n";
     expectErrors(kSceneHead + "[emitter]\n", {{"type = 16\n", "4:8", "out of range"},
                                               {"type = 1.5\n", "4:8", "whole number or the name"},
@@ -223,7 +223,7 @@ TEST(SceneErrors, OfNamesOfTypes) {
                   {"on = \"death\"\ncone = 10", "9:8", "does nothing"}});
 }
 
-TEST(SceneErrors, OfSurfacesThatGiveBirth) {
+TEST(SceneErrors, EmitterSurfaces) {
     expectErrors(kSceneHead + "[[emitter]]\n",
                  {{"shape = \"surface\"\n", "4:9", "emitter.attach"},
                   {"group = \"Head\"\n", "4:9", "emitter.shape"},
