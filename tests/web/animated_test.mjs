@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A body that plays a clip pushes particles as in relief-sim; set() changes its clip, and pose() has a pose of the page's own.
+// A body that plays a clip pushes particles as in relief-sim. set() changes its clip, and pose() sets a pose of the
+// page.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import path from "node:path";
@@ -11,13 +12,14 @@ import { distances, play, run, scratch, tomlOf } from "./lib/native.mjs";
 import { assertPushedAlike, pushedNatively, pushedTables } from "./lib/pushed.mjs";
 
 const kSteps = 48;
-/** A cube of side 2 whose node rises by 1 in 1 s, or sinks. */
+/** A cube of side 2 with two clips: its node rises or sinks by 1 in 1 s. */
 function bakeLift(folder) {
     execFileSync("python3", [path.join(root, "tests/bake/python/lift.py"), path.join(folder, "lift.gltf"), "rise=0,1,0", "sink=0,-1,0"]);
     run("relief", "bake", path.join(folder, "lift.gltf"), "--animated", "-q", "-o", path.join(folder, "lift.relief"));
 }
 
-// Sparks of the lift's top as it rises: as natively, on its side of the moment, and refused where it has no such part.
+// Sparks from the top of the rising lift: as in relief-sim, at the surface at their time of birth, and an error if the
+// part is missing.
 test("births on a surface are those of relief-sim", { timeout: 60_000 }, async (t) => {
     const folder = scratch(t);
     bakeLift(folder);
@@ -37,7 +39,7 @@ test("births on a surface are those of relief-sim", { timeout: 60_000 }, async (
             system.step();
         }
         const rows = [...system.read()];
-        // The emitters begin anew with other keys, and stay as they are where these are wrong.
+        // New keys restart the emitters; invalid keys change nothing.
         system.set({ emitter: [{ shape: "surface", attach: 0, rate: 100, speed: 1 }] });
         system.step();
         return { rows, gl: gl.getError(), errors: await errorsOf(
@@ -77,7 +79,7 @@ test("a body that plays a clip pushes as natively", { timeout: 60_000 }, async (
         system.set({ collider: [{ play: { clip: "sink" } }] });
         system.step();
         tops.push(system.info.bodies[0].matrix[13]);
-        // The same way by matrices of the page.
+        // The same motion by matrices of the page.
         const own = make();
         for (let i = 1; i <= steps; ++i) {
             own.pose(0, [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, i / 64, 0, 1]);

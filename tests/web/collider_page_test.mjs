@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page of one collider, which needs no build of the web: its picture against closed forms of a ball and a cube, and its shaders
-// against `relief query`, for each kind of map.
+// The page of one collider, which needs no web build. Compares its picture with closed forms of a ball and a cube, and
+// its shaders with `relief query`, for each kind of map.
 import assert from "node:assert/strict";
 import { writeFileSync } from "node:fs";
 import path from "node:path";
@@ -27,11 +27,11 @@ function ball(rows) {
     return points.join("") + faces.join("");
 }
 
-/** Runs in the page: rays through pixels against a ball of radius 1, or a box of these half sides. */
+/** Runs in the page. Compares rays through pixels with a ball of radius 1, or a box with these half sides. */
 function compare({ half, step }) {
     const { gl, body, camera, look, panel, view } = reliefView;
     look.floor = null;
-    document.getElementById("panel").hidden = document.getElementById("title").hidden = true; // for its room
+    document.getElementById("panel").hidden = document.getElementById("title").hidden = true; // they cover the picture
     panel.frame();
     const { data, width, height, error } = reliefView.pixelsNow();
     const depths = keptDepths(reliefView);
@@ -75,7 +75,7 @@ function compare({ half, step }) {
             const { d, hit } = cast(px + 0.5, py + 0.5);
             const around = [[-2, -2], [2, -2], [-2, 2], [2, 2]].map(([a, b]) => cast(px + 0.5 + a, py + 0.5 + b).hit);
             if (around.some((one) => !one !== !hit || (hit && dot(one.n, hit.n) < 0.8))) {
-                continue; // an edge, or the outline
+                continue; // at an edge or the outline
             }
             const z = 2 * depths[fine * (py * fine * width + px)] - 1;
             found.wrong += z < 1 - 1e-6 !== Boolean(hit);
@@ -131,7 +131,7 @@ test("the shaders of a page answer as relief query, for each kind of map", { tim
     const { page } = await openFile(t, at("kinds.html"), { viewport: { width: 200, height: 150 } });
     await page.evaluate(`window.gpuQuery = ${gpuQuery}`);
     const { distance, normal, map } = await page.evaluate((list) => {
-        reliefView.gl.getExtension("EXT_color_buffer_float"); // to read them
+        reliefView.gl.getExtension("EXT_color_buffer_float"); // to read float textures
         return gpuQuery(reliefView.gl, reliefView.body.gpu, list);
     }, points);
     assert.equal(answers.length, distance.length);

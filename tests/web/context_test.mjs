@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The GPU is reset in the middle of stepping (WEBGL_lose_context): said by a ReliefError, and once the browser gives the
-// context back, restart() and new GpuColliders go on.
+// A GPU reset between steps (WEBGL_lose_context) causes a ReliefError. After the browser restores the context,
+// restart() and new GpuColliders work.
 import assert from "node:assert/strict";
 import test from "node:test";
 
@@ -19,7 +19,7 @@ test("a lost context is reported, and restored", { timeout: 60_000 }, async (t) 
                         render: { point_size: 0.1 } };
         const [system, second, gone] = [0, 1, 2].map(() => new relief.ParticleSystem(gl, { collider, scene, shaded: false }));
         const gpu = new relief.GpuCollider(gl, collider);
-        const other = document.createElement("canvas").getContext("webgl2"); // which loses nothing
+        const other = document.createElement("canvas").getContext("webgl2"); // is not lost
         const elsewhere = new relief.ParticleSystem(other, { collider, scene, shaded: false });
         const view = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -12, 1];
         const projection = [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1.02, -1, 0, 0, -0.2, 0];

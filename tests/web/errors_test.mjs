@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a page does wrong is answered by a ReliefError of one sentence that names the thing, and leaves the rest usable.
+// Invalid calls throw a ReliefError with one sentence that names the cause. All other objects stay usable.
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
@@ -9,7 +9,7 @@ import { bakeCube } from "./lib/boxes.mjs";
 import { libraryPage } from "./lib/library.mjs";
 import { run, scratch } from "./lib/native.mjs";
 
-// What is done (with collider, gpu, system, made for each), and what the sentence says.
+// Code (with a collider, gpu and system created for each), and the expected message.
 const kErrors = {
     // loading
     "relief.load('/files/nothing.relief')": /nothing\.relief: the server returned 404/,
@@ -66,7 +66,7 @@ const kErrors = {
     "system.set(3)": /set\(\) takes a part of a scene/,
     "system.set({ forces: { gravitation: 3 } })": /^scene: unknown key 'forces.gravitation'/,
     "system.set({ particles: { capacity: 4096 } })": /create a new system/,
-    // asking
+    // queries
     "collider.query([1, 2])": /points: the number of values, 2, is not a multiple of 3/,
     "collider.query()": /points must be an array/,
     "collider.query([1, NaN, 2])": /points: number 1 is NaN/,
@@ -78,7 +78,7 @@ const kErrors = {
     "gpu.attach(null)": /linked WebGLProgram/,
     "gpu.bind(1000)": /no texture unit 1000/,
     "gpu.bind(0, -1)": /no uniform block binding -1/,
-    // what is disposed of
+    // disposed objects
     "(collider.dispose(), collider.query([0, 0, 0]))": /this collider is disposed of/,
     "(collider.dispose(), new relief.GpuCollider(gl, collider))": /this collider is disposed of/,
     "(collider.dispose(), new relief.ParticleSystem(gl, { collider }))": /this collider is disposed of/,

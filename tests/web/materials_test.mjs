@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Materials and [[spawn]] in the browser: as many births on one material as relief-sim has, where it has them, and as many
-// deaths on another; and the hits that a page gets to know, from a WebGL2 that maps no buffers, are those that relief-sim lists.
+// Materials and [[spawn]] in the browser: the same births on one material and the same deaths on another as in
+// relief-sim. The hits read back by the page, from a WebGL2 without mapped buffers, match the list of relief-sim.
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
@@ -10,7 +10,7 @@ import { libraryPage } from "./lib/library.mjs";
 import { distances, play, run, scratch } from "./lib/native.mjs";
 
 const kSteps = 120;
-// A slab whose halves are oak and ice.
+// A slab, one half oak, the other ice.
 const kMesh = `v -1 0 -1\nv 0 0 -1\nv 1 0 -1\nv -1 0 1\nv 0 0 1\nv 1 0 1
 v -1 0.2 -1\nv 0 0.2 -1\nv 1 0.2 -1\nv -1 0.2 1\nv 0 0.2 1\nv 1 0.2 1
 usemtl oak\nf 1 2 5 4\nf 7 10 11 8\nf 1 4 10 7\nf 4 5 11 10\nf 2 1 7 8
@@ -81,7 +81,7 @@ test("a browser knows the material that is hit as relief-sim does", { timeout: 1
     assert.equal(error, 0, "a GL error");
     assert.deepEqual(said, []);
     assert.equal(info.born, 400 + 2 * oak);
-    // On ice a drop has half a second left, of which it has fallen for some: at the end none is there any more.
+    // Drops on ice live for half a second, part of which they have spent falling: none remain at the end.
     assert.ok(particles.size < info.born - 100, `${particles.size} of ${info.born}`);
     const far = Math.max(...distances(rows, particles));
     assert.ok(far < 1e-3, `a particle is ${far} from where it is natively`);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the page of `relief view` behaves without being told: it keeps up on a slow machine, loads nothing, and shows no control
-// that does nothing.
+// Default behaviour of the page of `relief view`: it keeps up on a slow machine, loads nothing, and shows no control
+// without effect.
 import assert from "node:assert/strict";
 import path from "node:path";
 import test from "node:test";
@@ -54,7 +54,7 @@ test("where frames take 50 ms the page draws less, says so, and draws all of it 
     bakeCube(folder);
     const { page, said } = await openFile(t, scenePage(folder, path.join(folder, "cube.relief")), { viewport: { width: 220, height: 200 } });
     const drawn = () => page.evaluate(() => reliefView.gl.drawingBufferWidth / document.getElementById("canvas").clientWidth);
-    // The clock of a slow machine.
+    // A simulated clock of a slow machine.
     await page.evaluate(() => {
         let now = performance.now();
         window.requestAnimationFrame = (f) => setTimeout(() => f((now += 50)), 0);
@@ -85,10 +85,10 @@ test("finer pixels come back where frames are quick, and are not tried where the
     assert.equal(quality.pixels, 0.5);
     frames(() => 16, 20_000);
     assert.equal(quality.pixels, 1);
-    // A machine that needs its time for pixels: full ones take 60 ms.
+    // A machine limited by pixels: frames at full resolution take 60 ms.
     const slow = (pixels) => Math.max(60 * pixels ** 2, 16.7);
     frames(slow, 10_000);
     assert.deepEqual(frames(slow, 60_000), new Set([0.71]));
-    frames(() => 1500, 20_000); // a page that slept
+    frames(() => 1500, 20_000); // the page was suspended
     assert.equal(quality.pixels, 0.71);
 });

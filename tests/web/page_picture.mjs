@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes the README's picture of the page: node tests/web/page_picture.mjs FILE.jpg, after scripts/build.sh release.
+// Draws the README's picture of the page: node tests/web/page_picture.mjs FILE.jpg, after scripts/build.sh release.
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import path from "node:path";

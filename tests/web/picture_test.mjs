@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene by its meshes in a browser: the picture that relief-sim makes, snow and footprints included; and the page of
-// the page of such a scene.
+// A scene drawn from its meshes in a browser: the same picture as in relief-sim, with snow and footprints; and the page
+// of such a scene.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
@@ -16,7 +16,7 @@ import { dataOf, viewer, withData } from "./lib/view.mjs";
 const kSteps = 60;
 const [kWidth, kHeight] = [320, 180];
 
-// A figure walks over green ground, past a red block, and it begins to snow.
+// A figure walks over green ground past a red block while it starts to snow.
 const kScene = `
 [[collider]]
 file = "ground.relief"
@@ -91,7 +91,7 @@ test("a browser draws a scene by its meshes as relief-sim does", { timeout: 300_
         const unit = (v) => v.map((x) => x / Math.hypot(...v));
         const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-        /** The scene's camera as it is now. */
+        /** The scene's current camera. */
         const camera = () => {
             const { eye, target, fov } = system.info.camera;
             const back = unit(eye.map((x, k) => x - target[k]));
@@ -106,7 +106,7 @@ test("a browser draws a scene by its meshes as relief-sim does", { timeout: 300_
                              0, 0, 2 * far * near / (near - far), 0],
             };
         };
-        // Twice as fine, as relief-sim's frames are the mean of 2 x 2.
+        // At twice the resolution, because frames of relief-sim average 2 x 2 pixels.
         const color = gl.createTexture();
         gl.bindTexture(gl.TEXTURE_2D, color);
         gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA8, 2 * width, 2 * height);
@@ -140,7 +140,7 @@ test("a browser draws a scene by its meshes as relief-sim does", { timeout: 300_
             const { data } = context.getImageData(0, 0, width, height);
             return data.filter((_, i) => i % 4 < 3);
         };
-        /** How many pixels differ, and the mean difference of a channel. */
+        /** The number of different pixels, and the mean difference per channel. */
         const compare = (a, b) => {
             let [pixels, sum] = [0, 0];
             for (let i = 0; i < a.length; i += 3) {
@@ -154,7 +154,7 @@ test("a browser draws a scene by its meshes as relief-sim does", { timeout: 300_
         for (let i = 0; i < steps; ++i) {
             system.step();
         }
-        const last = drawn(); // with the prints of all steps between
+        const last = drawn(); // with the footprints of all steps in between
         system.restart();
         const again = drawn();
         const plain = new relief.ParticleSystem(gl, { scene: { collider: { file: "g.relief" } }, files: { "g.relief": files["ground.relief"] } });
@@ -175,7 +175,7 @@ test("a browser draws a scene by its meshes as relief-sim does", { timeout: 300_
         assert.ok(pixels < 0.01 * kWidth * kHeight && mean < 1.5, `${pixels} pixels, ${mean}`);
     }
     assert.ok(got.changed[0] > 0.2 * kWidth * kHeight, "snow covers the ground");
-    assert.deepEqual(got.again, [0, 0]); // nothing of the run before is left
+    assert.deepEqual(got.again, [0, 0]); // nothing remains of the previous run
     assert.equal(got.gl, 0);
     assert.deepEqual(spoken(said), []);
 });
@@ -199,7 +199,7 @@ test("the page shows a scene by its meshes, or by its maps", { timeout: 300_000 
         return { red, blue, error };
     });
     const pixels = 480 * 300;
-    // The camera is the scene's until a hand takes it; near things are not cut away.
+    // The camera is the scene's until the user moves it; near geometry is not clipped.
     const eye = () => page.evaluate("reliefView.camera.eye");
     const picture = await shares();
     const wanted = () => page.evaluate("reliefView.particles.system.info.camera.eye");
@@ -209,7 +209,7 @@ test("the page shows a scene by its meshes, or by its maps", { timeout: 300_000 
     await page.click("#tab-view");
     assert.ok(await page.locator("#show-picture").isVisible());
     assert.ok(!await page.locator("#show-mesh").isVisible());
-    // A click finds the block in the picture, too.
+    // A click also finds the block in the picture.
     await page.evaluate(() => reliefView.worldPanel.pick(reliefView.bodies.at(reliefView.view.kept, reliefView.camera.matrices(480, 300), 0.5, 0.5)));
     assert.notEqual(await page.locator("#picked-name").textContent(), "");
     await page.click("#show-surface span");
@@ -232,7 +232,7 @@ test("the page shows a scene by its meshes, or by its maps", { timeout: 300_000 
     await page.evaluate("reliefView.camera.orbit(0.5, 0)");
     const taken = await eye();
     assert.deepEqual(await after(10), taken);
-    // A slice is of the maps; from the beginning the camera is the scene's again.
+    // A slice shows the maps. After a restart the camera is the scene's again.
     await page.evaluate("document.getElementById('slice-on').click()");
     assert.equal(await page.evaluate("reliefView.look.show"), "surface");
     await page.evaluate("reliefView.restart()");
@@ -240,7 +240,7 @@ test("the page shows a scene by its meshes, or by its maps", { timeout: 300_000 
     assert.equal(await page.locator("#message p").textContent(), "");
     assert.deepEqual(spoken(said), []);
 
-    // A mesh that is gone is named by the tool, and by a page whose data lacks it.
+    // The tool names a missing mesh, and so does a page whose data lacks it.
     delete made.files["meshes/block.obj"];
     const broken = await open(withData(path.join(folder, "made.html"), made), { viewport: { width: 480, height: 300 } });
     await broken.page.waitForFunction("document.querySelector('#message p').textContent !== ''");

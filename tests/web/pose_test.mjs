@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// set() moves a collider while it plays: as relief-sim moves one by its keys.
+// set() moves a collider during play, as keys do in relief-sim.
 import assert from "node:assert/strict";
 import test from "node:test";
 
@@ -33,7 +33,7 @@ position = [0.0, 1.0, 0.0]
         }
         const rows = [...system.read()];
         system.set({ collider: { angle: 32 } });
-        // Of several one moves, and the other stays.
+        // With two colliders, one moves and the other stays.
         const two = new relief.ParticleSystem(gl, {
             scene: { ...rest, collider: [{ file: "c.relief" }, { file: "c.relief", position: [4, 0, 0] }] }, files: { "c.relief": collider },
         });

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A collider of every format, asked at 10,000 points in the browser: by the same C++ as WebAssembly, which must give what
-// the native tool gives, digit by digit; and by the shader in WebGL2.
-//
-// Tolerance of the shader: distance within 1e-5 of the box's longest side
-// and normal within 1e-5, on all points but one in 1,000, which may lie on a texel's edge and fall to the neighbour.
+// Queries a collider of every format at 10,000 points in the browser. The same C++ as WebAssembly must give exactly the
+// results of the native tool; the WebGL2 shader is compared with a tolerance.
+// Tolerance of the shader: distances within 1e-5 of the box's longest side and normals within 1e-5, except for one in
+// 1,000 points, which may be at a texel's edge and fall into the neighbour.
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
@@ -41,7 +40,7 @@ function writePoints(file) {
     return { points: points.flat(), side: Math.max(...high.map((to, i) => to - low[i])) };
 }
 
-/** A line of `relief query` as numbers; NaN where no map votes. */
+/** A line of `relief query` as numbers; NaN if no map votes. */
 function nativeSample(line) {
     const [, , , f, x, y, z, map] = line.split(",");
     return { distance: f === "" ? NaN : Number(f), normal: [x, y, z].map(Number), map: map === "" ? -1 : Number(map) };

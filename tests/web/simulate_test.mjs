@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// 300 steps of snow on the bunny, in the browser and by relief-sim.
-//
-// Both give birth to the same particles with the same draws. Then two drivers' shaders differ in the last bits of some
-// square roots, and a particle that slides along an edge may fall on either side of it; so most particles must be where
-// they are natively, and all of them as a whole: how many lie on the body, and how high they lie.
+// 300 steps of snow on the bunny, in the browser and in relief-sim.
+// Both spawn the same particles with the same draws. The shaders of two drivers differ in the last bits of some square
+// roots, and a particle that slides along an edge may fall to either side. So most particles must match their native
+// positions, and all must match in total: how many lie on the body, and how high.
 import assert from "node:assert/strict";
 import { writeFileSync } from "node:fs";
 import path from "node:path";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Relief leaves a page's WebGL2 context as it found it: a page sets every piece of its state to something odd, then loads,
-// steps, draws, asks, starts over and disposes, and finds all of it unchanged after each.
+// Relief restores a page's WebGL2 state. The page sets all state to unusual values, then loads, steps, draws, queries,
+// restarts and disposes, and compares the state after each.
 import assert from "node:assert/strict";
 import test from "node:test";
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A world of tiles that is streamed: which files come when, that drops lie on the ground that has come, and what of it that is
-// missing or damaged does. The hills of tests/cli/heights.py have a closed form.
+// A streamed world of tiles: which files are fetched and when, drops rest on the loaded ground, and the effect of
+// missing or damaged files. The hills of tests/cli/heights.py have a closed form.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { cpSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -14,7 +14,7 @@ import { openFile } from "./lib/view.mjs";
 
 const kRadius = 30;
 const kSteps = 130; // until all lie on the ground
-/** Drops that fall on 40 m by 40 m of ground. */
+/** Drops that fall on an area of 40 m by 40 m. */
 const emitterAt = (x, z) => ({
     box_min: [x, 62, z], box_max: [x + 40, 66, z + 40], burst: 500, rate: 0, lifetime: 100,
     velocity: [0, -30, 0], velocity_spread: [0, 0, 0],
@@ -33,7 +33,7 @@ function ground(x, z) {
             t * ((1 - s) * sample(i, j + 1) + s * sample(i + 1, j + 1))) * 100 / 65535;
 }
 
-/** How far the lowest of such particles lies below the ground, and how many there are. */
+/** The greatest depth of a particle below the ground, and the number of particles. */
 function below(rows) {
     let deepest = -Infinity;
     for (let i = 0; i < rows.length; i += 12) {
@@ -42,7 +42,7 @@ function below(rows) {
     return { count: rows.length / 12, deepest };
 }
 
-/** A world of nine tiles in the folder, of which eight have a coarse container; as JSON. */
+/** Bakes a world of nine tiles, eight of them with a coarse container. @returns it as JSON */
 function bakeTiles(folder) {
     execFileSync("python3", [path.join(root, "tests/cli/heights.py"), path.join(folder, "hills.r16"), "560"]);
     run("relief", "bake", path.join(folder, "hills.r16"), "--heights", "low=0,high=100,tile=256", "--world", path.join(folder, "w"), "-q");
@@ -53,7 +53,7 @@ function bakeTiles(folder) {
     return world;
 }
 
-/** Files of the tiles with a coarse container whose boxes reach into a ball. */
+/** Files of tiles that have a coarse container and whose boxes intersect a ball. */
 function tilesIn(world, center, radius) {
     return world.bodies.flatMap((body) => {
         const { file, coarse, min, max } = world.colliders[body.collider];
@@ -65,10 +65,10 @@ function tilesIn(world, center, radius) {
     }).sort();
 }
 
-/** Of the drops of emitterAt(). */
+/** Tiles near the drops of emitterAt(). */
 const tilesAt = (world, x, z) => tilesIn(world, [x + 20, 64, z + 20], Math.hypot(20, 2, 20) + kRadius);
 
-/** Names of the files that the page fetches from here on. */
+/** Collects the names of files that the page fetches from now on. */
 function fetched(page) {
     const names = [];
     page.on("request", (request) => {
@@ -92,7 +92,7 @@ test("tiles are fetched when they are needed, and drops lie on them", { timeout:
     }, { scene: kScene, radius: kRadius });
     assert.deepEqual(taken(), ["world.json", ...world.colliders.map((one) => (one.coarse ?? one).file)].sort());
 
-    // As a system that has all from the beginning, bit by bit, once what is near has come.
+    // Once nearby tiles are loaded, results are bit-identical to those of a system with all tiles.
     const near = await page.evaluate(async (steps) => {
         const before = { ...system.info.stream };
         await system.loaded();
@@ -108,7 +108,7 @@ test("tiles are fetched when they are needed, and drops lie on them", { timeout:
     assert.deepEqual([near.after.wanted, near.after.present, near.after.failed], [first.length, first.length, 0]);
     const whole = await page.evaluate(async (steps) => {
         const full = await relief.loadWorld("/files/w/world.json");
-        const all = new relief.World({ ...world.files, ...full.files }); // its files are there, the coarse ones too
+        const all = new relief.World({ ...world.files, ...full.files }); // has all files, including the coarse ones
         const systems = [new relief.ParticleSystem(gl, { world: full, scene }),
                          new relief.ParticleSystem(gl, { world: all, scene: { ...scene, stream: { radius: 30 } } }),
                          new relief.ParticleSystem(gl, { world: new relief.World(world.files, { radius: 30, load: () => new Promise(() => {}) }), scene })];
@@ -124,10 +124,10 @@ test("tiles are fetched when they are needed, and drops lie on them", { timeout:
     assert.equal(whole.stream[2].present, 0);
     assert.equal(below(near.rows).count, 500);
     assert.ok(below(near.rows).deepest < 0.05, JSON.stringify(below(near.rows)));
-    assert.ok(below(whole.rows[2]).deepest > 0.2, JSON.stringify(below(whole.rows[2]))); // or the coarse ground is as good
+    assert.ok(below(whole.rows[2]).deepest > 0.2, JSON.stringify(below(whole.rows[2]))); // the coarse ground differs
     taken();
 
-    // The emitter goes elsewhere: nothing waits, and the tiles there are on time for its drops.
+    // The emitter moves: nothing blocks, and the tiles there arrive in time for its drops.
     const second = tilesAt(world, 440, 340);
     const fresh = second.filter((file) => !first.includes(file));
     assert.ok(fresh.length >= 1);
@@ -144,7 +144,7 @@ test("tiles are fetched when they are needed, and drops lie on them", { timeout:
     assert.equal(below(gone.rows).count, 1000);
     assert.ok(below(gone.rows).deepest < 0.05, JSON.stringify(below(gone.rows)));
 
-    // So do places of the program's own, and the eye of the pictures.
+    // So do positions set by the program, and the camera's position.
     const center = [20, 40, 500];
     const there = tilesIn(world, center, 10);
     const eye = [540, 40, 20];
@@ -162,7 +162,7 @@ test("tiles are fetched when they are needed, and drops lie on them", { timeout:
     }, eye);
     assert.deepEqual(taken(), seen.filter((file) => !known.includes(file) && !there.includes(file)));
 
-    // Starting over, and an end while files are on their way.
+    // Restarts, and disposal during downloads.
     const again = await page.evaluate(async () => {
         system.restart();
         const begun = system.info.stream.present;
@@ -180,14 +180,14 @@ test("tiles are fetched when they are needed, and drops lie on them", { timeout:
     assert.match(again.end, /disposed of/);
     assert.ok(Math.abs(again.kept) < 60, String(again.kept));
     assert.equal(again.gl, 0);
-    // The end has stopped fetches, and a driver remarks on copies into a texture that nothing has drawn with yet.
+    // Disposal aborts fetches, and a driver reports copies into textures that were never drawn.
     assert.deepEqual(spoken(said).filter((line) => !/^failed: /.test(line)), []);
 });
 
 test("a tile that is missing or damaged is named once, and its coarse one stays", { timeout: 120_000 }, async (t) => {
     const folder = scratch(t);
     const world = bakeTiles(folder);
-    const tiles = tilesIn(world, [256, 40, 256], 40); // about a corner of four
+    const tiles = tilesIn(world, [256, 40, 256], 40); // around a corner of four
     assert.ok(tiles.length >= 3);
     const [gone, broken] = tiles;
     rmSync(path.join(folder, "w", gone));
@@ -247,7 +247,7 @@ test("a tile that is missing or damaged is named once, and its coarse one stays"
     assert.match(named[1], new RegExp(`${broken}.* does not match its hash.*; its coarse collider remains in use$`));
     assert.deepEqual([got.info.wanted, got.info.present, got.info.failed], [count, count - 2, 2]);
     assert.equal(below(got.rows).count, 500);
-    assert.ok(below(got.rows).deepest < 3, JSON.stringify(below(got.rows))); // as coarse as it is
+    assert.ok(below(got.rows).deepest < 3, JSON.stringify(below(got.rows))); // tolerance of the coarse ground
     assert.equal(got.lines.slice(2).length, count);
     assert.ok(got.lines.slice(2).every((line) => /'load' returned no Uint8Array/.test(line)));
     const expected = [/streamWorld\(\) needs a radius above 0/, /needs a radius above 0/, /memory must be a number/, /no option 'speed'/, /404/, /needs 'load'/,
@@ -261,7 +261,7 @@ test("a tile that is missing or damaged is named once, and its coarse one stays"
     });
     assert.deepEqual(got.allowed, ["no error", "no error"]);
     assert.equal(got.gl, 0);
-    // A system without 'warn' writes the same on the console, once each.
+    // Without 'warn' the system logs the same warnings to the console, once each.
     const warned = said.filter((line) => line.startsWith("warning: "));
     assert.equal(warned.length, 2, said.join("\n"));
     assert.deepEqual(said.filter((line) => !line.startsWith("warning: ") && !line.includes("404")), []);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The picture of a collider holds all of it: against rays that ask the CPU's maps step by step. Sheets and struts thinner than
-// any grid would find, in the formats that there are.
+// The picture of a collider shows all of it, compared with rays that sample the CPU's maps step by step. Sheets and
+// struts are thinner than a grid could resolve, in every format.
 import assert from "node:assert/strict";
 import { writeFileSync } from "node:fs";
 import path from "node:path";
@@ -10,14 +10,14 @@ import { boxes } from "./lib/boxes.mjs";
 import { bunny, run, scratch } from "./lib/native.mjs";
 import { keptDepths, scenePage, viewer } from "./lib/view.mjs";
 
-/** A point turned by so many degrees, about no axis of its own. */
+/** A point rotated by `turn` degrees about an oblique axis. */
 function turned([x, y, z], turn) {
     const [c, s] = [Math.cos(turn * Math.PI / 180), Math.sin(turn * Math.PI / 180)];
     const [u, v] = [c * x - s * y, s * x + c * y];
     return [u, c * v - s * z, s * v + c * z];
 }
 
-/** Boxes [x0, y0, z0, x1, y1, z1] as an OBJ file, turned. */
+/** Boxes [x0, y0, z0, x1, y1, z1] as an OBJ file, rotated. */
 const obj = (list, turn) => boxes(list.map((box) => ({ low: box.slice(0, 3), high: box.slice(3) })), (corner) => turned(corner, turn));
 
 // A table of plates 0.4 % thick, and a tower of struts: legs 0.8 % wide, seven floors.
@@ -28,18 +28,18 @@ const struts = [
                                                               [-0.5, y, 0.492, 0.5, y + 0.016, 0.508],
                                                               [-0.508, y, -0.5, -0.492, y + 0.016, 0.5],
                                                               [0.492, y, -0.5, 0.508, y + 0.016, 0.5]])];
-// Both sides in one cell: a plate 0.1 % thick, and 0.2 % of air between two blocks, seen from before its mouth.
+// Both sides in one cell: a plate 0.1 % thick, and an air gap of 0.2 % between two blocks, seen from its opening.
 const plate = [[-1, -0.001, -0.7, 1, 0.001, 0.7]];
 const gap = [[-1, 0.002, -0.7, 1, 0.3, 0.7], [-1, -0.3, -0.7, 1, -0.002, 0.7]];
 const mouth = [[0.15, 0.03, 0.9], [0, 0, 0.65]].map((place) => turned(place, 25));
 const square = "v -1 0 -1\nv 1 0.3 -1\nv 1 0.3 1\nv -1 0 1\nf 4 3 2 1\n";
 
-/** Runs in the page: of rays through pixels, what the picture has, and what the CPU has. */
+/** Runs in the page. Compares rays through pixels in the picture and on the CPU. */
 async function compare([columns, rows, steps, places]) {
     const { view, camera, body, look } = reliefView;
     look.floor = null;
     document.getElementById("sheets").hidden = true;
-    Object.assign(camera, { yaw: 0.6, pitch: 0.32 }); // not the scene's
+    Object.assign(camera, { yaw: 0.6, pitch: 0.32 }); // instead of the scene's camera
     camera.frame(body.box, reliefView.panel.room());
     if (places) {
         camera.look(...places);
@@ -76,7 +76,7 @@ async function compare([columns, rows, steps, places]) {
             const at = Array.from({ length: steps }, (_, i) => from + (i + 0.5) / steps * (to - from));
             tries.push({ at, drawn, slack: 2e-3 * longest / l });
             at.forEach((t) => points.push(...[0, 1, 2].map((k) => eye[k] + t * d[k])));
-            // And closely about what is drawn, 5 × 5 × 5 points.
+            // Also 5 × 5 × 5 points around the drawn position.
             for (let i = 0; i < 125 && drawn < Infinity; ++i) {
                 points.push(...[0, 1, 2].map((k) => eye[k] + drawn * d[k] + (Math.floor(i / 5 ** k) % 5 - 2) * 1.5e-4 * longest));
             }
@@ -84,7 +84,8 @@ async function compare([columns, rows, steps, places]) {
         const { distance, map } = body.collider.query(Float32Array.from(points));
         let i = 0;
         const inside = (least = 0) => (map[i] >= 0 && distance[i] < -least ? ++i : (++i, 0)) > 0;
-        // The picture's rays go through a box whose corners the rasterizer rounds to parts of a pixel: past an outline they may slip.
+        // The picture's rays pass through a box whose corners the rasterizer rounds to subpixels: they may miss just
+        // beyond an outline.
         const least = 5e-5 * longest;
         for (const { at, drawn, slack } of tries) {
             const first = at.map((t) => (inside(least) ? t : Infinity)).reduce((a, b) => Math.min(a, b), Infinity);
@@ -92,7 +93,7 @@ async function compare([columns, rows, steps, places]) {
             answer.rays += 1;
             answer.drawn += drawn < Infinity;
             answer.seen += first < Infinity;
-            answer.holes += first < Infinity && drawn > first + slack; // inside, but drawn farther back or not at all
+            answer.holes += first < Infinity && drawn > first + slack; // inside, but drawn farther away or not at all
             answer.nothing += drawn < Infinity && !around;
         }
     }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// samples/web: particles in a picture of three.js hide its meshes, and are hidden by them.
-//
-// A wall of particles that stay where they are is seen straight on. A ball before it and one that it cuts through hide it;
-// a ball behind it is hidden.
+// samples/web: particles hide the meshes of a three.js picture, and are hidden by them.
+// A wall of resting particles is seen head-on. A ball in front of it and one that intersects it hide the wall; a ball
+// behind it is hidden.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import path from "node:path";
@@ -50,7 +49,7 @@ test("particles and three's meshes hide each other", { timeout: 60_000 }, async 
         const [before, inside, behind] = [ball(-0.5, 0.2), ball(0, 0), ball(0.5, -0.2)];
         const accepted = system.spawn(births);
         for (let i = 0; i < 30; ++i) {
-            system.step(1 / 60); // they fade in
+            system.step(1 / 60); // particles fade in
         }
         camera.position.set(at.x, at.y + 0.75 * side, at.z + 3 * side);
         controls.target.set(at.x, at.y + 0.75 * side, at.z);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything of relief-particles once, for the compiler: types_test.mjs.
+// Uses every declaration of relief-particles once, for the compiler: types_test.mjs.
 import Relief, { Collider, GpuCollider, ParticleSystem, ReliefError, World, init, load, streamWorld } from "relief-particles";
 import type { Answers, Birth, Scene } from "relief-particles";
 
@@ -23,9 +23,9 @@ export async function everything(gl: WebGL2RenderingContext, program: WebGLProgr
     system.set({ forces: { wind: [1, 0, 0], drag: 1 } });
     system.set({ collider: { position: [0, 1, 0], axis: [0, 1, 0], angle: 30 } });
     system.set({ collider: [{}, { position: [0, 1, 0] }] });
-    // @ts-expect-error: a position is three numbers
+    // @ts-expect-error: a position has three numbers
     system.set({ collider: { position: 1 } });
-    // @ts-expect-error: a collider has no such key
+    // @ts-expect-error: unknown key
     system.set({ collider: { positoin: [0, 1, 0] } });
     system.step();
     system.step(1 / 60);
@@ -40,13 +40,13 @@ export async function everything(gl: WebGL2RenderingContext, program: WebGLProgr
     streamed.near([{ position: [0, 1, 0], radius: 2 }]);
     await streamed.loaded();
     const missing: number = (streamed.info.stream?.wanted ?? 0) - (own.stream?.radius ?? 0) + (island.colliders[0].coarse?.gpu_bytes ?? 0);
-    // @ts-expect-error: a radius is needed
+    // @ts-expect-error: radius is required
     await streamWorld("island/world.json", { memory: 64 });
-    // @ts-expect-error: a time is a number
+    // @ts-expect-error: time must be a number
     system.step("1");
-    // @ts-expect-error: there is no such option
+    // @ts-expect-error: unknown option
     new ParticleSystem(gl, { colider: collider });
-    // @ts-expect-error: a drawing needs both matrices
+    // @ts-expect-error: both matrices are required
     system.draw({ view });
     try {
         other.step();

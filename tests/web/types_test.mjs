@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief.d.ts holds for an example that uses everything, by `tsc --strict`; and it names what relief.js exports.
+// relief.d.ts type-checks an example that uses everything, by `tsc --strict`, and declares exactly the exports of
+// relief.js.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { copyFileSync, mkdirSync, readFileSync, symlinkSync, writeFileSync } from "node:fs";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page of `relief view`: opened from disk with a bunny in it, each of its features once, and everything that may be
-// given to it by error. Nothing may be said on the console, and no GL error may be left.
+// The page of `relief view`, opened from disk with a bunny: each feature once, and every invalid input. The console
+// must stay empty, and no GL error may remain.
 import assert from "node:assert/strict";
 import path from "node:path";
 import test from "node:test";
@@ -14,7 +14,7 @@ function bake(folder) {
     return file;
 }
 
-/** Runs in the page: what share of the canvas differs from a picture kept before, and keeps this one. */
+/** Runs in the page. Returns the fraction of the canvas that differs from the previous picture, and stores this one. */
 const kChange = `(() => {
     const now = reliefView.pixelsNow();
     if (now.error) throw new Error("GL error " + now.error);
@@ -97,7 +97,7 @@ test("patches show their cells", { timeout: 300_000 }, async (t) => {
     await page.waitForFunction("reliefView.panel.picturesDone");
     assert.match(await page.locator("#maps button").textContent(), /0 patches in \d+ × \d+ × \d+ roots, up to [1-9]\d* levels/);
     assert.ok(await page.locator("#patches-note").isVisible());
-    // The smallest cells are the darkest, and all levels show.
+    // The smallest cells are the darkest, and all levels are visible.
     const colors = await page.evaluate(() => {
         const canvas = document.querySelector("#maps canvas");
         const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
@@ -191,7 +191,7 @@ test("a browser without what the page needs is told so; a lost context is made a
         window.bodyBefore = reliefView.body;
         window.loss.restoreContext();
     });
-    // The page loads itself anew, and has no reliefView for a moment.
+    // The page reloads itself, and briefly has no reliefView.
     await page.waitForFunction("window.reliefView?.body && reliefView.body !== window.bodyBefore");
     assert.equal(await page.locator("#message p").textContent(), "");
     assert.equal(await page.evaluate("reliefView.pixelsNow().error"), 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pages as `relief view` and `relief-sim --page` make them: a checked sheet, a scene of several bodies, and a world.
+// Pages made by `relief view` and `relief-sim --page`: a checked sheet, a scene of several bodies, and a world.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { writeFileSync } from "node:fs";
@@ -15,7 +15,7 @@ const kViewport = { viewport: { width: 700, height: 400 }, reducedMotion: "reduc
 
 const opened = (t, file, more = {}) => openFile(t, file, { ...kViewport, ...more });
 
-/** A sheet of the folder's own, and the page of it. */
+/** Bakes a sheet in the folder, and makes its page. */
 function viewSheet(folder, ...words) {
     const [mesh, sheet, page] = ["sheet.obj", "sheet.relief", "sheet.html"].map((name) => path.join(folder, name));
     writeFileSync(mesh, square);
@@ -39,7 +39,7 @@ test("a check says what relief check says; a sheet is right in the middle of its
     assert.match(await page.locator("#sheets-note").textContent(), /Sheets have a thickness of [0-9.]+/);
     const depth = await page.evaluate("reliefView.look.depth");
     assert.ok(depth > 1e-3, `half of the thickness is ${depth}`);
-    // The heat map says so too: nothing in the strong colours of the range's ends.
+    // The heat map agrees: no pixel has the strong colours of the range's ends.
     const strong = await page.evaluate(() => {
         reliefView.panel.setShow("mesh");
         const { data } = reliefView.pixelsNow();
@@ -54,7 +54,7 @@ test("a check says what relief check says; a sheet is right in the middle of its
 test("the page of a check holds its findings: numbers, places to fly to, parts, and what to do", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     const at = (name) => path.join(folder, name);
-    // A slab under a ledge that no map of the two sees, with a pillar too thin for their texels, whose name is markup.
+    // A slab under a ledge that hides it from both maps, with a pillar too thin for their texels, whose name is markup.
     writeFileSync(at("slab.obj"), boxes([{ name: "slab", low: [-45, -1, -45], high: [45, 1, 45] },
                                          { name: "ledge", low: [-40, 11, -40], high: [40, 13, 40] },
                                          { name: "<b>pillar</b>", low: [43.75, 1, -0.25], high: [44.25, 7, 0.25] }]));
@@ -111,7 +111,7 @@ rate = 500.0
     const before = (await places())[1];
     await page.evaluate(() => {
         for (let i = 0; i < 30; ++i) reliefView.particles.step();
-        reliefView.changed(); // a page at rest draws nothing
+        reliefView.changed(); // a resting page does not redraw
     });
     await page.waitForFunction((y) => reliefView.view.bodies[1].model[13] > y + 0.2, before[1], { timeout: 60_000 });
     assert.ok(await page.evaluate("reliefView.particles.system.info.alive") > 100);
@@ -151,7 +151,7 @@ test("a click picks a body; a check colours all, shows the worst, and keys fly",
     run("relief", "view", at("w/world.json"), "--mesh", at("moved.gltf"), "-q", "--samples", "5000", "-o", at("w.html"));
     const { page, said } = await opened(t, at("w.html"));
     await page.waitForFunction("reliefView.bodies?.placed.length === 5", undefined, { timeout: 120_000 });
-    await page.setViewportSize({ width: 900, height: 500 }); // the panel is at its side
+    await page.setViewportSize({ width: 900, height: 500 }); // moves the panel to the side
     await page.evaluate(() => {
         reliefView.particles.paused = true;
         reliefView.camera.look([16, 26, 32], [0, 0.5, 0]);
@@ -159,7 +159,7 @@ test("a click picks a body; a check colours all, shows the worst, and keys fly",
     });
     const click = async (place) => {
         const [x, y] = await page.evaluate((p) => {
-            reliefView.worldPanel.pick(-1); // its card may lie before the place
+            reliefView.worldPanel.pick(-1); // its card may cover the place
             const { clientWidth: width, clientHeight: height } = document.getElementById("canvas");
             const m = reliefView.camera.matrices(width, height).camera;
             const [a, b, , w] = [0, 1, 2, 3].map((i) => m[i] * p[0] + m[4 + i] * p[1] + m[8 + i] * p[2] + m[12 + i]);
@@ -181,7 +181,7 @@ test("a click picks a body; a check colours all, shows the worst, and keys fly",
     await click(await middle(1));
     const facts = await page.locator("#picked-facts").textContent();
     assert.match(facts, /^meshboxcolliderbox-[0-9a-f]+\.reliefsize[0-9.]+ kBscale1at0, 0, 0wrong points[1-9][0-9.]+ %$/);
-    // Dragging turns, and picks nothing; the sky is no body.
+    // Dragging rotates and picks nothing; the sky is not a body.
     const [x, y] = await click(await middle(1));
     await page.mouse.move(x, y);
     await page.mouse.down();
@@ -196,7 +196,7 @@ test("a click picks a body; a check colours all, shows the worst, and keys fly",
     await page.mouse.click(300, 60);
     assert.equal(await picked(), "");
 
-    // The node that moved is red, the others are not; the errors are those of relief check, with a picture of each.
+    // Only the node that moved is red. The errors match relief check, with a picture of each.
     assert.ok(await page.isChecked("#wrong"));
     const [first, wide] = await page.evaluate("[1, 4].map((i) => reliefView.bodies.color(i))");
     assert.ok(first[0] > 0.8 && first[1] < 0.3 && wide[0] < 0.5, `${first} ${wide}`);
@@ -209,7 +209,7 @@ test("a click picks a body; a check colours all, shows the worst, and keys fly",
     await page.click("#wrong + span");
     assert.equal(await page.evaluate("reliefView.bodies.color(4)"), undefined);
 
-    // W flies ahead, D to the right; a drag then turns the eye on its place.
+    // W flies forwards, D to the right; dragging then rotates the camera in place.
     const eye = () => page.evaluate(() => {
         const { eye, target, distance } = reliefView.camera;
         return { eye, ahead: target.map((v, k) => (v - eye[k]) / distance) };
@@ -252,7 +252,8 @@ capacity = 1024
     });
     const before = await covered();
     assert.ok(before.bright > 2000, `${before.bright} pixels of the box`);
-    // Some frames have passed before the pause, and two moments may cover as many pixels: so at three times.
+    // Some frames have passed before the pause, and two times may cover the same number of pixels: so it compares three
+    // times.
     const counts = [before.bright];
     for (let i = 0; i < 2; ++i) {
         await page.evaluate(() => {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The package as a web developer has it: packed by npm, installed into a fresh folder beside Vite, bundled, and played.
+// The package as web developers use it: packed by npm, installed into a new folder with Vite, bundled, and played.
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
 import { once } from "node:events";
@@ -46,7 +46,7 @@ test("npm pack, install and vite build give a page that plays", { timeout: 300_0
     execFileSync(process.execPath, ["node_modules/vite/bin/vite.js", "build", "--target", "es2022", "--logLevel", "warn"],
                  { cwd: folder });
 
-    // The development server without a setting for this package: it may load the page again once it knows all modules.
+    // The development server without settings for this package: it may reload the page after it has found all modules.
     const development = spawn(process.execPath, ["node_modules/vite/bin/vite.js", "--host", "127.0.0.1", "--logLevel", "info"],
                               { cwd: folder, env: { ...process.env, NO_COLOR: "1" } });
     t.after(() => development.kill());

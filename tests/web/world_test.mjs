@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A world of the level that tests/cli/level.py makes, in the browser: as relief-sim plays it, and while a body of it moves; asked on
-// the CPU; and what is no world.
+// A world of the level from tests/cli/level.py in the browser: plays as in relief-sim, also while a body moves; CPU
+// queries; and invalid worlds.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import path from "node:path";
@@ -83,5 +83,5 @@ position = [5.0, 1.0, 5.0]
         assert.match(message, expected[i]);
     });
     assert.equal(got.gl, 0);
-    assert.deepEqual(said.filter((line) => !line.includes("404")), []); // of the world that is not there
+    assert.deepEqual(said.filter((line) => !line.includes("404")), []); // of the missing world
 });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Boxes as OBJ text, and the smallest body for tests that are not about the collider.
+// Boxes as OBJ text, and the smallest body, for tests that do not depend on the collider.
 import { writeFileSync } from "node:fs";
 import path from "node:path";
 
@@ -7,7 +7,7 @@ import { run } from "./native.mjs";
 
 const kSides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
 
-/** Of each box its corners `low` and `high`, and perhaps the `name` of its object and the `color` of its vertices. */
+/** Each box has corners `low` and `high`, an optional `name` of its object, and an optional `color` of its vertices. */
 export function boxes(list, placed = (corner) => corner) {
     return list.map(({ low, high, name, color = [] }, n) => {
         const corners = Array.from({ length: 8 }, (_, i) => placed([0, 1, 2].map((k) => ((i >> k) & 1 ? high : low)[k])));
@@ -16,7 +16,7 @@ export function boxes(list, placed = (corner) => corner) {
     }).join("");
 }
 
-/** Leaves cube.relief in the folder: of side 2 about the origin, baked in an instant. */
+/** Writes cube.relief to the folder: side 2, centred at the origin, fast to bake. */
 export function bakeCube(folder) {
     writeFileSync(path.join(folder, "cube.obj"), boxes([{ low: [-1, -1, -1], high: [1, 1, 1] }]));
     run("relief", "bake", path.join(folder, "cube.obj"), "-q", "-o", path.join(folder, "cube.relief"), "--paper",

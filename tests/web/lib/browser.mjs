@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A real browser for tests: Debian's Chromium without a window, its WebGL2 drawn by the processor (SwiftShader).
+// A real browser for tests: Debian's Chromium, headless, with software WebGL2 (SwiftShader).
 import { createServer } from "node:http";
 import { readFile } from "node:fs/promises";
 import { createRequire } from "node:module";
@@ -23,7 +23,7 @@ const kTypes = {
     ".wasm": "application/wasm",
 };
 
-/** Serves folders on this machine alone: { "/": folder, "/npm": folder }, the longest prefix first. */
+/** Serves folders to this machine only: { "/": folder, "/npm": folder }, longest prefix first. */
 export async function serve(folders) {
     const mounts = Object.entries(folders).sort(([a], [b]) => b.length - a.length);
     const server = createServer(async (request, response) => {
@@ -47,7 +47,7 @@ export async function serve(folders) {
     return { url: `http://127.0.0.1:${server.address().port}`, close: () => server.close() };
 }
 
-/** Chromium; arguments beyond those that every test has. */
+/** Starts Chromium with the default arguments and `more`. */
 export async function launch(more = []) {
     return chromium.launch({
         executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
@@ -56,14 +56,14 @@ export async function launch(more = []) {
     });
 }
 
-/** What a page said, without what the browser's own driver says of the way in which maps that are drawn come into textures. */
+/** Messages of a page, without the driver's messages about uploads of drawn maps. */
 export const spoken = (said) => said.filter((line) => !/GL Driver Message .*TexSubImage with unpack buffer/.test(line));
 
-/** A page whose console and errors are kept in `said`, one line each. Its policy holds for playwright too, which evaluates texts. */
+/** A page whose console messages and errors are collected in `said`, one line each. Its policy applies to playwright too. */
 export async function openPage(browser, url, options = {}) {
     const context = await browser.newContext({ viewport: { width: 1000, height: 700 }, bypassCSP: true, ...options });
     const page = await context.newPage();
-    page.setDefaultTimeout(120_000); // a software renderer on a busy machine
+    page.setDefaultTimeout(120_000); // software rendering on a busy machine is slow
     const said = [];
     page.on("console", (message) => said.push(`${message.type()}: ${message.text()}`));
     page.on("pageerror", (error) => said.push(`error: ${error.message}`));

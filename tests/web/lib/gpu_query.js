@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Evaluates a GpuCollider at points by a shader of the page's own, as a user would. For a page.
+// Evaluates a GpuCollider at points with the page's own shader, as a user would. Runs in a page.
 
-/** @returns { distance, normal, map } of each point: x, y, z of the first, then of the second */
+/** Points are x, y, z triples. @returns { distance, normal, map } of each point */
 export function gpuQuery(gl, gpu, points) {
     const count = points.length / 3;
     const width = 128;

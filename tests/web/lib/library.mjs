@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A page with the library in it, as `relief` and `gl`, and a folder of the test's files under /files.
+// A page with the library, as `relief` and `gl`, and with the test's files under /files.
 import path from "node:path";
 
 import { launch, modules, openPage, root, serve } from "./browser.mjs";
 
-/** Ends with the test. { page, said } */
+/** Closes at the end of the test. @returns { page, said } */
 export async function libraryPage(t, files, more = []) {
     const server = await serve({
         "/": path.join(root, "tests/web/lib"),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The native tools, which the browser is compared with.
+// The native tools, with which the browser is compared.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -11,12 +11,12 @@ import { root } from "./browser.mjs";
 export const bin = process.env.RELIEF_BIN ?? path.join(root, "build/release/bin");
 export const bunny = "/usr/share/glmark2/models/bunny.obj";
 
-/** relief or relief-sim; its standard output. */
+/** Runs relief or relief-sim. @returns its standard output */
 export function run(tool, ...words) {
     return execFileSync(path.join(bin, tool), words, { encoding: "utf8", maxBuffer: 1 << 28 });
 }
 
-/** A folder that goes with the test. */
+/** A folder that is removed at the end of the test. */
 export function scratch(t) {
     const folder = mkdtempSync(path.join(tmpdir(), "relief-web-"));
     t.after(() => rmSync(folder, { recursive: true, force: true }));
@@ -34,11 +34,11 @@ export function generator(seed) {
     };
 }
 
-/** Tables of a scene as TOML. */
+/** The tables of a scene as TOML. */
 export const tomlOf = (tables) => Object.entries(tables).map(([table, keys]) =>
     `[${table}]\n${Object.entries(keys).map(([key, value]) => `${key} = ${JSON.stringify(value)}\n`).join("")}`).join("");
 
-/** Plays a scene in a folder; words: options of relief-sim. Of its particles at the end { place, age }, by id. */
+/** Plays a scene in a folder. words: options of relief-sim. @returns { place, age } of the final particles, by id */
 export function play(folder, scene, ...words) {
     writeFileSync(path.join(folder, "scene.toml"), scene);
     run("relief-sim", path.join(folder, "scene.toml"), "-q", "--dump", path.join(folder, "final.ply"), ...words);
@@ -51,7 +51,7 @@ export function play(folder, scene, ...words) {
     return particles;
 }
 
-/** How far each of a page's particles, as ParticleSystem.read() has them, is from where relief-sim has it. */
+/** Distances of a page's particles, from ParticleSystem.read(), to those of relief-sim. */
 export function distances(rows, native) {
     assert.equal(rows.length / 12, native.size);
     return Array.from({ length: native.size }, (_, i) => {

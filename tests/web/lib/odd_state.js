@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sets every piece of a WebGL2 context's state to something odd, and notes all of it. For a page.
+// Sets all state of a WebGL2 context to unusual values, and records it. Runs in a page.
 
-/** Everything there is to set, to a value that is not its first one. What it made is kept alive by what it returns. */
+/** Sets all state to values other than the defaults. The result keeps the created objects alive. */
 export function setOddState(gl) {
     const shader = (type, text) => {
         const made = gl.createShader(type);
@@ -53,7 +53,7 @@ export function setOddState(gl) {
     for (let unit = 0; unit < 16; ++unit) {
         gl.activeTexture(gl.TEXTURE0 + unit);
         [gl.TEXTURE_2D, gl.TEXTURE_3D, gl.TEXTURE_2D_ARRAY, gl.TEXTURE_CUBE_MAP].forEach((target, i) => {
-            if (unit % 5 !== i) { // some are left empty
+            if (unit % 5 !== i) { // some stay empty
                 gl.bindTexture(target, gl.createTexture());
             }
         });
@@ -115,7 +115,7 @@ export function setOddState(gl) {
         gl.enable(gl[name]);
     }
     gl.disable(gl.DITHER);
-    gl.beginTransformFeedback(gl.TRIANGLES); // and it goes on meanwhile
+    gl.beginTransformFeedback(gl.TRIANGLES); // stays active
     const error = gl.getError();
     if (error !== 0) {
         throw new Error(`setOddState: GL error ${error}`);
@@ -138,7 +138,7 @@ const kNames = `CURRENT_PROGRAM VERTEX_ARRAY_BINDING ARRAY_BUFFER_BINDING ELEMEN
     UNPACK_SKIP_PIXELS UNPACK_IMAGE_HEIGHT UNPACK_SKIP_IMAGES UNPACK_FLIP_Y_WEBGL UNPACK_PREMULTIPLY_ALPHA_WEBGL
     UNPACK_COLORSPACE_CONVERSION_WEBGL`.split(/\s+/);
 
-/** All of it by name: objects as they are, arrays as text. Leaves the state as it was. */
+/** All state by name: objects by reference, arrays as text. Does not change the state. */
 export function noteState(gl) {
     const plain = (value) => (value !== null && value.length !== undefined ? [...value].join(" ") : value);
     const state = {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Particles at rest above a cube of side 2, which pushes them upwards as it moves: the page against relief-sim.
+// Particles at rest above a cube of side 2 that pushes them upwards: compares the page with relief-sim.
 import assert from "node:assert/strict";
 
 import { distances, play, tomlOf } from "./native.mjs";
@@ -12,14 +12,14 @@ export const pushedTables = (steps) => ({
     forces: { gravity: [0, 0, 0], drag: 0 }, ground: { enabled: false },
 });
 
-/** Where relief-sim has them at the end. `collider`: its table of the scene. */
+/** The final particles in relief-sim. `collider`: the scene's collider table. */
 export function pushedNatively(folder, steps, collider) {
     const native = play(folder, tomlOf(pushedTables(steps)) + collider);
     assert.equal(native.size, 400);
     return native;
 }
 
-/** rows: ParticleSystem.read() of the page. */
+/** rows: the page's ParticleSystem.read() */
 export function assertPushedAlike(rows, native) {
     const far = Math.max(...distances(rows, native));
     assert.ok(far < 1e-3, `a particle is ${far} from where relief-sim has it`);

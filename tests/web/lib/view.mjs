@@ -12,7 +12,7 @@ const kData = /(?<=id="relief-page-data"[^>]*>).*(?=<\/script>)/;
 
 export const dataOf = (file) => JSON.parse(kData.exec(readFileSync(file, "utf8"))[0]);
 
-/** The page in `file` with other data, in the same folder. data: an object, or text as it is. */
+/** The page in `file` with other data, in the same folder. data: an object, or literal text. */
 export function withData(file, data, folder = path.dirname(file)) {
     const text = typeof data === "string" ? data : JSON.stringify(data).replaceAll("<", "\\u003c");
     const other = path.join(folder, "with_data.html");
@@ -20,14 +20,14 @@ export function withData(file, data, folder = path.dirname(file)) {
     return other;
 }
 
-/** The page of a scene of one collider, in which nothing falls before a test steps: relief-particles answers for its maps. */
+/** The page of a scene with one collider, without particles until the test steps: relief-particles reads its maps. */
 export function scenePage(folder, file, more = "") {
     const name = path.basename(file);
     return withData(player, { format: 3, name, bytes: 0, collider: null, shows: name, mesh: null, check: null,
                               scene: `[collider]\nfile = "${name}"\n${more}`, files: { [name]: readFileSync(file, "base64") } }, folder);
 }
 
-/** A browser that ends with the test, and what opens files in it. */
+/** Starts a browser that closes at the end of the test. @returns a function that opens files in it */
 export async function viewer(t, more = []) {
     const browser = await launch(more);
     t.after(() => browser.close());
@@ -38,13 +38,13 @@ export async function viewer(t, more = []) {
     };
 }
 
-/** The page in a file, in a browser that ends with the test. */
+/** Opens the page in a file, in a browser that closes at the end of the test. */
 export const openFile = async (t, file, options = {}) => (await viewer(t))(file, options);
 
-/** Runs in the page: the depths of the kept picture, from the bottom left. */
+/** Runs in the page. @returns the depths of the cached picture, from the bottom left */
 export function keptDepths({ gl, view }) {
     const { width, height, depth } = view.kept;
-    gl.getExtension("EXT_color_buffer_float"); // to read them
+    gl.getExtension("EXT_color_buffer_float"); // to read float textures
     const made = (type, text) => {
         const shader = gl.createShader(type);
         gl.shaderSource(shader, `#version 300 es\nprecision highp float;\nprecision highp sampler2D;\n${text}`);
