@@ -20,7 +20,7 @@ function bakeLift(folder) {
 
 // Sparks from the top of the rising lift: as in relief-sim, at the surface at their time of birth, and an error if the
 // part is missing.
-test("births on a surface are those of relief-sim", { timeout: 60_000 }, async (t) => {
+test("births on a surface match relief-sim", { timeout: 60_000 }, async (t) => {
     const folder = scratch(t);
     bakeLift(folder);
     const tables = { time: { dt: 0.015625, steps: 32 }, particles: { capacity: 1000 }, forces: { gravity: [0, 0, 0], drag: 0 },
@@ -48,7 +48,7 @@ test("births on a surface are those of relief-sim", { timeout: 60_000 }, async (
     }, [tables, emitter]);
     assert.ok(native.size > 190);
     const far = Math.max(...distances(rows, native));
-    assert.ok(far < 1e-3, `a spark is ${far} from where relief-sim has it`);
+    assert.ok(far < 1e-3, `a spark is ${far} from its position in relief-sim`);
     assert.match(errors[0], /emitter\.group: there is no joint or node .*'Head'; it has 'lift'/);
     assert.match(errors[1], /emitter\.material: there is no material 'skin'; it has none with a name/);
     assert.match(errors[2], /attach/);
@@ -57,7 +57,7 @@ test("births on a surface are those of relief-sim", { timeout: 60_000 }, async (
     assert.deepEqual(said, []);
 });
 
-test("a body that plays a clip pushes as natively", { timeout: 60_000 }, async (t) => {
+test("a body that plays a clip pushes as in relief-sim", { timeout: 60_000 }, async (t) => {
     const folder = scratch(t);
     bakeLift(folder);
     const native = pushedNatively(folder, kSteps, '[[collider]]\nfile = "lift.relief"\nplay = { clip = "rise", resolution = 128 }\n');

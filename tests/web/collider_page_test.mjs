@@ -90,7 +90,7 @@ function compare({ half, step }) {
     return found;
 }
 
-test("a ball of patches or front-back maps, and a cube, are drawn where they are, in the light that falls on them", { timeout: 120_000 }, async (t) => {
+test("balls and cubes are drawn in the right place with the right light", { timeout: 120_000 }, async (t) => {
     const folder = scratch(t);
     const at = (name) => path.join(folder, name);
     writeFileSync(at("ball.obj"), ball(64));
@@ -109,13 +109,13 @@ test("a ball of patches or front-back maps, and a cube, are drawn where they are
         assert.equal(found.error, 0);
         assert.equal(found.wrong, 0, `${found.wrong} rays`);
         assert.ok(found.hits > 300 && found.misses > 300, name);
-        assert.ok(found.depth < 0.04, `${name}: off by ${found.depth}`);
-        assert.ok(found.off < 0.01 * found.hits, `${name}: ${found.off} of ${found.hits} colours are off by more than 8 of 255`);
+        assert.ok(found.depth < 0.04, `${name}: depth error ${found.depth}`);
+        assert.ok(found.off < 0.01 * found.hits, `${name}: ${found.off} of ${found.hits} colours differ by more than 8 of 255`);
         assert.deepEqual(said, []);
     }
 });
 
-test("the shaders of a page answer as relief query, for each kind of map", { timeout: 120_000 }, async (t) => {
+test("the shaders of a page match relief query, for each kind of map", { timeout: 120_000 }, async (t) => {
     const folder = scratch(t);
     const at = (name) => path.join(folder, name);
     writeFileSync(at("ball.obj"), ball(16));

@@ -90,7 +90,7 @@ const kErrors = {
     "(system.dispose(), system.info)": /this system is disposed of/,
 };
 
-test("each error has its sentence", { timeout: 60_000 }, async (t) => {
+test("each error has its message", { timeout: 60_000 }, async (t) => {
     const folder = scratch(t);
     bakeCube(folder);
     run("relief", "bake", path.join(folder, "cube.obj"), "-q", "-o", path.join(folder, "patches.relief"), "--map", "patches:bytes=4kB");
@@ -130,7 +130,7 @@ test("each error has its sentence", { timeout: 60_000 }, async (t) => {
         assert.ok(message.length < 240 && !/\n|\/scene\d/.test(message), `${error}: ${message}`);
     }
     assert.equal(answers.error, 0, "a GL error");
-    assert.ok(answers.alive > 0 && answers.time > 0, "afterwards all works");
+    assert.ok(answers.alive > 0 && answers.time > 0, "afterwards everything works");
     const expected = /Failed to load resource|net::ERR_CONNECTION_REFUSED|^failed: http:\/\/127.0.0.1:1\/|ERR_UNSAFE_PORT/;
     assert.deepEqual(said.filter((line) => !expected.test(line)), []);
 });

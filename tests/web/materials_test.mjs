@@ -53,7 +53,7 @@ speed = [0.5, 1.0]
 lifetime = 40
 `;
 
-test("a browser knows the material that is hit as relief-sim does", { timeout: 120_000 }, async (t) => {
+test("hits have the same materials as in relief-sim", { timeout: 120_000 }, async (t) => {
     const folder = scratch(t);
     writeFileSync(path.join(folder, "slab.obj"), kMesh);
     run("relief", "bake", path.join(folder, "slab.obj"), "-q", "-o", path.join(folder, "slab.relief"), "--budget", "200kB");
@@ -84,7 +84,7 @@ test("a browser knows the material that is hit as relief-sim does", { timeout: 1
     // Drops on ice live for half a second, part of which they have spent falling: none remain at the end.
     assert.ok(particles.size < info.born - 100, `${particles.size} of ${info.born}`);
     const far = Math.max(...distances(rows, particles));
-    assert.ok(far < 1e-3, `a particle is ${far} from where it is natively`);
+    assert.ok(far < 1e-3, `a particle is ${far} from its position in relief-sim`);
 
     assert.deepEqual(told.map(({ step }) => step), Array.from({ length: kSteps - 2 }, (_, i) => i + 1));
     const heard = told.flatMap(({ step, time, dropped, rows: all }) => {
@@ -105,7 +105,7 @@ test("a browser knows the material that is hit as relief-sim does", { timeout: 1
     });
 });
 
-test("what takes hits is a function, and a slowest speed is one", { timeout: 60_000 }, async (t) => {
+test("the options hits and hitSpeed are validated", { timeout: 60_000 }, async (t) => {
     const folder = scratch(t);
     const { page } = await libraryPage(t, folder);
     const said = await page.evaluate(() => errorsOf(() => new relief.ParticleSystem(gl, { hits: 3 }),

@@ -77,7 +77,7 @@ function makeScene(folder) {
     writeFileSync(path.join(folder, "scene.toml"), kScene);
 }
 
-test("a browser draws a scene by its meshes as relief-sim does", { timeout: 300_000 }, async (t) => {
+test("a scene drawn from its meshes looks as in relief-sim", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     makeScene(folder);
     run("relief-sim", path.join(folder, "scene.toml"), "-q", "--frames", path.join(folder, "frames"));
@@ -180,7 +180,7 @@ test("a browser draws a scene by its meshes as relief-sim does", { timeout: 300_
     assert.deepEqual(spoken(said), []);
 });
 
-test("the page shows a scene by its meshes, or by its maps", { timeout: 300_000 }, async (t) => {
+test("the page draws a scene from its meshes or its maps", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     makeScene(folder);
     run("relief-sim", path.join(folder, "scene.toml"), "-q", "--page", path.join(folder, "made.html"));

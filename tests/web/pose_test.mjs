@@ -10,7 +10,7 @@ import { assertPushedAlike, pushedNatively, pushedTables } from "./lib/pushed.mj
 
 const kSteps = 64;
 
-test("a pose that is set before each step pushes as keys do", { timeout: 60_000 }, async (t) => {
+test("a pose set before each step pushes like pose keys", { timeout: 60_000 }, async (t) => {
     const folder = scratch(t);
     bakeCube(folder);
     const native = pushedNatively(folder, kSteps, `[[collider]]

@@ -59,7 +59,7 @@ function differs(a, b, lengths, normals) {
          a.normal.some((value, i) => Math.abs(value - b.normal[i]) > normals));
 }
 
-test("the browser says of 10,000 points what the native tool says", { timeout: 120_000 }, async (t) => {
+test("10,000 queries match the native tool", { timeout: 120_000 }, async (t) => {
     const folder = scratch(t);
     const { points, side } = writePoints(path.join(folder, "points.csv"));
     const { page, said } = await libraryPage(t, folder);

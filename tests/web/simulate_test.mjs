@@ -43,7 +43,7 @@ async function compare(t, ...options) {
     for (let i = 0; i < rows.length; i += 12) {
         web.set(rows[i + 11], { place: rows.slice(i, i + 3), age: rows[i + 3], collisions: rows[i + 9] });
     }
-    assert.ok([...web.values()].filter((one) => one.collisions > 0).length > 5_000, "most have met the body");
+    assert.ok([...web.values()].filter((one) => one.collisions > 0).length > 5_000, "most have hit the body");
     assert.equal(info.time.toFixed(3), "5.000");
     assert.ok(native.size > 10_000, `${native.size} particles`);
     assert.ok([...native.values()].filter((one) => one.age > 3).length > 5_000);
@@ -66,7 +66,7 @@ test("300 steps of snow agree with relief-sim", { timeout: 120_000 }, (t) => com
 
 test("300 steps of snow among patches agree with relief-sim", { timeout: 120_000 }, (t) => compare(t, "--map", "patches:bytes=200kB"));
 
-test("nothing that a page gives birth to passes a floor thinner than a step", { timeout: 300_000 }, async (t) => {
+test("particles spawned by the page do not pass a floor thinner than a step", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     writeFileSync(path.join(folder, "floor.obj"), boxes([{ low: [-2, -0.1, -2], high: [2, 0, 2] }]));
     run("relief", "bake", path.join(folder, "floor.obj"), "-q", "-o", path.join(folder, "floor.relief"), "--budget", "20kB");

@@ -80,7 +80,7 @@ function fetched(page) {
     return () => names.splice(0).sort();
 }
 
-test("tiles are fetched when they are needed, and drops lie on them", { timeout: 180_000 }, async (t) => {
+test("tiles are fetched on demand, and drops rest on them", { timeout: 180_000 }, async (t) => {
     const folder = scratch(t);
     const world = bakeTiles(folder);
     const { page, said } = await libraryPage(t, folder);
@@ -184,7 +184,7 @@ test("tiles are fetched when they are needed, and drops lie on them", { timeout:
     assert.deepEqual(spoken(said).filter((line) => !/^failed: /.test(line)), []);
 });
 
-test("a tile that is missing or damaged is named once, and its coarse one stays", { timeout: 120_000 }, async (t) => {
+test("a missing or damaged tile is reported once, and its coarse tile stays", { timeout: 120_000 }, async (t) => {
     const folder = scratch(t);
     const world = bakeTiles(folder);
     const tiles = tilesIn(world, [256, 40, 256], 40); // around a corner of four

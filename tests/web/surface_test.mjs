@@ -130,9 +130,9 @@ test("every sheet and strut of a collider is drawn, and nothing else", { timeout
         const found = await page.evaluate(compare, [50, 44, 500, mesh === "gap.obj" ? mouth : null]);
         t.diagnostic(`${name}: ${JSON.stringify(found)}`);
         assert.equal(found.error, 0, name);
-        assert.ok(found.seen > 20, `${name}: ${found.seen} rays meet it`);
-        assert.equal(found.holes, 0, `${name}: ${found.holes} of ${found.seen} rays that meet the collider are drawn through it`);
-        assert.equal(found.nothing, 0, `${name}: ${found.nothing} of ${found.drawn} points drawn are of nothing`);
+        assert.ok(found.seen > 20, `${name}: ${found.seen} rays hit it`);
+        assert.equal(found.holes, 0, `${name}: ${found.holes} of ${found.seen} rays pass through the collider`);
+        assert.equal(found.nothing, 0, `${name}: ${found.nothing} of ${found.drawn} drawn points are not on the collider`);
         assert.deepEqual(said, []);
         await close();
     }

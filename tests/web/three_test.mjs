@@ -10,7 +10,7 @@ import test from "node:test";
 import { launch, openPage, root, serve } from "./lib/browser.mjs";
 import { bin, scratch } from "./lib/native.mjs";
 
-test("particles and three's meshes hide each other", { timeout: 60_000 }, async (t) => {
+test("particles and three.js meshes occlude each other", { timeout: 60_000 }, async (t) => {
     const folder = scratch(t);
     execFileSync(path.join(root, "samples/web/prepare.sh"), [folder], { env: { ...process.env, RELIEF_BIN: bin } });
     const server = await serve({ "/": folder });
@@ -68,8 +68,8 @@ test("particles and three's meshes hide each other", { timeout: 60_000 }, async 
     t.diagnostic(JSON.stringify(answer));
     assert.ok(answer.falling > 5000, `${answer.falling} fall`);
     assert.equal(answer.accepted, answer.births);
-    assert.ok(answer.before > 40 && answer.inside > 40, "meshes before the particles hide them");
-    assert.ok(answer.behind < 15, "meshes behind the particles are hidden");
+    assert.ok(answer.before > 40 && answer.inside > 40, "meshes in front of particles hide them");
+    assert.ok(answer.behind < 15, "meshes behind particles are hidden");
     assert.equal(answer.error, 0);
     assert.deepEqual(said, []);
 });

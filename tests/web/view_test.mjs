@@ -28,7 +28,7 @@ const kChange = `(() => {
     return changed / (now.data.length / 4);
 })()`;
 
-test("each feature of the page shows", { timeout: 300_000 }, async (t) => {
+test("each feature of the page changes the picture", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     run("relief", "view", bake(folder), "--mesh", bunny, "-q", "--samples", "5000", "-o", path.join(folder, "made.html"));
     const made = dataOf(path.join(folder, "made.html"));
@@ -112,7 +112,7 @@ test("patches show their cells", { timeout: 300_000 }, async (t) => {
     assert.deepEqual(said, []);
 });
 
-test("particles meet the body and begin anew; nothing leaves a small window", { timeout: 300_000 }, async (t) => {
+test("particles meet the body and restart; nothing overflows a small window", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     const emitter = `
 [[emitter]]
@@ -130,7 +130,7 @@ rate = 5000
         }
         return reliefView.particles.system.read().filter((value, i) => i % 12 === 9 && value > 0).length;
     });
-    assert.ok(contacts > 20, `${contacts} have met the body`);
+    assert.ok(contacts > 20, `${contacts} particles have hit the body`);
     await page.click("#restart");
     await page.waitForFunction("reliefView.particles.system.info.time === 0");
 
@@ -142,7 +142,7 @@ rate = 5000
     assert.deepEqual(said, []);
 });
 
-test("what is given by error ends in a sentence, and the page goes on", { timeout: 300_000 }, async (t) => {
+test("invalid input gives a message, and the page stays usable", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     const file = bake(folder);
     const made = path.join(folder, "bunny.html");
@@ -171,11 +171,11 @@ test("what is given by error ends in a sentence, and the page goes on", { timeou
     await sentence(withData(scene, { ...played, scene: "[collider]\nfile = \"b.relief\"\n" }), /b\.relief/);
 
     const { page, said } = await open(withData(made, null));
-    assert.ok(await page.isVisible("#empty"), "an empty page says so");
+    assert.ok(await page.isVisible("#empty"), "an empty page shows a hint");
     assert.deepEqual(said, []);
 });
 
-test("a browser without what the page needs is told so; a lost context is made anew", { timeout: 300_000 }, async (t) => {
+test("missing features give a message; a lost context is restored", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     const file = bake(folder);
     const made = path.join(folder, "bunny.html");

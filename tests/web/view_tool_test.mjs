@@ -26,7 +26,7 @@ function viewSheet(folder, ...words) {
 
 const square = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 4 3 2 1\n";
 
-test("a check says what relief check says; a sheet is right in the middle of its thickness", { timeout: 300_000 }, async (t) => {
+test("the check matches relief check; a sheet is the centre of its shell", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     const [mesh, sheet, made] = viewSheet(folder, "--mesh", path.join(folder, "sheet.obj"), "-q", "--samples", "5000");
     const check = (...words) => run("relief", "check", sheet, "--mesh", mesh, "--samples", "5000", ...words);
@@ -38,7 +38,7 @@ test("a check says what relief check says; a sheet is right in the middle of its
     assert.equal(await page.locator("#verdict").getAttribute("class"), said.verdict.grade);
     assert.match(await page.locator("#sheets-note").textContent(), /Sheets have a thickness of [0-9.]+/);
     const depth = await page.evaluate("reliefView.look.depth");
-    assert.ok(depth > 1e-3, `half of the thickness is ${depth}`);
+    assert.ok(depth > 1e-3, `half the thickness is ${depth}`);
     // The heat map agrees: no pixel has the strong colours of the range's ends.
     const strong = await page.evaluate(() => {
         reliefView.panel.setShow("mesh");
@@ -51,7 +51,7 @@ test("a check says what relief check says; a sheet is right in the middle of its
     assert.deepEqual(console, []);
 });
 
-test("the page of a check holds its findings: numbers, places to fly to, parts, and what to do", { timeout: 300_000 }, async (t) => {
+test("the page of a check shows its numbers, worst places, parts and advice", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     const at = (name) => path.join(folder, name);
     // A slab under a ledge that hides it from both maps, with a pillar too thin for their texels, whose name is markup.
@@ -77,7 +77,7 @@ test("the page of a check holds its findings: numbers, places to fly to, parts, 
     assert.deepEqual(console, []);
 });
 
-test("a scene's bodies are drawn where they stand, and move", { timeout: 300_000 }, async (t) => {
+test("a scene's bodies are drawn in their places, and move", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     const at = (name) => path.join(folder, name);
     run("relief", "bake", bunny, "-q", "-o", at("b.relief"), "--paper", "--resolution", "48");
@@ -120,7 +120,7 @@ rate = 500.0
     assert.deepEqual(said, []);
 });
 
-test("a world's bodies are drawn where they stand, each collider once on the GPU", { timeout: 300_000 }, async (t) => {
+test("a world's bodies are drawn in their places, and colliders are uploaded once", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     const at = (name) => path.join(folder, name);
     execFileSync("python3", [path.join(root, "tests/cli/level.py"), at("level.gltf"), "floor=6"]);
@@ -142,7 +142,7 @@ test("a world's bodies are drawn where they stand, each collider once on the GPU
     assert.deepEqual(said, []);
 });
 
-test("a click picks a body; a check colours all, shows the worst, and keys fly", { timeout: 300_000 }, async (t) => {
+test("clicks pick bodies; a check colours bodies and lists the worst; keys fly", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     const at = (name) => path.join(folder, name);
     execFileSync("python3", [path.join(root, "tests/cli/level.py"), at("level.gltf"), "floor=6"]);
@@ -224,14 +224,14 @@ test("a click picks a body; a check colours all, shows the worst, and keys fly",
     assert.ok(along > 0.999 * Math.hypot(...way), `${way} is not ahead, ${before.ahead}`);
     await page.evaluate("reliefView.camera.orbit(0.5, 0)");
     const turned = await eye();
-    assert.ok(Math.hypot(...turned.eye.map((v, k) => v - after.eye[k])) < 0.1, "a flight turns on its place");
+    assert.ok(Math.hypot(...turned.eye.map((v, k) => v - after.eye[k])) < 0.1, "the camera rotates in place");
     assert.ok(turned.ahead.reduce((sum, v, k) => sum + v * after.ahead[k], 0) < 0.95);
     assert.equal(await page.evaluate("reliefView.pixelsNow().error"), 0);
     assert.equal(await page.locator("#message p").textContent(), "");
     assert.deepEqual(said, []);
 });
 
-test("a body that deforms is drawn as it is at each step", { timeout: 300_000 }, async (t) => {
+test("a deforming body is drawn at each step", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     const at = (name) => path.join(folder, name);
     writeFileSync(at("box.obj"), boxes([{ low: [0, 0, 0], high: [1, 1, 1] }]));
@@ -267,7 +267,7 @@ capacity = 1024
     assert.equal(await page.locator("#message p").textContent(), "");
 });
 
-test("fingers turn and pinch", { timeout: 300_000 }, async (t) => {
+test("fingers rotate and zoom", { timeout: 300_000 }, async (t) => {
     const [, , made] = viewSheet(scratch(t));
     const { page, said } = await opened(t, made, { hasTouch: true });
     const camera = () => page.evaluate(() => ({ distance: reliefView.camera.distance, ...reliefView.camera.matrices(4, 3) }));

@@ -21,7 +21,7 @@ for (let i = 0; i < 10; ++i) {
 window.answer = { ...system.info, error: gl.getError() };
 `;
 
-test("npm pack, install and vite build give a page that plays", { timeout: 300_000 }, async (t) => {
+test("npm pack, install and vite build give a working page", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     const npm = (...words) => execFileSync("npm", [...words, "--no-audit", "--no-fund", "--loglevel=error"],
                                            { cwd: folder, encoding: "utf8" });
@@ -34,7 +34,7 @@ test("npm pack, install and vite build give a page that plays", { timeout: 300_0
     const installed = path.join(folder, "node_modules/relief-particles");
     for (const name of readdirSync(installed).filter((one) => one.endsWith(".md"))) {
         for (const [, target] of readFileSync(path.join(installed, name), "utf8").matchAll(/\]\(([^)\s#]+)/g)) {
-            assert.ok(existsSync(path.join(installed, target)), `${name} links to ${target}, which the package has not`);
+            assert.ok(existsSync(path.join(installed, target)), `${name} links to ${target}, which is not in the package`);
         }
     }
     writeFileSync(path.join(folder, "index.html"), `<!doctype html><link rel="icon" href="data:,"><title>A page</title><canvas></canvas>

@@ -22,7 +22,7 @@ export function pushedNatively(folder, steps, collider) {
 /** rows: the page's ParticleSystem.read() */
 export function assertPushedAlike(rows, native) {
     const far = Math.max(...distances(rows, native));
-    assert.ok(far < 1e-3, `a particle is ${far} from where relief-sim has it`);
+    assert.ok(far < 1e-3, `a particle is ${far} from its position in relief-sim`);
     const pushed = rows.filter((value, i) => i % 12 === 1 && value > 1.6).length;
     assert.ok(pushed > 300, `${pushed} of 400 were pushed up`);
 }

@@ -13,7 +13,7 @@ import { Quality } from "../../runtime/web/view/quality.js";
 import { run, scratch } from "./lib/native.mjs";
 import { dataOf, openFile, scenePage } from "./lib/view.mjs";
 
-test("a collider's page has no controls for particles, and may load nothing", { timeout: 300_000 }, async (t) => {
+test("a collider's page has no particle controls, and cannot load anything", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     bakeCube(folder);
     run("relief", "view", path.join(folder, "cube.relief"));
@@ -27,7 +27,7 @@ test("a collider's page has no controls for particles, and may load nothing", { 
     assert.ok(said.every((line) => /Content Security Policy|failed: data:/.test(line)), said.join("\n"));
 });
 
-test("a page reads the texels that relief-particles reads, of each kind of map", { timeout: 300_000 }, async (t) => {
+test("a page reads the same texels as relief-particles, for each kind of map", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     bakeCube(folder);
     const file = path.join(folder, "kinds.relief");
@@ -49,7 +49,7 @@ test("a page reads the texels that relief-particles reads, of each kind of map",
     }
 });
 
-test("where frames take 50 ms the page draws less, says so, and draws all of it once it rests", { timeout: 300_000 }, async (t) => {
+test("at 50 ms per frame the page lowers its resolution; at rest it draws all pixels", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     bakeCube(folder);
     const { page, said } = await openFile(t, scenePage(folder, path.join(folder, "cube.relief")), { viewport: { width: 220, height: 200 } });
@@ -70,7 +70,7 @@ test("where frames take 50 ms the page draws less, says so, and draws all of it 
     assert.deepEqual(said, []);
 });
 
-test("finer pixels come back where frames are quick, and are not tried where they would be slow", () => {
+test("the resolution rises only if frames stay fast", () => {
     const quality = new Quality();
     let now = 0;
     const frames = (took, ms) => {
