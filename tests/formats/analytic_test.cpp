@@ -257,7 +257,7 @@ void expectFarOutside(const std::optional<Vote>& got, const std::string& what) {
     EXPECT_EQ(got->normal, glm::vec3(0.0F)) << what;
 }
 
-TEST(ViewVolume, OutsideTheWindowOnlyEnclosingMapsVote) {
+TEST(ViewVolume, OnlyEnclosingMapsVoteOutsideTheWindow) {
     DepthMap map = plateMap(Compare::kLess);
     const glm::vec3 beside[] = {{2.5F, 0, 0}, {-2.5F, 0, 0}, {0, 2.5F, 0}, {0, -2.5F, 0}, {9, -9, 0.5F}};
     for (const glm::vec3& p : beside) {
@@ -314,7 +314,7 @@ TEST(ViewVolume, EmptyTexelsVoteOnlyIfRaysStartInFreeSpace) {
         map.empty_is_outside = false;
         EXPECT_FALSE(vote(map, {0, 0, 0.1F}));
         if (map.projection() == Projection::kOrthographic) {
-            expectFarOutside(vote(map, {20, 0, 0}), "encloses still speaks outside the window");
+            expectFarOutside(vote(map, {20, 0, 0}), "encloses still applies outside the window");
         }
     }
 }

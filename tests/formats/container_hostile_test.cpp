@@ -162,7 +162,7 @@ Bytes without(const std::function<const void*(const fb::Collider&)>& table_of, v
                               flatbuffers::ReadScalar<flatbuffers::soffset_t>(table) + field;
     EXPECT_NE(flatbuffers::ReadScalar<voffset_t>(bytes.data() + at), 0);
     flatbuffers::WriteScalar<voffset_t>(bytes.data() + at, 0);
-    test::mendChecksums(bytes);
+    test::fixChecksums(bytes);
     return bytes;
 }
 
@@ -227,7 +227,7 @@ Recipe zstdRecipe(const Bytes& frame) {
     });
 }
 
-TEST(Crafted, TheUnchangedRecipeIsValid) {
+TEST(Crafted, UnchangedRecipeIsValid) {
     for (const Recipe& recipe : {Recipe{}, zstdRecipe(compress(kRaw))}) {
         const Collider read = required(readContainer(fileOf(recipe)));
         ASSERT_EQ(read.maps.size(), 2U);
@@ -247,9 +247,9 @@ TEST(Crafted, LaterMinorVersionsAreRead) {
     }
 }
 
-void expectHeaderLies() {
+void expectHeaderFaults() {
     using enum IssueCode;
-    const std::pair<IssueCode, std::function<void(ContainerHeader&)>> lies[] = {
+    const std::pair<IssueCode, std::function<void(ContainerHeader&)>> faults[] = {
         {kMajorVersion, [](auto& h) { h.major = 1; }},
         {kMajorVersion, [](auto& h) { h.major = 0; }},
         {kHeaderField, [](auto& h) { h.header_size = 72; }},
@@ -265,9 +265,9 @@ void expectHeaderLies() {
         {kMetadataChecksum, [](auto& h) { h.metadata_hash ^= 1; }},
         {kLaterMinor, [](auto& h) { h.minor = kContainerMinor + 1; }},
     };
-    for (const auto& [code, lie] : lies) {
+    for (const auto& [code, fault] : faults) {
         Recipe recipe;
-        recipe.header = lie;
+        recipe.header = fault;
         expectIssue(fileOf(recipe), code);
     }
     const Bytes good = fileOf({});
@@ -285,10 +285,10 @@ void expectHeaderLies() {
                 kMajorVersion);
 }
 
-void expectMetadataLies() {
+void expectMetadataFaults() {
     using enum IssueCode;
     // container_test covers all rules for values: reader and writer share them.
-    const std::pair<IssueCode, std::function<void(Recipe&)>> lies[] = {
+    const std::pair<IssueCode, std::function<void(Recipe&)>> faults[] = {
         {kMetadataTable, [](auto& r) { r.identifier = "RLF1"; }},
         {kNoMap, [](auto& r) { r.maps.clear(); }},
         {kBounds,
@@ -305,13 +305,13 @@ void expectMetadataLies() {
         {kNoToolVersion, [](auto& r) { r.tool_version.clear(); }},
         {kNoTriangles, [](auto& r) { r.triangles = 0; }},
     };
-    for (const auto& [code, lie] : lies) {
-        expectIssue(fileOf(with(lie)), code);
+    for (const auto& [code, fault] : faults) {
+        expectIssue(fileOf(with(fault)), code);
     }
     for (const std::uint64_t size : {0, 1, 3, 7, 8, 12, 40}) {
         Bytes bytes = fileOf({});
         std::memcpy(bytes.data() + 40, &size, sizeof(size));
-        test::mendChecksums(bytes);
+        test::fixChecksums(bytes);
         expectIssue(bytes, kMetadataTable);
     }
     const auto collider = [](const fb::Collider& c) -> const void* { return &c; };
@@ -331,20 +331,20 @@ void expectMetadataLies() {
         expectIssue(without(map, field), kMetadataTable);
     }
     // Two materials with the same name.
-    Collider dressed = test::readmeExample();
-    dressed.materials.list = {{"oak, dark"}, {"oak, pale"}};
-    Bytes bytes = test::written(dressed);
+    Collider with_materials = test::readmeExample();
+    with_materials.materials.list = {{"oak, dark"}, {"oak, pale"}};
+    Bytes bytes = test::written(with_materials);
     const Bytes name = test::toBytes("oak, pale");
     const Bytes other = test::toBytes("oak, dark");
     std::copy(other.begin(), other.end(), std::search(bytes.begin(), bytes.end(), name.begin(), name.end()));
-    test::mendChecksums(bytes);
+    test::fixChecksums(bytes);
     expectIssue(bytes, kMaterials);
 }
 
-void expectPayloadLies() {
+void expectPayloadFaults() {
     using enum IssueCode;
     const std::uint64_t first = readContainerInfo(fileOf({}))->payloads[0].offset;
-    const std::pair<IssueCode, std::function<void(MapRecipe&)>> lies[] = {
+    const std::pair<IssueCode, std::function<void(MapRecipe&)>> faults[] = {
         {kFrame, [](auto& m) { m.format = 6; }},
         {kFrame, [](auto& m) { m.format = 255; }},
         {kFrame, [](auto& m) { m.format = 4; }},  // "less" of a front-back map
@@ -378,8 +378,8 @@ void expectPayloadLies() {
         {kPayloadChecksum, [](auto& m) { m.hash_change = 1; }},
         {kNothingCovered, [](auto& m) { std::ranges::fill(m.stored, std::byte{0}); }},
     };
-    for (const auto& [code, lie] : lies) {
-        expectMapIssue(code, lie);
+    for (const auto& [code, fault] : faults) {
+        expectMapIssue(code, fault);
     }
     expectIssue(fileOf(with([](auto& r) { r.maps[0].offset = 64; })), kPayloadPlace, 0);
     // Bytes that belong to no section.
@@ -388,7 +388,7 @@ void expectPayloadLies() {
                         b.resize(b.size() + 64);
                         const std::uint64_t size = b.size();
                         std::memcpy(b.data() + 24, &size, sizeof(size));
-                        test::mendChecksums(b);
+                        test::fixChecksums(b);
                     };
                 })),
                 kBytesBehind);
@@ -414,42 +414,42 @@ void expectLimits() {
     EXPECT_EQ(read.error().code, ErrorCode::kLimit) << read.error().message;
 }
 
-void expectZstdLies() {
+void expectZstdFaults() {
     const Bytes frame = compress(kRaw);
-    std::vector<Bytes> lies = {frame, frame, {frame.begin(), frame.end() - 1}, Bytes(100), {}};
-    lies[0].push_back(std::byte{0});
-    lies[1].insert(lies[1].end(), frame.begin(), frame.end());
-    lies.push_back(compress(Bytes(1023)));
-    lies.push_back(compress(Bytes(1025)));
+    std::vector<Bytes> faults = {frame, frame, {frame.begin(), frame.end() - 1}, Bytes(100), {}};
+    faults[0].push_back(std::byte{0});
+    faults[1].insert(faults[1].end(), frame.begin(), frame.end());
+    faults.push_back(compress(Bytes(1023)));
+    faults.push_back(compress(Bytes(1025)));
     // 16 MiB that must not be decompressed.
-    lies.push_back(compress(Bytes(std::size_t{16} << 20)));
-    ASSERT_LT(lies.back().size(), 1024U);
+    faults.push_back(compress(Bytes(std::size_t{16} << 20)));
+    ASSERT_LT(faults.back().size(), 1024U);
     // A skippable frame, and a frame without a content size.
     const std::uint32_t skippable[] = {0x184d2a50, 4, 0};
     const auto words = std::as_bytes(std::span(skippable));
-    lies.emplace_back(words.begin(), words.end());
+    faults.emplace_back(words.begin(), words.end());
     ZSTD_CCtx* context = ZSTD_createCCtx();
     ZSTD_CCtx_setParameter(context, ZSTD_c_contentSizeFlag, 0);
     Bytes unstated(2000);
     unstated.resize(ZSTD_compress2(context, unstated.data(), unstated.size(), kRaw.data(), kRaw.size()));
     ZSTD_freeCCtx(context);
-    lies.push_back(unstated);
+    faults.push_back(unstated);
     // Frames that claim 1024 bytes but contain more or fewer: the two bytes at 5 store the size minus 256.
     for (const std::size_t size : {1025, 1023, 60'000}) {
-        Bytes lie = compress(Bytes(size));
+        Bytes fault = compress(Bytes(size));
         const std::uint16_t claim = 1024 - 256;
-        std::memcpy(lie.data() + 5, &claim, sizeof(claim));
-        lies.push_back(lie);
+        std::memcpy(fault.data() + 5, &claim, sizeof(claim));
+        faults.push_back(fault);
     }
-    for (std::size_t i = 0; i < lies.size(); ++i) {
+    for (std::size_t i = 0; i < faults.size(); ++i) {
         SCOPED_TRACE(i);
-        expectIssue(fileOf(zstdRecipe(lies[i])), IssueCode::kPayloadUnpack, 1);
+        expectIssue(fileOf(zstdRecipe(faults[i])), IssueCode::kPayloadUnpack, 1);
     }
 }
 
 /// A missing decode field means the default, projected. Fixed-point front-back texels may have any bits; half floats
 /// may not.
-void expectTexelLies() {
+void expectTexelFaults() {
     Recipe recipe = with([](auto& r) {
         MapRecipe& map = r.maps[1];
         map.format = 4;
@@ -466,13 +466,13 @@ void expectTexelLies() {
     expectIssue(fileOf(recipe), IssueCode::kTexels, 1);
 }
 
-TEST(Crafted, EveryLieHasAnIssueThatTheReadmeLists) {
-    expectHeaderLies();
-    expectMetadataLies();
-    expectPayloadLies();
+TEST(Crafted, EveryFaultHasAnIssueInTheReadme) {
+    expectHeaderFaults();
+    expectMetadataFaults();
+    expectPayloadFaults();
     expectLimits();
-    expectZstdLies();
-    expectTexelLies();
+    expectZstdFaults();
+    expectTexelFaults();
     const Bytes file = required(readFile(RELIEF_SOURCE_DIR "/formats/README.md"));
     const std::string text(reinterpret_cast<const char*>(file.data()), file.size());
     const std::regex row("\\| RLF-([0-9, ]+) \\| ([a-z]+) \\| ([^|\n]+) \\|\n");
@@ -549,7 +549,7 @@ TEST(Mutated, EveryMetadataBitWithFixedChecksums) {
     for (std::size_t bit = 0; bit < header.metadata_size * 8; ++bit) {
         Bytes flipped = bytes;
         flipped[64 + bit / 8] ^= static_cast<std::byte>(1 << bit % 8);
-        test::mendChecksums(flipped);
+        test::fixChecksums(flipped);
         ASSERT_NO_FATAL_FAILURE(expectSoundOrRefused(flipped, read_count)) << "bit " << bit;
     }
     EXPECT_GT(read_count, 100)

@@ -144,7 +144,7 @@ TEST(NearestSurface, RotatedBox) {
 }
 
 /// A central cube map sees floor and walls at grazing angles beside their edges.
-TEST(NearestSurface, InsideABoxTheNearestWallCounts) {
+TEST(NearestSurface, NearestWallCountsInsideABox) {
     const glm::dvec3 half(0.25, 0.8, 0.4);
     Collider collider;
     collider.bounds = {-glm::vec3(half), glm::vec3(half)};

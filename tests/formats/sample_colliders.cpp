@@ -77,7 +77,7 @@ std::vector<std::byte> written(const Collider& collider, int level) {
     return bytes ? *bytes : std::vector<std::byte>();
 }
 
-void mendChecksums(std::vector<std::byte>& bytes) {
+void fixChecksums(std::vector<std::byte>& bytes) {
     ContainerHeader header;
     std::memcpy(&header, bytes.data(), sizeof(header));
     const std::span<const std::byte> all(bytes);

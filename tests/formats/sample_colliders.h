@@ -24,7 +24,7 @@ namespace relief::test {
 [[nodiscard]] std::vector<std::byte> written(const Collider& collider, int level = 0);
 
 /// Recomputes a container's checksums: the metadata's, then the header's.
-void mendChecksums(std::vector<std::byte>& bytes);
+void fixChecksums(std::vector<std::byte>& bytes);
 
 [[nodiscard]] std::vector<std::byte> toBytes(const std::string& text);
 

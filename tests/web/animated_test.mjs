@@ -9,7 +9,7 @@ import test from "node:test";
 import { root } from "./lib/browser.mjs";
 import { libraryPage } from "./lib/library.mjs";
 import { distances, play, run, scratch, tomlOf } from "./lib/native.mjs";
-import { assertPushedAlike, pushedNatively, pushedTables } from "./lib/pushed.mjs";
+import { assertSamePushes, pushedInReliefSim, pushedTables } from "./lib/pushed.mjs";
 
 const kSteps = 48;
 /** A cube of side 2 with two clips: its node rises or sinks by 1 in 1 s. */
@@ -28,7 +28,7 @@ test("births on a surface match relief-sim", { timeout: 60_000 }, async (t) => {
     const emitter = { shape: "surface", attach: 0, speed: 0.25, inherit: 1, rate: 400, lifetime: 50 };
     const native = play(folder, tomlOf({ ...tables, emitter: { ...emitter, group: "lift" } }) +
         '[[collider]]\nfile = "lift.relief"\nplay = { clip = "rise", resolution = 128 }\n');
-    const { page, said } = await libraryPage(t, folder);
+    const { page, messages } = await libraryPage(t, folder);
     const { rows, errors, gl } = await page.evaluate(async ([tables, emitter]) => {
         const lift = await relief.load("/files/lift.relief");
         const make = (keys) => new relief.ParticleSystem(gl, { scene: {
@@ -54,15 +54,15 @@ test("births on a surface match relief-sim", { timeout: 60_000 }, async (t) => {
     assert.match(errors[2], /attach/);
     assert.match(errors[3], /'tail'/);
     assert.equal(gl, 0);
-    assert.deepEqual(said, []);
+    assert.deepEqual(messages, []);
 });
 
 test("a body that plays a clip pushes as in relief-sim", { timeout: 60_000 }, async (t) => {
     const folder = scratch(t);
     bakeLift(folder);
-    const native = pushedNatively(folder, kSteps, '[[collider]]\nfile = "lift.relief"\nplay = { clip = "rise", resolution = 128 }\n');
+    const native = pushedInReliefSim(folder, kSteps, '[[collider]]\nfile = "lift.relief"\nplay = { clip = "rise", resolution = 128 }\n');
 
-    const { page, said } = await libraryPage(t, folder);
+    const { page, messages } = await libraryPage(t, folder);
     const { rows, posed, animation, still, tops, triangles, errors, gl } = await page.evaluate(async ([steps, tables]) => {
         const lift = await relief.load("/files/lift.relief");
         const scene = { ...tables, collider: [{ file: "lift.relief", play: { clip: "rise", resolution: 128 } }] };
@@ -98,7 +98,7 @@ test("a body that plays a clip pushes as in relief-sim", { timeout: 60_000 }, as
         };
     }, [kSteps, pushedTables(kSteps)]);
     for (const found of [rows, posed]) {
-        assertPushedAlike(found, native);
+        assertSamePushes(found, native);
         let inside = 0;
         for (let i = 0; i < found.length; i += 12) {
             inside += found[i + 1] < 1 + kSteps / 64 - 0.02;
@@ -115,5 +115,5 @@ test("a body that plays a clip pushes as in relief-sim", { timeout: 60_000 }, as
     assert.match(errors[3], /2 joints/);
     assert.match(errors[4], /plays no clip/);
     assert.equal(gl, 0);
-    assert.deepEqual(said, []);
+    assert.deepEqual(messages, []);
 });

@@ -100,7 +100,7 @@ test("balls and cubes are drawn in the right place with the right light", { time
                                             ["cube, at rest", [1, 1, 1], animated, "--animated", "--resolution", "64"]]) {
         run("relief", "bake", mesh, "-q", "-o", at(`${name}.relief`), ...options);
         run("relief", "view", at(`${name}.relief`));
-        const { page, said } = await open(at(`${name}.html`), { viewport: { width: 240, height: 180 } });
+        const { page, messages } = await open(at(`${name}.html`), { viewport: { width: 240, height: 180 } });
         assert.equal(await page.locator("#message p").textContent(), "");
         assert.equal(/, at rest$/.test(await page.locator("#facts").textContent()), mesh === animated);
         await page.evaluate(`window.keptDepths = ${keptDepths}`);
@@ -111,7 +111,7 @@ test("balls and cubes are drawn in the right place with the right light", { time
         assert.ok(found.hits > 300 && found.misses > 300, name);
         assert.ok(found.depth < 0.04, `${name}: depth error ${found.depth}`);
         assert.ok(found.off < 0.01 * found.hits, `${name}: ${found.off} of ${found.hits} colours differ by more than 8 of 255`);
-        assert.deepEqual(said, []);
+        assert.deepEqual(messages, []);
     }
 });
 

@@ -11,7 +11,7 @@ import { scratch } from "./lib/native.mjs";
 test("a lost context is reported, and restored", { timeout: 60_000 }, async (t) => {
     const folder = scratch(t);
     bakeCube(folder);
-    const { page, said } = await libraryPage(t, folder);
+    const { page, messages } = await libraryPage(t, folder);
     const report = await page.evaluate(async () => {
         const { gpuQuery } = await import("/gpu_query.js");
         const collider = await relief.load("/files/cube.relief");
@@ -99,5 +99,5 @@ test("a lost context is reported, and restored", { timeout: 60_000 }, async (t) 
     assert.ok(report.alive.every((count) => count > 1000), `${report.alive}`);
     assert.ok(report.litBefore > 500 && report.litAfter > 0.8 * report.litBefore, `${report.litBefore}, ${report.litAfter}`);
     assert.deepEqual(report.errors.map((error) => (error === 37442 ? 0 : error)), [0, 0]); // CONTEXT_LOST_WEBGL, once
-    assert.deepEqual(said.filter((line) => !/CONTEXT_LOST_WEBGL: loseContext/.test(line)), []);
+    assert.deepEqual(messages.filter((line) => !/CONTEXT_LOST_WEBGL: loseContext/.test(line)), []);
 });

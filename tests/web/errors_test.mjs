@@ -97,7 +97,7 @@ test("each error has its message", { timeout: 60_000 }, async (t) => {
     const whole = readFileSync(path.join(folder, "cube.relief"));
     writeFileSync(path.join(folder, "cut.relief"), whole.subarray(0, 9000));
     writeFileSync(path.join(folder, "noise.relief"), whole.map((byte, i) => (byte * 31 + i) & 255));
-    const { page, said } = await libraryPage(t, folder);
+    const { page, messages } = await libraryPage(t, folder);
     const answers = await page.evaluate(async (errors) => {
         const eye = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
         const answers = {};
@@ -132,5 +132,5 @@ test("each error has its message", { timeout: 60_000 }, async (t) => {
     assert.equal(answers.error, 0, "a GL error");
     assert.ok(answers.alive > 0 && answers.time > 0, "afterwards everything works");
     const expected = /Failed to load resource|net::ERR_CONNECTION_REFUSED|^failed: http:\/\/127.0.0.1:1\/|ERR_UNSAFE_PORT/;
-    assert.deepEqual(said.filter((line) => !expected.test(line)), []);
+    assert.deepEqual(messages.filter((line) => !expected.test(line)), []);
 });

@@ -64,7 +64,7 @@ test("hits have the same materials as in relief-sim", { timeout: 120_000 }, asyn
     assert.ok(oak > 100 && drops.length - oak > 100, `${oak} of ${drops.length}`);
     assert.ok(drops.every((hit) => Math.abs(hit.position[0]) < 0.01 || (hit.position[0] < 0) === (hit.material === "oak")));
 
-    const { page, said } = await libraryPage(t, folder);
+    const { page, messages } = await libraryPage(t, folder);
     const [rows, info, told, error] = await page.evaluate(async ([scene, steps]) => {
         const collider = await relief.load("/files/slab.relief");
         const told = [];
@@ -79,7 +79,7 @@ test("hits have the same materials as in relief-sim", { timeout: 120_000 }, asyn
         return [[...system.read()], system.info, told, gl.getError()];
     }, [kScene, kSteps]);
     assert.equal(error, 0, "a GL error");
-    assert.deepEqual(said, []);
+    assert.deepEqual(messages, []);
     assert.equal(info.born, 400 + 2 * oak);
     // Drops on ice live for half a second, part of which they have spent falling: none remain at the end.
     assert.ok(particles.size < info.born - 100, `${particles.size} of ${info.born}`);
@@ -108,8 +108,8 @@ test("hits have the same materials as in relief-sim", { timeout: 120_000 }, asyn
 test("the options hits and hitSpeed are validated", { timeout: 60_000 }, async (t) => {
     const folder = scratch(t);
     const { page } = await libraryPage(t, folder);
-    const said = await page.evaluate(() => errorsOf(() => new relief.ParticleSystem(gl, { hits: 3 }),
+    const errors = await page.evaluate(() => errorsOf(() => new relief.ParticleSystem(gl, { hits: 3 }),
                                                     () => new relief.ParticleSystem(gl, { hits: () => {}, hitSpeed: -1 })));
-    assert.match(said[0], /option 'hits' must be a function/);
-    assert.match(said[1], /option 'hitSpeed' must be a speed/);
+    assert.match(errors[0], /option 'hits' must be a function/);
+    assert.match(errors[1], /option 'hitSpeed' must be a speed/);
 });

@@ -19,12 +19,12 @@ test("a collider's page has no particle controls, and cannot load anything", { t
     run("relief", "view", path.join(folder, "cube.relief"));
     const browser = await launch();
     t.after(() => browser.close());
-    const { page, said } = await openPage(browser, pathToFileURL(path.join(folder, "cube.html")).href,
+    const { page, messages } = await openPage(browser, pathToFileURL(path.join(folder, "cube.html")).href,
                                           { viewport: { width: 200, height: 150 }, bypassCSP: false });
     await page.locator("#title").waitFor();
     assert.deepEqual(await page.locator("#tab label:visible").allTextContents(), ["View", "Maps"]);
     assert.equal(await page.evaluate(() => fetch("data:,x").then(() => "loads", () => "refused")), "refused");
-    assert.ok(said.every((line) => /Content Security Policy|failed: data:/.test(line)), said.join("\n"));
+    assert.ok(messages.every((line) => /Content Security Policy|failed: data:/.test(line)), messages.join("\n"));
 });
 
 test("a page reads the same texels as relief-particles, for each kind of map", { timeout: 300_000 }, async (t) => {
@@ -52,7 +52,7 @@ test("a page reads the same texels as relief-particles, for each kind of map", {
 test("at 50 ms per frame the page lowers its resolution; at rest it draws all pixels", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     bakeCube(folder);
-    const { page, said } = await openFile(t, scenePage(folder, path.join(folder, "cube.relief")), { viewport: { width: 220, height: 200 } });
+    const { page, messages } = await openFile(t, scenePage(folder, path.join(folder, "cube.relief")), { viewport: { width: 220, height: 200 } });
     const drawn = () => page.evaluate(() => reliefView.gl.drawingBufferWidth / document.getElementById("canvas").clientWidth);
     // A simulated clock of a slow machine.
     await page.evaluate(() => {
@@ -67,7 +67,7 @@ test("at 50 ms per frame the page lowers its resolution; at rest it draws all pi
     await page.evaluate(() => (reliefView.particles.paused = true));
     await page.waitForFunction("document.getElementById('quality').hidden", undefined, { timeout: 60_000 });
     assert.equal(await drawn(), 1);
-    assert.deepEqual(said, []);
+    assert.deepEqual(messages, []);
 });
 
 test("the resolution rises only if frames stay fast", () => {

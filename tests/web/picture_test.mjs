@@ -8,7 +8,7 @@ import path from "node:path";
 import test from "node:test";
 
 import { boxes } from "./lib/boxes.mjs";
-import { root, spoken } from "./lib/browser.mjs";
+import { root, pageMessages } from "./lib/browser.mjs";
 import { libraryPage } from "./lib/library.mjs";
 import { run, scratch } from "./lib/native.mjs";
 import { dataOf, viewer, withData } from "./lib/view.mjs";
@@ -81,7 +81,7 @@ test("a scene drawn from its meshes looks as in relief-sim", { timeout: 300_000 
     const folder = scratch(t);
     makeScene(folder);
     run("relief-sim", path.join(folder, "scene.toml"), "-q", "--frames", path.join(folder, "frames"));
-    const { page, said } = await libraryPage(t, folder);
+    const { page, messages } = await libraryPage(t, folder);
     const got = await page.evaluate(async ([text, steps, width, height]) => {
         const bytes = async (name) => new Uint8Array(await (await fetch(`/files/${name}`)).arrayBuffer());
         const names = ["ground.relief", "block.relief", "walker.relief", "meshes/ground.obj", "meshes/block.obj"];
@@ -177,7 +177,7 @@ test("a scene drawn from its meshes looks as in relief-sim", { timeout: 300_000 
     assert.ok(got.changed[0] > 0.2 * kWidth * kHeight, "snow covers the ground");
     assert.deepEqual(got.again, [0, 0]); // nothing remains of the previous run
     assert.equal(got.gl, 0);
-    assert.deepEqual(spoken(said), []);
+    assert.deepEqual(pageMessages(messages), []);
 });
 
 test("the page draws a scene from its meshes or its maps", { timeout: 300_000 }, async (t) => {
@@ -187,7 +187,7 @@ test("the page draws a scene from its meshes or its maps", { timeout: 300_000 },
     const made = dataOf(path.join(folder, "made.html"));
     assert.equal(Buffer.from(made.files["meshes/block.obj"], "base64").toString(), readFileSync(path.join(folder, "meshes/block.obj"), "utf8"));
     const open = await viewer(t);
-    const { page, said } = await open(path.join(folder, "made.html"), { viewport: { width: 480, height: 300 }, colorScheme: "light" });
+    const { page, messages } = await open(path.join(folder, "made.html"), { viewport: { width: 480, height: 300 }, colorScheme: "light" });
     const shares = () => page.evaluate(() => {
         reliefView.particles.paused = true;
         const { data, error } = reliefView.pixelsNow();
@@ -238,7 +238,7 @@ test("the page draws a scene from its meshes or its maps", { timeout: 300_000 },
     await page.evaluate("reliefView.restart()");
     assert.ok(off(await after(5), await wanted()) < 1e-5);
     assert.equal(await page.locator("#message p").textContent(), "");
-    assert.deepEqual(spoken(said), []);
+    assert.deepEqual(pageMessages(messages), []);
 
     // The tool names a missing mesh, and so does a page whose data lacks it.
     delete made.files["meshes/block.obj"];

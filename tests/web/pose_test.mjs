@@ -6,14 +6,14 @@ import test from "node:test";
 import { bakeCube } from "./lib/boxes.mjs";
 import { libraryPage } from "./lib/library.mjs";
 import { scratch } from "./lib/native.mjs";
-import { assertPushedAlike, pushedNatively, pushedTables } from "./lib/pushed.mjs";
+import { assertSamePushes, pushedInReliefSim, pushedTables } from "./lib/pushed.mjs";
 
 const kSteps = 64;
 
 test("a pose set before each step pushes like pose keys", { timeout: 60_000 }, async (t) => {
     const folder = scratch(t);
     bakeCube(folder);
-    const native = pushedNatively(folder, kSteps, `[[collider]]
+    const native = pushedInReliefSim(folder, kSteps, `[[collider]]
 file = "cube.relief"
 [[collider.key]]
 time = 0.0
@@ -23,7 +23,7 @@ time = 1.0
 position = [0.0, 1.0, 0.0]
 `);
 
-    const { page, said } = await libraryPage(t, folder);
+    const { page, messages } = await libraryPage(t, folder);
     const { rows, matrix, several, errors, gl } = await page.evaluate(async ([steps, rest]) => {
         const collider = await relief.load("/files/cube.relief");
         const system = new relief.ParticleSystem(gl, { collider, scene: { ...rest, collider: { position: [0, 0, 0] } } });
@@ -48,7 +48,7 @@ position = [0.0, 1.0, 0.0]
             gl: gl.getError(),
         };
     }, [kSteps, pushedTables(kSteps)]);
-    assertPushedAlike(rows, native);
+    assertSamePushes(rows, native);
     assert.ok(Math.abs(matrix[13] - 1) < 1e-6 && Math.abs(matrix[0] - Math.cos(32 * Math.PI / 180)) < 1e-5, `${matrix}`);
     assert.deepEqual(several, [0, 5]);
     assert.match(errors[0], /position: \[0, 0, 0\]/);
@@ -56,5 +56,5 @@ position = [0.0, 1.0, 0.0]
     assert.match(errors[2], /only position, axis, angle and clip can change/);
     assert.equal(errors[3], "no error");
     assert.equal(gl, 0);
-    assert.deepEqual(said, []);
+    assert.deepEqual(messages, []);
 });

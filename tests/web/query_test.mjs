@@ -62,7 +62,7 @@ function differs(a, b, lengths, normals) {
 test("10,000 queries match the native tool", { timeout: 120_000 }, async (t) => {
     const folder = scratch(t);
     const { points, side } = writePoints(path.join(folder, "points.csv"));
-    const { page, said } = await libraryPage(t, folder);
+    const { page, messages } = await libraryPage(t, folder);
     for (const [name, options] of Object.entries(kColliders)) {
         const file = path.join(folder, "body.relief");
         run("relief", "bake", bunny, "-q", "-o", file, ...options.split(" "));
@@ -89,5 +89,5 @@ test("10,000 queries match the native tool", { timeout: 120_000 }, async (t) => 
         t.diagnostic(`${name}: ${votes} distances, ${inside} inside, the shader differs at ${apart}`);
         assert.ok(apart <= kPoints / 1000, `${name}: the shader differs at ${apart} points`);
     }
-    assert.deepEqual(said, []);
+    assert.deepEqual(messages, []);
 });

@@ -27,7 +27,7 @@ async function compare(t, ...options) {
     run("relief", "bake", bunny, "-q", "-o", path.join(folder, "bunny.relief"), ...options);
     const native = play(folder, kScene);
 
-    const { page, said } = await libraryPage(t, folder);
+    const { page, messages } = await libraryPage(t, folder);
     const [rows, info, error] = await page.evaluate(async (scene) => {
         const collider = await relief.load("/files/bunny.relief");
         const system = new relief.ParticleSystem(gl, { scene, files: { "bunny.relief": collider } });
@@ -37,7 +37,7 @@ async function compare(t, ...options) {
         return [[...system.read()], system.info, gl.getError()];
     }, kScene);
     assert.equal(error, 0, "a GL error");
-    assert.deepEqual(said, []);
+    assert.deepEqual(messages, []);
 
     const web = new Map();
     for (let i = 0; i < rows.length; i += 12) {
@@ -70,7 +70,7 @@ test("particles spawned by the page do not pass a floor thinner than a step", { 
     const folder = scratch(t);
     writeFileSync(path.join(folder, "floor.obj"), boxes([{ low: [-2, -0.1, -2], high: [2, 0, 2] }]));
     run("relief", "bake", path.join(folder, "floor.obj"), "-q", "-o", path.join(folder, "floor.relief"), "--budget", "20kB");
-    const { page, said } = await libraryPage(t, folder);
+    const { page, messages } = await libraryPage(t, folder);
     const below = await page.evaluate(async () => {
         const collider = await relief.load("/files/floor.relief");
         return [{ sweep: 0 }, {}].map((collision) => {
@@ -87,5 +87,5 @@ test("particles spawned by the page do not pass a floor thinner than a step", { 
     });
     assert.ok(below[0] > 500, `${below[0]} pass without a sweep`);
     assert.equal(below[1], 0);
-    assert.equal(said.length, 1, "a warning without a sweep");
+    assert.equal(messages.length, 1, "a warning without a sweep");
 });

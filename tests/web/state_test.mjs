@@ -4,7 +4,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { spoken } from "./lib/browser.mjs";
+import { pageMessages } from "./lib/browser.mjs";
 import { bakeCube } from "./lib/boxes.mjs";
 import { libraryPage } from "./lib/library.mjs";
 import { scratch } from "./lib/native.mjs";
@@ -12,14 +12,14 @@ import { scratch } from "./lib/native.mjs";
 test("the page's GL state is unchanged", { timeout: 60_000 }, async (t) => {
     const folder = scratch(t);
     bakeCube(folder);
-    const { page, said } = await libraryPage(t, folder);
+    const { page, messages } = await libraryPage(t, folder);
     const answer = await page.evaluate(async () => {
-        const { noteState, setOddState } = await import("/odd_state.js");
+        const { recordState, setOddState } = await import("/odd_state.js");
         setOddState(gl);
-        const before = noteState(gl);
+        const before = recordState(gl);
         const report = { pieces: Object.keys(before).length, changed: [], errors: [] };
         const check = (what) => {
-            const after = noteState(gl);
+            const after = recordState(gl);
             report.changed.push(...Object.keys(before).filter((key) => before[key] !== after[key])
                 .map((key) => `${what}: ${key} was ${before[key]}, is ${after[key]}`));
             for (let error = gl.getError(); error !== 0; error = gl.getError()) {
@@ -84,5 +84,5 @@ test("the page's GL state is unchanged", { timeout: 60_000 }, async (t) => {
     assert.ok(answer.alive > 100, `${answer.alive} particles`);
     assert.deepEqual(answer.changed, []);
     assert.deepEqual(answer.errors, []);
-    assert.deepEqual(spoken(said), []);
+    assert.deepEqual(pageMessages(messages), []);
 });

@@ -7,7 +7,7 @@ import { cpSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import test from "node:test";
 
-import { root, spoken } from "./lib/browser.mjs";
+import { root, pageMessages } from "./lib/browser.mjs";
 import { libraryPage } from "./lib/library.mjs";
 import { run, scratch } from "./lib/native.mjs";
 import { openFile } from "./lib/view.mjs";
@@ -83,7 +83,7 @@ function fetched(page) {
 test("tiles are fetched on demand, and drops rest on them", { timeout: 180_000 }, async (t) => {
     const folder = scratch(t);
     const world = bakeTiles(folder);
-    const { page, said } = await libraryPage(t, folder);
+    const { page, messages } = await libraryPage(t, folder);
     const taken = fetched(page);
     await page.evaluate(async ({ scene, radius }) => {
         window.scene = scene;
@@ -181,7 +181,7 @@ test("tiles are fetched on demand, and drops rest on them", { timeout: 180_000 }
     assert.ok(Math.abs(again.kept) < 60, String(again.kept));
     assert.equal(again.gl, 0);
     // Disposal aborts fetches, and a driver reports copies into textures that were never drawn.
-    assert.deepEqual(spoken(said).filter((line) => !/^failed: /.test(line)), []);
+    assert.deepEqual(pageMessages(messages).filter((line) => !/^failed: /.test(line)), []);
 });
 
 test("a missing or damaged tile is reported once, and its coarse tile stays", { timeout: 120_000 }, async (t) => {
@@ -196,7 +196,7 @@ test("a missing or damaged tile is reported once, and its coarse tile stays", { 
     writeFileSync(path.join(folder, "w", broken), bytes);
     cpSync(path.join(folder, "w"), path.join(folder, "cut"), { recursive: true });
     rmSync(path.join(folder, "cut", world.colliders[0].coarse.file));
-    const { page, said } = await libraryPage(t, folder);
+    const { page, messages } = await libraryPage(t, folder);
     const got = await page.evaluate(async ({ scene, steps }) => {
         const world = await relief.streamWorld("/files/w/world.json", { radius: 40 });
         const lines = [];
@@ -262,9 +262,9 @@ test("a missing or damaged tile is reported once, and its coarse tile stays", { 
     assert.deepEqual(got.allowed, ["no error", "no error"]);
     assert.equal(got.gl, 0);
     // Without 'warn' the system logs the same warnings to the console, once each.
-    const warned = said.filter((line) => line.startsWith("warning: "));
-    assert.equal(warned.length, 2, said.join("\n"));
-    assert.deepEqual(said.filter((line) => !line.startsWith("warning: ") && !line.includes("404")), []);
+    const warned = messages.filter((line) => line.startsWith("warning: "));
+    assert.equal(warned.length, 2, messages.join("\n"));
+    assert.deepEqual(messages.filter((line) => !line.startsWith("warning: ") && !line.includes("404")), []);
 });
 
 test("a page plays a scene with [stream] from its own files", { timeout: 120_000 }, async (t) => {
@@ -282,7 +282,7 @@ velocity = [0.0, -30.0, 0.0]
 rate = 100.0
 `);
     run("relief-sim", path.join(folder, "s.toml"), "--page", path.join(folder, "s.html"));
-    const { page, said } = await openFile(t, path.join(folder, "s.html"));
+    const { page, messages } = await openFile(t, path.join(folder, "s.html"));
     const stream = await page.evaluate(() => {
         reliefView.particles.paused = true;
         reliefView.particles.step();
@@ -290,5 +290,5 @@ rate = 100.0
     });
     assert.ok(stream.present > 0 && stream.present === stream.wanted && stream.failed === 0, JSON.stringify(stream));
     assert.equal(await page.locator("#message p").textContent(), "");
-    assert.deepEqual(spoken(said), []);
+    assert.deepEqual(pageMessages(messages), []);
 });

@@ -125,7 +125,7 @@ test("every sheet and strut of a collider is drawn, and nothing else", { timeout
     const open = await viewer(t);
     for (const [name, [mesh, ...options]] of Object.entries(cases)) {
         run("relief", "bake", mesh === bunny ? bunny : at(mesh), "-q", "-o", at("c.relief"), ...options);
-        const { page, said, close } = await open(scenePage(folder, at("c.relief")), { viewport: { width: 300, height: 260 } });
+        const { page, messages, close } = await open(scenePage(folder, at("c.relief")), { viewport: { width: 300, height: 260 } });
         await page.evaluate(`window.keptDepths = ${keptDepths}`);
         const found = await page.evaluate(compare, [50, 44, 500, mesh === "gap.obj" ? mouth : null]);
         t.diagnostic(`${name}: ${JSON.stringify(found)}`);
@@ -133,7 +133,7 @@ test("every sheet and strut of a collider is drawn, and nothing else", { timeout
         assert.ok(found.seen > 20, `${name}: ${found.seen} rays hit it`);
         assert.equal(found.holes, 0, `${name}: ${found.holes} of ${found.seen} rays pass through the collider`);
         assert.equal(found.nothing, 0, `${name}: ${found.nothing} of ${found.drawn} drawn points are not on the collider`);
-        assert.deepEqual(said, []);
+        assert.deepEqual(messages, []);
         await close();
     }
 });

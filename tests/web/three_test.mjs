@@ -19,7 +19,7 @@ test("particles and three.js meshes occlude each other", { timeout: 60_000 }, as
         await browser.close();
         server.close();
     });
-    const { page, said } = await openPage(browser, `${server.url}/#test`, { viewport: { width: 480, height: 360 } });
+    const { page, messages } = await openPage(browser, `${server.url}/#test`, { viewport: { width: 480, height: 360 } });
     await page.waitForFunction("!document.getElementById('note').textContent.startsWith('Loading')", undefined,
                                { timeout: 30_000 });
     assert.match(await page.textContent("#note"), /Drag/);
@@ -71,5 +71,5 @@ test("particles and three.js meshes occlude each other", { timeout: 60_000 }, as
     assert.ok(answer.before > 40 && answer.inside > 40, "meshes in front of particles hide them");
     assert.ok(answer.behind < 15, "meshes behind particles are hidden");
     assert.equal(answer.error, 0);
-    assert.deepEqual(said, []);
+    assert.deepEqual(messages, []);
 });

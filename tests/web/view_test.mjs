@@ -32,7 +32,7 @@ test("each feature of the page changes the picture", { timeout: 300_000 }, async
     const folder = scratch(t);
     run("relief", "view", bake(folder), "--mesh", bunny, "-q", "--samples", "5000", "-o", path.join(folder, "made.html"));
     const made = dataOf(path.join(folder, "made.html"));
-    const { page, said } = await openFile(t, path.join(folder, "made.html"), { viewport: { width: 760, height: 400 }, colorScheme: "dark" });
+    const { page, messages } = await openFile(t, path.join(folder, "made.html"), { viewport: { width: 760, height: 400 }, colorScheme: "dark" });
     const message = () => page.locator("#message p").textContent();
     const changed = async (what, least, action) => {
         await page.evaluate(kChange);
@@ -67,7 +67,7 @@ test("each feature of the page changes the picture", { timeout: 300_000 }, async
     assert.equal(await page.locator("#why").textContent(), made.check.worst_places[0].why);
 
     assert.equal(await message(), "");
-    assert.deepEqual(said, []);
+    assert.deepEqual(messages, []);
 });
 
 test("patches show their cells", { timeout: 300_000 }, async (t) => {
@@ -75,7 +75,7 @@ test("patches show their cells", { timeout: 300_000 }, async (t) => {
     const patches = path.join(folder, "patches.relief");
     run("relief", "bake", bunny, "-q", "-o", patches, "--map", "patches:bytes=200kB");
     run("relief", "view", patches, "--mesh", bunny, "-q", "--samples", "5000", "-o", path.join(folder, "made.html"));
-    const { page, said } = await openFile(t, path.join(folder, "made.html"), { viewport: { width: 760, height: 400 }, colorScheme: "dark" });
+    const { page, messages } = await openFile(t, path.join(folder, "made.html"), { viewport: { width: 760, height: 400 }, colorScheme: "dark" });
     await page.evaluate(() => {
         reliefView.panel.setShow("surface");
         reliefView.look.floor = null;
@@ -109,7 +109,7 @@ test("patches show their cells", { timeout: 300_000 }, async (t) => {
     });
     assert.ok(colors >= 3, `${colors} colours`);
     assert.equal(await page.locator("#message p").textContent(), "");
-    assert.deepEqual(said, []);
+    assert.deepEqual(messages, []);
 });
 
 test("particles meet the body and restart; nothing overflows a small window", { timeout: 300_000 }, async (t) => {
@@ -121,7 +121,7 @@ box_max = [0.5, 1.3, 0.5]
 velocity = [0, -2, 0]
 rate = 5000
 `;
-    const { page, said } = await openFile(t, scenePage(folder, bake(folder), emitter), { viewport: { width: 420, height: 800 } });
+    const { page, messages } = await openFile(t, scenePage(folder, bake(folder), emitter), { viewport: { width: 420, height: 800 } });
     await page.evaluate(() => (reliefView.particles.paused = true));
     await page.click("#tab-particles");
     const contacts = await page.evaluate(() => {
@@ -139,7 +139,7 @@ rate = 5000
     const beyond = await page.evaluate(() => [...document.querySelectorAll("#panel *, #title *")]
         .filter((one) => one.offsetParent && one.getBoundingClientRect().right > 421).map((one) => one.outerHTML.slice(0, 80)));
     assert.deepEqual(beyond, []);
-    assert.deepEqual(said, []);
+    assert.deepEqual(messages, []);
 });
 
 test("invalid input gives a message, and the page stays usable", { timeout: 300_000 }, async (t) => {
@@ -150,9 +150,9 @@ test("invalid input gives a message, and the page stays usable", { timeout: 300_
     const data = dataOf(made);
     const open = await viewer(t);
     const sentence = async (page_file, pattern) => {
-        const { page, said, close } = await open(page_file);
+        const { page, messages, close } = await open(page_file);
         assert.match(await page.locator("#message p").textContent(), pattern);
-        assert.deepEqual(said, []);
+        assert.deepEqual(messages, []);
         await close();
     };
     const cut = structuredClone(data);
@@ -170,9 +170,9 @@ test("invalid input gives a message, and the page stays usable", { timeout: 300_
     }
     await sentence(withData(scene, { ...played, scene: "[collider]\nfile = \"b.relief\"\n" }), /b\.relief/);
 
-    const { page, said } = await open(withData(made, null));
+    const { page, messages } = await open(withData(made, null));
     assert.ok(await page.isVisible("#empty"), "an empty page shows a hint");
-    assert.deepEqual(said, []);
+    assert.deepEqual(messages, []);
 });
 
 test("missing features give a message; a lost context is restored", { timeout: 300_000 }, async (t) => {
@@ -181,7 +181,7 @@ test("missing features give a message; a lost context is restored", { timeout: 3
     const made = path.join(folder, "bunny.html");
     run("relief", "view", file);
     const open = await viewer(t);
-    const { page, said } = await open(made);
+    const { page, messages } = await open(made);
     await page.evaluate(() => {
         window.loss = reliefView.gl.getExtension("WEBGL_lose_context");
         window.loss.loseContext();
@@ -195,7 +195,7 @@ test("missing features give a message; a lost context is restored", { timeout: 3
     await page.waitForFunction("window.reliefView?.body && reliefView.body !== window.bodyBefore");
     assert.equal(await page.locator("#message p").textContent(), "");
     assert.equal(await page.evaluate("reliefView.pixelsNow().error"), 0);
-    assert.deepEqual(said.filter((line) => !/CONTEXT_LOST_WEBGL/.test(line)), []);
+    assert.deepEqual(messages.filter((line) => !/CONTEXT_LOST_WEBGL/.test(line)), []);
 
     const without = async (script, pattern, page_file = made) => {
         const { page: other, close } = await open(page_file);

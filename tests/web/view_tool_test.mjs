@@ -30,12 +30,12 @@ test("the check matches relief check; a sheet is the centre of its shell", { tim
     const folder = scratch(t);
     const [mesh, sheet, made] = viewSheet(folder, "--mesh", path.join(folder, "sheet.obj"), "-q", "--samples", "5000");
     const check = (...words) => run("relief", "check", sheet, "--mesh", mesh, "--samples", "5000", ...words);
-    const said = JSON.parse(check("--json"));
-    const { page, said: console } = await opened(t, made);
+    const report = JSON.parse(check("--json"));
+    const { page, messages } = await opened(t, made);
     await page.click("#tab-errors");
     const verdicts = check().split("\n").filter((line) => /^[^ :]+\.relief: /.test(line));
     assert.equal(await page.locator("#verdict").textContent(), verdicts.map((line) => line.replace(/^[^:]+: /, "")).join("; "));
-    assert.equal(await page.locator("#verdict").getAttribute("class"), said.verdict.grade);
+    assert.equal(await page.locator("#verdict").getAttribute("class"), report.verdict.grade);
     assert.match(await page.locator("#sheets-note").textContent(), /Sheets have a thickness of [0-9.]+/);
     const depth = await page.evaluate("reliefView.look.depth");
     assert.ok(depth > 1e-3, `half the thickness is ${depth}`);
@@ -48,33 +48,33 @@ test("the check matches relief check; a sheet is the centre of its shell", { tim
         return blue / (data.length / 4);
     });
     assert.ok(strong < 0.01, `${(100 * strong).toFixed(1)} % of the picture is blue`);
-    assert.deepEqual(console, []);
+    assert.deepEqual(messages, []);
 });
 
 test("the page of a check shows its numbers, worst places, parts and advice", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     const at = (name) => path.join(folder, name);
-    // A slab under a ledge that hides it from both maps, with a pillar too thin for their texels, whose name is markup.
+    // A slab and a ledge whose gap neither map sees, with a pillar too thin for their texels, whose name is markup.
     writeFileSync(at("slab.obj"), boxes([{ name: "slab", low: [-45, -1, -45], high: [45, 1, 45] },
                                          { name: "ledge", low: [-40, 11, -40], high: [40, 13, 40] },
                                          { name: "<b>pillar</b>", low: [43.75, 1, -0.25], high: [44.25, 7, 0.25] }]));
     run("relief", "bake", at("slab.obj"), "-q", "-o", at("slab.relief"), "--map", "fixed8:dir=-y,size=32");
-    const said = JSON.parse(run("relief", "check", at("slab.relief"), "--mesh", at("slab.obj"), "-q", "--samples", "5000", "--json",
+    const report = JSON.parse(run("relief", "check", at("slab.relief"), "--mesh", at("slab.obj"), "-q", "--samples", "5000", "--json",
                                 "--html", at("slab.html")));
-    assert.ok(said.advice.length > 0 && said.verdict.lost_parts === 1, JSON.stringify(said.verdict));
-    const { page, said: console } = await opened(t, at("slab.html"));
+    assert.ok(report.advice.length > 0 && report.verdict.lost_parts === 1, JSON.stringify(report.verdict));
+    const { page, messages } = await opened(t, at("slab.html"));
     await page.click("#tab-errors");
-    assert.equal(await page.locator("#verdict").getAttribute("class"), said.verdict.grade);
+    assert.equal(await page.locator("#verdict").getAttribute("class"), report.verdict.grade);
     assert.deepEqual(await page.locator("#advice li code").allTextContents(),
-                     said.advice.filter((one) => one.helps || !one.tried).map((one) => one.command));
+                     report.advice.filter((one) => one.helps || !one.tried).map((one) => one.command));
     assert.match(await page.locator("#parts").textContent(), /<b>pillar<\/b>.*texels/s);
     assert.match(await page.locator("#measures").textContent(), /surface unseen by maps.*samples of each kind5,000seed1/);
-    const worst = said.worst_places.at(-1);
+    const worst = report.worst_places.at(-1);
     await page.locator("#places button").last().click();
     const target = await page.evaluate("reliefView.camera.target");
     assert.ok(target.every((v, k) => Math.abs(v - worst.position[k]) < 1e-4), `${target} instead of ${worst.position}`);
     assert.equal(await page.locator("#why").textContent(), worst.why);
-    assert.deepEqual(console, []);
+    assert.deepEqual(messages, []);
 });
 
 test("a scene's bodies are drawn in their places, and move", { timeout: 300_000 }, async (t) => {
@@ -102,7 +102,7 @@ speed = 1.0
 rate = 500.0
 `);
     run("relief-sim", at("s.toml"), "--page", at("s.html"));
-    const { page, said } = await opened(t, at("s.html"));
+    const { page, messages } = await opened(t, at("s.html"));
     await page.waitForFunction("reliefView.view.bodies.length === 2",
                                undefined, { timeout: 120_000 });
     const places = () => page.evaluate(() => reliefView.view.bodies.map((body) => [...body.model].slice(12, 15)));
@@ -117,7 +117,7 @@ rate = 500.0
     assert.ok(await page.evaluate("reliefView.particles.system.info.alive") > 100);
     assert.equal(await page.evaluate("reliefView.pixelsNow().error"), 0);
     assert.equal(await page.locator("#message p").textContent(), "");
-    assert.deepEqual(said, []);
+    assert.deepEqual(messages, []);
 });
 
 test("a world's bodies are drawn in their places, and colliders are uploaded once", { timeout: 300_000 }, async (t) => {
@@ -126,7 +126,7 @@ test("a world's bodies are drawn in their places, and colliders are uploaded onc
     execFileSync("python3", [path.join(root, "tests/cli/level.py"), at("level.gltf"), "floor=6"]);
     run("relief", "bake", at("level.gltf"), "--world", at("w"), "--budget", "200kB", "-q");
     run("relief", "view", at("w/world.json"), "-o", at("w.html"));
-    const { page, said } = await opened(t, at("w.html"));
+    const { page, messages } = await opened(t, at("w.html"));
     await page.waitForFunction("reliefView.view.bodies.length === 5", undefined, { timeout: 120_000 });
     const { places, colliders, error } = await page.evaluate(() => {
         reliefView.particles.paused = true;
@@ -139,7 +139,7 @@ test("a world's bodies are drawn in their places, and colliders are uploaded onc
     assert.equal(colliders, 3);
     assert.equal(error, 0);
     assert.equal(await page.locator("#message p").textContent(), "");
-    assert.deepEqual(said, []);
+    assert.deepEqual(messages, []);
 });
 
 test("clicks pick bodies; a check colours bodies and lists the worst; keys fly", { timeout: 300_000 }, async (t) => {
@@ -149,7 +149,7 @@ test("clicks pick bodies; a check colours bodies and lists the worst; keys fly",
     execFileSync("python3", [path.join(root, "tests/cli/level.py"), at("moved.gltf"), "floor=6", "x=1"]);
     run("relief", "bake", at("level.gltf"), "--world", at("w"), "--budget", "200kB", "-q");
     run("relief", "view", at("w/world.json"), "--mesh", at("moved.gltf"), "-q", "--samples", "5000", "-o", at("w.html"));
-    const { page, said } = await opened(t, at("w.html"));
+    const { page, messages } = await opened(t, at("w.html"));
     await page.waitForFunction("reliefView.bodies?.placed.length === 5", undefined, { timeout: 120_000 });
     await page.setViewportSize({ width: 900, height: 500 }); // moves the panel to the side
     await page.evaluate(() => {
@@ -228,7 +228,7 @@ test("clicks pick bodies; a check colours bodies and lists the worst; keys fly",
     assert.ok(turned.ahead.reduce((sum, v, k) => sum + v * after.ahead[k], 0) < 0.95);
     assert.equal(await page.evaluate("reliefView.pixelsNow().error"), 0);
     assert.equal(await page.locator("#message p").textContent(), "");
-    assert.deepEqual(said, []);
+    assert.deepEqual(messages, []);
 });
 
 test("a deforming body is drawn at each step", { timeout: 300_000 }, async (t) => {
@@ -269,7 +269,7 @@ capacity = 1024
 
 test("fingers rotate and zoom", { timeout: 300_000 }, async (t) => {
     const [, , made] = viewSheet(scratch(t));
-    const { page, said } = await opened(t, made, { hasTouch: true });
+    const { page, messages } = await opened(t, made, { hasTouch: true });
     const camera = () => page.evaluate(() => ({ distance: reliefView.camera.distance, ...reliefView.camera.matrices(4, 3) }));
     const session = await page.context().newCDPSession(page);
     const touch = (type, ...points) => session.send("Input.dispatchTouchEvent",
@@ -286,5 +286,5 @@ test("fingers rotate and zoom", { timeout: 300_000 }, async (t) => {
     await touch("touchEnd");
     const near = await camera();
     assert.ok(Math.abs(near.distance / turned.distance - 0.5) < 0.1, `${near.distance} of ${turned.distance}`);
-    assert.deepEqual(said, []);
+    assert.deepEqual(messages, []);
 });

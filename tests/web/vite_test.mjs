@@ -61,12 +61,12 @@ test("npm pack, install and vite build give a working page", { timeout: 300_000 
         server.close();
     });
     for (const url of [server.url, `http://${/127\.0\.0\.1:\d+/.exec(told)[0]}`]) {
-        const { page, said } = await openPage(browser, url);
+        const { page, messages } = await openPage(browser, url);
         await page.waitForFunction("window.answer", undefined, { timeout: 120_000 });
         const answer = await page.evaluate("window.answer");
         assert.ok(answer.alive > 50, `${answer.alive} particles`);
         assert.equal(answer.time.toFixed(3), "0.167");
         assert.equal(answer.error, 0);
-        assert.deepEqual(said.filter((line) => !/\[vite\]/.test(line)), []);
+        assert.deepEqual(messages.filter((line) => !/\[vite\]/.test(line)), []);
     }
 });

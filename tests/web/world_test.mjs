@@ -31,7 +31,7 @@ position = [5.0, 1.0, 5.0]
 `;
     const natively = (more) => play(folder, `world = "w/world.json"\n${tomlOf(scene)}${more}`, "--path", "fragment");
     const native = { still: natively(""), moved: natively(keys) };
-    const { page, said } = await libraryPage(t, folder);
+    const { page, messages } = await libraryPage(t, folder);
     const got = await page.evaluate(async ([scene, steps]) => {
         const world = await relief.loadWorld("/files/w/world.json");
         const still = new relief.ParticleSystem(gl, { world, scene });
@@ -83,5 +83,5 @@ position = [5.0, 1.0, 5.0]
         assert.match(message, expected[i]);
     });
     assert.equal(got.gl, 0);
-    assert.deepEqual(said.filter((line) => !line.includes("404")), []); // of the missing world
+    assert.deepEqual(messages.filter((line) => !line.includes("404")), []); // of the missing world
 });

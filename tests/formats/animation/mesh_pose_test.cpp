@@ -137,7 +137,7 @@ TEST(MeshPose, LongIdleClipsAreFast) {
 }
 
 /// Assigns the second of two materials to every third triangle.
-void dress(AnimatedMesh& mesh) {
+void assignMaterials(AnimatedMesh& mesh) {
     mesh.materials = {"cloth", ""};
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         mesh.triangle_materials.push_back(i % 3 == 0 ? 1 : 0);
@@ -149,7 +149,7 @@ TEST(AnimatedMesh, RoundTrips) {
     mesh.nodes[0].matrix = Affine{{{1, 0, 0, 1}, {0, 1, 0, 0}, {0, 0, 1, 5}}};
     for (const bool dressed : {false, true}) {
         if (dressed) {
-            dress(mesh);
+            assignMaterials(mesh);
         }
         const std::vector<std::byte> bytes = writeAnimatedMesh(mesh);
         const AnimatedMesh read = required(readAnimatedMesh(bytes));
@@ -160,7 +160,7 @@ TEST(AnimatedMesh, RoundTrips) {
 
 TEST(AnimatedMesh, RejectsTruncationsAndSurvivesFlippedBytes) {
     AnimatedMesh tube = bendingTube(6, 4);
-    dress(tube);
+    assignMaterials(tube);
     const std::vector<std::byte> bytes = writeAnimatedMesh(tube);
     for (std::size_t size = 0; size < bytes.size(); size += 7) {
         EXPECT_FALSE(readAnimatedMesh(std::span(bytes).first(size))) << size;
@@ -211,7 +211,7 @@ TEST(AnimatedMesh, ErrorsNameTheFault) {
     };
     for (const auto& [change, words] : cases) {
         AnimatedMesh mesh = bendingTube(8, 6);
-        dress(mesh);
+        assignMaterials(mesh);
         change(mesh);
         const Result<AnimatedMesh> read = readAnimatedMesh(writeAnimatedMesh(mesh));
         ASSERT_FALSE(read) << words;
@@ -221,7 +221,7 @@ TEST(AnimatedMesh, ErrorsNameTheFault) {
 
 TEST(MeshParts, GroupsAndMaterialsByName) {
     AnimatedMesh mesh = bendingTube(8, 6);
-    dress(mesh);
+    assignMaterials(mesh);
     EXPECT_EQ(groupNames(mesh), (std::vector<std::string>{"foot", "middle"}));
     const auto foot = groupWeights(mesh, "foot");
     const auto middle = groupWeights(mesh, "middle");

@@ -260,7 +260,7 @@ TEST_F(FileIo, StandardInputAndOutput) {
     EXPECT_EQ(full, 0);
 }
 
-TEST_F(FileIo, TheLimitIsInclusiveForFilesAndStreams) {
+TEST_F(FileIo, LimitIsInclusiveForFilesAndStreams) {
     ASSERT_TRUE(writeFile(in("a"), pattern(1000)));
     EXPECT_TRUE(readFile(in("a"), 1000));
     expectError(readFile(in("a"), 999), ErrorCode::kLimit);

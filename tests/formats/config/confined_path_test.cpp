@@ -136,7 +136,7 @@ TEST_F(ScenePaths, ARootPermitsOneMoreFolder) {
     EXPECT_FALSE(resolveInside(folder_, "in"));
 }
 
-TEST_F(ScenePaths, ARootIsAFolderAndADashIsAFile) {
+TEST_F(ScenePaths, RootsAreFoldersAndADashIsAFile) {
     EXPECT_EQ(*resolveInside("", "-"), fs::path("./-"));
     EXPECT_TRUE(checkRoot(folder_));
     for (const fs::path& none : {folder_ / "a.relief", folder_ / "none"}) {

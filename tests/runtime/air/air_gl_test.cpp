@@ -158,7 +158,7 @@ AirSettings everything() {
     return air;
 }
 
-// No kind, each kind alone, all but one, and all: each combination compiles, and its result is the sum of its parts.
+// No kind, only one kind, all but one, and all: each combination compiles, and its result is the sum of its parts.
 // With several attractors or vortices, each adds its own contribution.
 TEST_P(AirGlTest, EveryCombinationCompilesAndAddsUp) {
     const AirSettings all = everything();
@@ -192,20 +192,20 @@ TEST_P(AirGlTest, EveryCombinationCompilesAndAddsUp) {
         const AirBlock block = required(AirBlock::create(some(kinds)));
         EXPECT_EQ(block.defines().empty(), kinds == 0) << "a scene without air must not compile air code";
         EXPECT_EQ(block.defines().find("_CURL") != std::string::npos, (kinds & 4U) != 0);
-        std::vector<std::vector<Sample>> alone;
+        std::vector<std::vector<Sample>> parts;
         for (unsigned kind = 1; kind < 32; kind *= 2) {
-            alone.push_back(evaluate(some(kinds & kind), points));
+            parts.push_back(evaluate(some(kinds & kind), points));
         }
-        expectSum(evaluate(block, points), alone);
+        expectSum(evaluate(block, points), parts);
     }
-    std::vector<std::vector<Sample>> alone;
+    std::vector<std::vector<Sample>> parts;
     for (std::size_t i = 0; i < all.attractors.size(); ++i) {
         AirSettings one;
         one.attractors = {all.attractors[i]};
         one.vortices = {all.vortices[i]};
-        alone.push_back(evaluate(one, points));
+        parts.push_back(evaluate(one, points));
     }
-    expectSum(evaluate(some(24), points), alone);
+    expectSum(evaluate(some(24), points), parts);
 }
 
 TEST_P(AirGlTest, FlowIsExactOnTrilinearFieldsAndConstantOutside) {

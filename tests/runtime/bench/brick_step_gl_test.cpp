@@ -20,14 +20,14 @@ namespace {
 constexpr std::uint32_t kParticles = 64 * 1024;
 
 /// A volume on the CPU and on the GPU.
-struct Rival {
+struct Baseline {
     BrickAtlas atlas;
     Field cpu;
     float voxel;
 };
 
-float distanceAt(const Rival& rival, const glm::vec3& p) {
-    return rival.cpu(p)->distance;
+float distanceAt(const Baseline& baseline, const glm::vec3& p) {
+    return baseline.cpu(p)->distance;
 }
 
 /// The particles' textures, one texel per particle.
@@ -66,12 +66,12 @@ class BrickStepGlTest : public testing::TestWithParam<StepPath> {
         scene_ = makeBenchScene(std::move(box), kParticles, kBenchLifetime);
     }
 
-    [[nodiscard]] Rival bricks(unsigned cells) {
+    [[nodiscard]] Baseline bricks(unsigned cells) {
         bricks_ = std::make_unique<BrickVolume>(
             BrickVolume::build(*query_, {.cells = cells, .flat_index = true}, 200'000));
         return {bricks_->atlas(), fieldOf(*bricks_), static_cast<float>(bricks_->voxel())};
     }
-    [[nodiscard]] Rival dense() {
+    [[nodiscard]] Baseline dense() {
         const DistanceGrid grid =
             sampleDistances(*query_, makeLattice(query_->mesh().bounds, 100'000, LatticeFit::kCorner));
         dense_ = std::make_unique<DistanceVolume>(grid, DistanceVolume::bandRange(grid, 0.02));
@@ -79,14 +79,14 @@ class BrickStepGlTest : public testing::TestWithParam<StepPath> {
     }
 
     /// One step from birth, then fifteen more.
-    void expectTheCpusSides(const Rival& rival) {
-        auto step = BrickStep::create(rival.atlas, scene_, GetParam());
+    void expectCpuSides(const Baseline& baseline) {
+        auto step = BrickStep::create(baseline.atlas, scene_, GetParam());
         ASSERT_TRUE(step) << step.error().message;
-        EXPECT_GE(step->bytes(), rival.atlas.bytes);
+        EXPECT_GE(step->bytes(), baseline.atlas.bytes);
         // Except for atlas slots without a brick.
-        EXPECT_LE(step->bytes(), rival.atlas.bytes + rival.atlas.bytes / 100);
+        EXPECT_LE(step->bytes(), baseline.atlas.bytes + baseline.atlas.bytes / 100);
         step->begin(scene_);
-        expectTheCpusReactions(rival, State(*step));
+        expectCpuReactions(baseline, State(*step));
         for (int i = 0; i < 15; ++i) {
             step->step();
         }
@@ -98,16 +98,16 @@ class BrickStepGlTest : public testing::TestWithParam<StepPath> {
                 continue;
             }
             ++outside;
-            ASSERT_GT(distanceAt(rival, after.p(i)), -margin(rival)) << i;
+            ASSERT_GT(distanceAt(baseline, after.p(i)), -margin(baseline)) << i;
         }
         EXPECT_GT(outside, kParticles / 2);
         EXPECT_GT(inside, 100U);
     }
 
     /// Texture unit weights may have only 8 bits: an error of that fraction of a voxel along each axis.
-    static float margin(const Rival& rival) { return 0.012F * rival.voxel; }
+    static float margin(const Baseline& baseline) { return 0.012F * baseline.voxel; }
 
-    void expectTheCpusReactions(const Rival& rival, const State& after) {
+    void expectCpuReactions(const Baseline& baseline, const State& after) {
         const Forces& forces = scene_.forces;
         std::size_t free = 0, hit = 0, caught = 0, pushed = 0, off = 0;
         for (std::size_t i = 0; i < kParticles; ++i) {
@@ -115,9 +115,9 @@ class BrickStepGlTest : public testing::TestWithParam<StepPath> {
             const glm::vec3 v = (birth.velocity + kBenchDt * (forces.gravity + forces.drag * forces.wind)) /
                                 (1.0F + kBenchDt * forces.drag);
             const glm::vec3 to = birth.position + kBenchDt * v;
-            const FieldValue end = *rival.cpu(to);
-            const float before = distanceAt(rival, birth.position);
-            if (std::abs(end.distance) < margin(rival) || std::abs(before) < margin(rival)) {
+            const FieldValue end = *baseline.cpu(to);
+            const float before = distanceAt(baseline, birth.position);
+            if (std::abs(end.distance) < margin(baseline) || std::abs(before) < margin(baseline)) {
                 continue;
             }
             const glm::vec3 at = after.p(i);
@@ -134,7 +134,7 @@ class BrickStepGlTest : public testing::TestWithParam<StepPath> {
                 ASSERT_EQ(after.contact(i), Contact::kCaught) << i << ": " << end.distance;
                 // There is no normal without a brick, or where all codes are clamped.
                 const float vn = glm::dot(v, end.normal);
-                if (end.distance > -0.6F * rival.atlas.range && std::abs(vn) > 0.05F * glm::length(v)) {
+                if (end.distance > -0.6F * baseline.atlas.range && std::abs(vn) > 0.05F * glm::length(v)) {
                     ++pushed;
                     const glm::vec3 turned = vn < 0.0F ? v - 2.0F * vn * end.normal : v;
                     off += glm::distance(after.v(i), turned) > 0.05F * glm::length(v) ? 1 : 0;
@@ -158,23 +158,23 @@ class BrickStepGlTest : public testing::TestWithParam<StepPath> {
 
 // Bricks as in Unreal Engine, and a dense volume.
 TEST_P(BrickStepGlTest, ParticlesEndOnTheCpuSide) {
-    expectTheCpusSides(bricks(8));
-    expectTheCpusSides(dense());
+    expectCpuSides(bricks(8));
+    expectCpuSides(dense());
 }
 
-TEST_P(BrickStepGlTest, ParticlesAmongTightBricksEndOnTheCpusSide) {
-    Rival rival = bricks(3);
-    expectTheCpusSides(rival);
+TEST_P(BrickStepGlTest, ParticlesAmongTightBricksEndOnTheCpuSide) {
+    Baseline baseline = bricks(3);
+    expectCpuSides(baseline);
     // More bricks than 16 bits can index.
     constexpr std::uint32_t kIdle = 66'000;  // before those in use
-    BrickAtlas& atlas = rival.atlas;
+    BrickAtlas& atlas = baseline.atlas;
     const std::size_t idle = kIdle * atlas.nodesOfBrick();
     atlas.codes.insert(atlas.codes.begin(), idle, std::int16_t{0});
     atlas.bytes += idle * atlas.bits / 8;
     for (std::uint32_t& cube : atlas.index) {
         cube += cube >= BrickAtlas::kFirstBrick ? kIdle : 0;
     }
-    expectTheCpusSides(rival);
+    expectCpuSides(baseline);
 }
 
 INSTANTIATE_TEST_SUITE_P(Paths, BrickStepGlTest, testing::Values(StepPath::kFragment, StepPath::kCompute),

@@ -102,10 +102,10 @@ TEST(EmitterSurface, IsUniformOnABentPipe) {
     }
     EXPECT_LT(test::kolmogorov(along, [](double theta) { return theta / (0.5 * kPi); }),
               test::kKolmogorovMax);
-    const auto bent_share = [](double phi) {
+    const auto bent_fraction = [](double phi) {
         return (kBend * phi + kRadius * std::sin(phi)) / (2 * kPi * kBend);
     };
-    EXPECT_LT(test::kolmogorov(around, bent_share), test::kKolmogorovMax);
+    EXPECT_LT(test::kolmogorov(around, bent_fraction), test::kKolmogorovMax);
     EXPECT_GT(test::kolmogorov(around, [](double phi) { return phi / (2 * kPi); }), 20.0)
         << "areas at rest would be detected";
 }
@@ -150,14 +150,14 @@ TEST(EmitterSurface, WeightsAreALinearDensity) {
     for (std::size_t corner = 0; corner < 3; ++corner) {
         std::vector<float> weights(6, 0.0F);
         weights[corner] = 0.3F;
-        std::vector<double> shares;
+        std::vector<double> coordinates;
         for (const EmitterSurface::Place& place : drawn(surfaceOf(two, corners, weights))) {
             const double x{place.position.x};
             const double y{place.position.y};
             ASSERT_LE(x + y, 1.000001) << "the other triangle has no weight";
-            shares.push_back(corner == 0 ? 1.0 - x - y : corner == 1 ? x : y);
+            coordinates.push_back(corner == 0 ? 1.0 - x - y : corner == 1 ? x : y);
         }
-        EXPECT_LT(test::kolmogorov(shares, [](double x) { return x * x * (3.0 - 2.0 * x); }),
+        EXPECT_LT(test::kolmogorov(coordinates, [](double x) { return x * x * (3.0 - 2.0 * x); }),
                   test::kKolmogorovMax);
     }
     // A triangle with three times the mean weight has three times the births.

@@ -90,9 +90,9 @@ TEST(BodyGrid, FindsTheBodiesWhoseBoxesContainAPoint) {
                     }
                 }
                 // A cell lists more bodies than those whose boxes contain the point.
-                const std::vector<std::uint32_t> asked = found(grid, p);
-                ASSERT_TRUE(std::ranges::includes(asked, expected)) << p.x << ' ' << p.y << ' ' << p.z;
-                ASSERT_EQ(std::ranges::adjacent_find(asked), asked.end());
+                const std::vector<std::uint32_t> candidates = found(grid, p);
+                ASSERT_TRUE(std::ranges::includes(candidates, expected)) << p.x << ' ' << p.y << ' ' << p.z;
+                ASSERT_EQ(std::ranges::adjacent_find(candidates), candidates.end());
                 met += expected.size();
             }
         }
@@ -116,17 +116,17 @@ TEST(BodyGrid, TestsFewBodiesOfMany) {
     boxes.push_back(along(glm::vec3(-500.0F, -20.0F, -500.0F), glm::vec3(1000.0F, 20.0F, 1000.0F), 65'536));
     const BodyGrid grid = BodyGrid::of(boxes, 0.5F);
     EXPECT_LE(grid.entries.size(), 30 * boxes.size());
-    std::size_t asked = 0;
+    std::size_t tested = 0;
     constexpr int kPoints = 5'000;
     for (int i = 0; i < kPoints; ++i) {
         const glm::vec3 p = spread * inCube(random, 1.0F);
         for (const BodyGrid::Level& level : grid.levels) {
             const glm::ivec3 cell(glm::floor(p * level.cells_per_unit));
             const BodyGrid::List& list = grid.lists[level.first + (cellHash(cell) & level.mask)];
-            asked += list.end - list.first;
+            tested += list.end - list.first;
         }
     }
-    EXPECT_LT(static_cast<double>(asked) / kPoints, 5.0);
+    EXPECT_LT(static_cast<double>(tested) / kPoints, 5.0);
 }
 
 TEST(BodyGrid, LongBodiesOccupyOnlyCellsAlongThem) {

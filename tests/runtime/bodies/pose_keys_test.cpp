@@ -17,7 +17,7 @@ Pose pose(const glm::vec3& position, const glm::vec3& axis, float angle) {
     return {position, glm::angleAxis(angle, glm::normalize(axis)), 2.0F};
 }
 
-std::vector<PoseKey> way() {
+std::vector<PoseKey> path() {
     return {{1.0, pose({0.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 1.0F}, 0.0F)},
             {3.0, pose({4.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 1.0F}, 0.5F * kPi)},
             {4.0, pose({4.0F, -1.0F, 2.0F}, {0.3F, 1.0F, -0.5F}, -2.5F)},
@@ -25,7 +25,7 @@ std::vector<PoseKey> way() {
 }
 
 TEST(PoseKeys, InterpolatesLinearlyAtConstantRotation) {
-    const auto keys = way();
+    const auto keys = path();
     EXPECT_EQ(poseAt(keys, -5.0), keys.front().pose);
     EXPECT_EQ(poseAt(keys, 1.0), keys.front().pose);
     EXPECT_EQ(poseAt(keys, 9.0), keys.back().pose);
@@ -36,20 +36,20 @@ TEST(PoseKeys, InterpolatesLinearlyAtConstantRotation) {
 }
 
 TEST(PoseKeys, MotionMatchesTheClosedForm) {
-    const Motion motion = motionAt(way(), 2.0);
+    const Motion motion = motionAt(path(), 2.0);
     EXPECT_NEAR(glm::length(motion.velocity - glm::vec3(2.0F, 0.0F, 0.0F)), 0.0F, 1e-6F);
     EXPECT_NEAR(glm::length(motion.turn - glm::vec3(0.0F, 0.0F, 0.25F * kPi)), 0.0F, 1e-6F);
     for (const double time : {0.5, 4.2, 4.5, 9.0}) {
-        EXPECT_EQ(motionAt(way(), time).velocity, glm::vec3(0.0F)) << time;
-        EXPECT_LT(glm::length(motionAt(way(), time).turn), 1e-6F) << time;
+        EXPECT_EQ(motionAt(path(), time).velocity, glm::vec3(0.0F)) << time;
+        EXPECT_LT(glm::length(motionAt(path(), time).turn), 1e-6F) << time;
     }
-    EXPECT_EQ(motionAt(way(), 1.0).velocity, glm::vec3(2.0F, 0.0F, 0.0F))
+    EXPECT_EQ(motionAt(path(), 1.0).velocity, glm::vec3(2.0F, 0.0F, 0.0F))
         << "at a key, the motion of the next segment";
 }
 
 // A quarter turn by either of its two quaternions is the same rotation.
 TEST(PoseKeys, RotatesTheShorterWay) {
-    auto keys = way();
+    auto keys = path();
     keys[1].pose.rotation = -keys[1].pose.rotation;
     EXPECT_NEAR(motionAt(keys, 2.0).turn.z, 0.25F * kPi, 1e-6F);
     EXPECT_NEAR(glm::angle(poseAt(keys, 2.0).rotation), 0.25F * kPi, 1e-5F);
@@ -76,7 +76,7 @@ TEST(PoseKeys, HalfTurnsFollowTheAngles) {
 
 // For any rotation, velocity + turn × arm is the change of a point's toWorld().
 TEST(PoseKeys, MotionIsTheDerivativeOfThePose) {
-    const auto keys = way();
+    const auto keys = path();
     constexpr double kShort = 1e-3;
     const glm::vec3 q(0.7F, -0.4F, 1.1F);
     for (const double time : {1.25, 2.9, 3.25, 3.5, 3.9}) {

@@ -131,7 +131,7 @@ TEST_F(CApi, EveryPointerMayBeNull) {
     });
 }
 
-TEST_F(CApi, EveryHandleMayBeFreedOrNone) {
+TEST_F(CApi, FreedAndInvalidHandlesAreRejected) {
     int at_all = 0;
     eachArgument([&](const Function& function, std::size_t i, const Argument& argument) {
         if (!argument.isHandle()) {
@@ -380,7 +380,7 @@ TEST_F(CApi, ObjectsMayBeFreedInAnyOrder) {
     stage_.revive();
 }
 
-TEST_F(CApi, AFailedSetOrSpawnChangesNothing) {
+TEST_F(CApi, FailedSetOrSpawnChangesNothing) {
     relief_particles_options wrong = stage_.options;
     wrong.gravity[1] = 5.0F;
     wrong.ground_height = kNan;

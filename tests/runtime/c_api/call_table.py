@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """relief.h as tables for C++: call_table.py RELIEF_H OUT_INC
 
-Every function with its arguments, and every structure with its fields, so that no test can leave out one that is new. What
-this script does not understand is an error: teach it.
+Lists every function with its arguments and every structure with its fields, so that tests include new ones. Unknown syntax
+is an error: extend this script.
 """
 import pathlib
 import re
@@ -15,7 +15,7 @@ header = re.sub(r'extern "C" \{', '', header)
 
 
 def taken(pattern):
-    """All matches, which are then cut out of the header."""
+    """Returns all matches and removes them from the header."""
     global header
     found = list(re.finditer(pattern, header, flags=re.S))
     header = re.sub(pattern, ' ', header, flags=re.S)
@@ -42,7 +42,7 @@ for match in taken(r'([\w ]+?[ *]+)(relief_\w+)\(([^()]*)\);'):
     functions.append((' '.join(match[1].split()), match[2], arguments))
 
 if header.strip(' \n}'):
-    sys.exit('relief.h has more than call_table.py understands: ' + ' '.join(header.split()))
+    sys.exit('call_table.py cannot parse this part of relief.h: ' + ' '.join(header.split()))
 
 lines = ['const std::vector<Structure> kStructures{']
 for name, fields in structures:

@@ -39,7 +39,7 @@ inline bool agrees(const FieldSample& a, const FieldSample& b) {
             glm::length(a.normal - b.normal) <= kNormal);
 }
 
-/// The possible votes of a GPU's patch map, given rounding; none if the map is of another kind.
+/// The possible votes of a GPU's patch map within rounding errors; none if the map is of another kind.
 inline std::vector<rounding::RoundedVote> possibleVotes(const Collider& collider, const glm::vec3& p,
                                                         const FieldSample& gpu) {
     if (gpu.map < 0 || isSoftwareRenderer()) {
@@ -51,11 +51,11 @@ inline std::vector<rounding::RoundedVote> possibleVotes(const Collider& collider
 }
 
 /// The vote of one map of a collider.
-inline FieldSample evaluateAlone(const Collider& collider, const glm::vec3& p, int map) {
-    Collider alone;
-    alone.bounds = collider.bounds;
-    alone.maps.push_back(collider.maps[static_cast<std::size_t>(map)]);
-    FieldSample own = evaluate(alone, p);
+inline FieldSample evaluateMap(const Collider& collider, const glm::vec3& p, int map) {
+    Collider single;
+    single.bounds = collider.bounds;
+    single.maps.push_back(collider.maps[static_cast<std::size_t>(map)]);
+    FieldSample own = evaluate(single, p);
     own.map = own.map < 0 ? own.map : map;
     return own;
 }
@@ -69,7 +69,7 @@ inline bool tied(const Collider& collider, const glm::vec3& p, const FieldSample
         std::abs(double{cpu.distance} - double{gpu.distance}) > double{kRelative} * 2.0 + apart) {
         return false;
     }
-    return vote != nullptr || agrees(gpu, evaluateAlone(collider, p, gpu.map));
+    return vote != nullptr || agrees(gpu, evaluateMap(collider, p, gpu.map));
 }
 
 /// Point k of the 27 points of a cube of side 2 around the origin.
@@ -95,7 +95,7 @@ inline Agreement compareAt(const Collider& collider, const glm::vec3& p, const F
     if (tied(collider, p, gpu, rounded ? &*own : nullptr)) {
         return Agreement::kAtBorder;
     }
-    const bool own_vote = gpu.map >= 0 && agrees(gpu, evaluateAlone(collider, p, gpu.map));
+    const bool own_vote = gpu.map >= 0 && agrees(gpu, evaluateMap(collider, p, gpu.map));
     for (int k = 0; k < 27; ++k) {
         const FieldSample near = evaluate(collider, p + step * neighbour(k));
         // The GPU's map also decides at the neighbour, or the distance changes with the point as well.

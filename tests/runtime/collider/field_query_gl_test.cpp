@@ -156,7 +156,7 @@ DepthMap turnedPatches(std::mt19937& random) {
 // Twenty combinations: with no other maps, only planar maps, only a cube, or both; patches first, last or between.
 TEST_P(FieldQueryGlTest, PatchesAgreeWithTheCpuAloneAndAmongOtherMaps) {
     std::mt19937 random(test::seedFrom(31));
-    int asked = 0, by_patches = 0;
+    int decided = 0, by_patches = 0;
     for (unsigned repeat = 0; repeat < 20; ++repeat) {
         Collider collider;
         const unsigned company = repeat % 5;
@@ -182,13 +182,13 @@ TEST_P(FieldQueryGlTest, PatchesAgreeWithTheCpuAloneAndAmongOtherMaps) {
         expectAgreement(collider, points, 1.0F / 60.0F, 5e-3);
         for (std::size_t i = 0; company > 0 && i < points.size(); i += 20) {
             const FieldSample cpu = evaluate(collider, points[i]);
-            asked += cpu.map >= 0 ? 1 : 0;
+            decided += cpu.map >= 0 ? 1 : 0;
             by_patches += cpu.map == place ? 1 : 0;
         }
     }
     // Both often decide.
-    EXPECT_GT(by_patches, asked / 5);
-    EXPECT_LT(by_patches, asked - asked / 5);
+    EXPECT_GT(by_patches, decided / 5);
+    EXPECT_LT(by_patches, decided - decided / 5);
 }
 
 TEST_P(FieldQueryGlTest, TexelBordersAndCubeCornersFallToEitherSide) {

@@ -126,7 +126,7 @@ inline RoundedVote patchVote(PatchTexels texels, const PatchRecord& record, cons
     return vote;
 }
 
-/// The possible votes at p, given rounding, if p is in a leaf with patches, in object units; the CPU's vote is first.
+/// The possible votes at p within rounding errors, in object units, if p is in a leaf with patches; the CPU's is first.
 /// Empty if no possible leaf has patches.
 inline std::vector<RoundedVote> patchVotes(const DepthMap& map, const glm::vec3& p) {
     const auto transformed = [&](const glm::vec4& r) {

@@ -159,10 +159,10 @@ TEST_P(DepthMapRendererGlTest, SteepPlanesFaceTheViewerAndContainTheSurface) {
                     continue;
                 }
                 ++covered;
-                const auto said = vote(map, on);
-                ASSERT_TRUE(said);
+                const auto voted = vote(map, on);
+                ASSERT_TRUE(voted);
                 // At most one code step along the normal.
-                ASSERT_NEAR(said->distance, 0.0F, 1e-4F) << slope << " " << x << " " << y;
+                ASSERT_NEAR(voted->distance, 0.0F, 1e-4F) << slope << " " << x << " " << y;
                 const float cosine = std::abs(texel.front->normal.z);
                 ASSERT_GE(cosine, kPlaneCosineMin) << slope;
                 faced += cosine == 1.0F ? 1 : 0;

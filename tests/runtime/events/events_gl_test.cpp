@@ -105,7 +105,7 @@ struct Played {
     std::vector<StepEvents> events;
     std::vector<ParticleState> state;
     std::map<std::uint32_t, std::uint32_t> caught;  // steps in which each id was pushed out from inside
-    std::unique_ptr<WorldTextures> textures;        // of the particles
+    std::unique_ptr<WorldTextures> textures;        // used by the particles
 };
 
 /// Particles on a box and a floor, some of which die. They span many rows and levels.
@@ -164,7 +164,7 @@ TEST_P(EventsGlTest, HitsMatchTheCollisionsOfEachParticle) {
             std::uint32_t last = 0;
             for (std::size_t i = 0; i < step.events.size(); ++i) {
                 const ParticleEvent& event = step.events[i];
-                EXPECT_TRUE(i == 0 || event.index > last) << "not in the order of indices";
+                EXPECT_TRUE(i == 0 || event.index > last) << "not in index order";
                 last = event.index;
                 EXPECT_EQ(event.type, event.id % 40 % 5);
                 EXPECT_GT(event.time, step.time - 1.01 * static_cast<double>(kDt));

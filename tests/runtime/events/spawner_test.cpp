@@ -135,8 +135,8 @@ TEST(Spawner, AFilteredListGivesTheSameBirths) {
     SpawnSettings settings{.of = 1, .min_speed = 2.0F, .material = 4, .count_max = 3, .most = 20};
     Spawner by_all(settings, 9);
     Spawner by_few(settings, 9);
-    const EventOptions heeded = by_all.eventOptions();
-    EXPECT_EQ(heeded, (EventOptions{.min_speed = 2.0F, .most = 20, .type = 1, .material = 4}));
+    const EventOptions options = by_all.eventOptions();
+    EXPECT_EQ(options, (EventOptions{.min_speed = 2.0F, .most = 20, .type = 1, .material = 4}));
     for (std::uint32_t step = 0; step < 5; ++step) {
         std::vector<ParticleEvent> all;
         std::vector<ParticleEvent> few;
@@ -144,13 +144,14 @@ TEST(Spawner, AFilteredListGivesTheSameBirths) {
             ParticleEvent hit = hitOf(i, i % 2, i % 3 == 0 ? 1.0F : 3.0F);
             hit.material = i % 5 == 0 ? 3 : 4;
             all.push_back(hit);
-            if (hit.type == heeded.type && hit.speed >= heeded.min_speed && hit.material == heeded.material) {
+            if (hit.type == options.type && hit.speed >= options.min_speed &&
+                hit.material == options.material) {
                 few.push_back(hit);
             }
         }
-        const std::size_t dropped = few.size() - heeded.most;
-        EXPECT_GT(few.size(), heeded.most);
-        few.resize(heeded.most);
+        const std::size_t dropped = few.size() - options.most;
+        EXPECT_GT(few.size(), options.most);
+        few.resize(options.most);
         std::vector<Birth> births;
         std::vector<Birth> same;
         const std::uint64_t refused = by_all.spawn(stepOf(all), {}, 1000, births);

@@ -198,7 +198,7 @@ TEST(MeshFile, ByExtension) {
     std::filesystem::remove(path);
 }
 
-// A cube's corners have three normals each, a flat square's corners one, and the ridge of a flat roof has the mean of
+// A cube's corners have three normals each, a flat square's corners one, and the ridge of a low roof has the mean of
 // both sides.
 TEST(MeshNormals, KeepCreasesAndSmoothCurves) {
     PictureMesh cube;

@@ -94,7 +94,7 @@ TEST_P(GlDeviceTest, DriversWithoutResetNotificationGiveAContext) {
     EXPECT_EQ(refused, 1) << "Mesa's llvmpipe supports the attribute, which is requested first";
 }
 
-TEST(NoContext, IsNamed) {
+TEST(NoContext, IsAnError) {
     const auto expectNamed = [](const auto& result) {
         ASSERT_FALSE(result);
         EXPECT_EQ(result.error().code, ErrorCode::kUsage);

@@ -384,7 +384,7 @@ TEST_P(GlFaultTest, ReadBacksReportAReset) {
 }
 
 // A lost context may return errors forever.
-TEST_P(GlFaultTest, EndlessErrorsEnd) {
+TEST_P(GlFaultTest, EndlessErrorsTerminate) {
     const Replaced errors(epoxy_glGetError, &endlessError);
     forgetGlErrors();
     expectFails(outcome(WorldTextures::create(collider_)), ErrorCode::kFailure, "0x0507");

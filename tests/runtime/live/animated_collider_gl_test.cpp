@@ -65,7 +65,7 @@ class AnimatedColliderGlTest : public CollisionTest {
     }
     /// Shows a pose.
     /// \return the fraction of wrong points near its mesh.
-    double wrongIn(const MeshPose& pose, std::size_t count) {
+    double wrongFraction(const MeshPose& pose, std::size_t count) {
         showPose(pose);
         const std::vector<glm::uvec3>& triangles = animated_->mesh().triangles;
         const std::vector<glm::vec3> positions = posed(animated_->mesh(), pose);
@@ -91,7 +91,7 @@ class AnimatedColliderGlTest : public CollisionTest {
         return static_cast<double>(wrong) / static_cast<double>(count);
     }
     /// A particle, initially at rest, after a box animated by a clip has hit it.
-    ParticleState metBy(const char* clip, const glm::vec3& half, const glm::vec3& position,
+    ParticleState hitBy(const char* clip, const glm::vec3& half, const glm::vec3& position,
                         const ParticleType& type) {
         makeAnimated(shared(movingBox(half)));
         make({.capacity = 16});
@@ -146,8 +146,8 @@ TEST_P(AnimatedColliderGlTest, InsideMatchesThePosedMesh) {
     const Pose body{{3.0F, -1.0F, 0.5F}, glm::angleAxis(0.7F, glm::normalize(glm::vec3(1, 2, 3))), 1.5F};
     // The tube is 1/25 of the box thick, and half a texel is lost at its silhouettes.
     makeAnimated(shared(bendingTube()), body, {.resolution = 768, .room = {}});
-    EXPECT_LE(wrongIn(clipPose(animated_->mesh(), "bend", 0.31), 3000), 0.02);
-    EXPECT_LE(wrongIn(clipPose(animated_->mesh(), "grow", 1.0), 3000), 0.02);
+    EXPECT_LE(wrongFraction(clipPose(animated_->mesh(), "bend", 0.31), 3000), 0.02);
+    EXPECT_LE(wrongFraction(clipPose(animated_->mesh(), "grow", 1.0), 3000), 0.02);
     const char* const file = std::getenv("RELIEF_ANIMATED");
     if (file == nullptr) {
         return;
@@ -156,7 +156,7 @@ TEST_P(AnimatedColliderGlTest, InsideMatchesThePosedMesh) {
     for (const MeshClip& clip : animated_->mesh().clips) {
         double worst = 0.0;
         for (int frame = 0; frame <= static_cast<int>(30.0F * clip.seconds); ++frame) {
-            worst = std::max(worst, wrongIn(poseAt(animated_->mesh(), clip, frame / 30.0), 1000));
+            worst = std::max(worst, wrongFraction(poseAt(animated_->mesh(), clip, frame / 30.0), 1000));
         }
         std::cout << clip.name << ": the worst frame has " << 100.0 * worst << " % wrong points\n";
         EXPECT_LE(worst, 0.02) << clip.name;
@@ -167,10 +167,10 @@ TEST_P(AnimatedColliderGlTest, InsideMatchesThePosedMesh) {
 // rotates by 90° per second about y around its fixed centre: the motion is that of its texels, ω × p at p, which
 // carries the end at +x towards −z.
 TEST_P(AnimatedColliderGlTest, ClipsPushParticles) {
-    const ParticleState pushed = metBy("go", {0.2F, 0.3F, 0.3F}, {0.3F, 0.05F, 0.1F}, {.restitution = 0.5F});
+    const ParticleState pushed = hitBy("go", {0.2F, 0.3F, 0.3F}, {0.3F, 0.05F, 0.1F}, {.restitution = 0.5F});
     EXPECT_NEAR(pushed.velocity.x, 1.5F, 0.02F);
     EXPECT_NEAR(pushed.velocity.y, 0.0F, 1e-3F);
-    const ParticleState swung = metBy("turn", {0.5F, 0.3F, 0.05F}, {0.4F, 0.05F, -0.083F}, {});
+    const ParticleState swung = hitBy("turn", {0.5F, 0.3F, 0.05F}, {0.4F, 0.05F, -0.083F}, {});
     const float speed = 0.4F * static_cast<float>(std::acos(0.0));
     EXPECT_NEAR(swung.velocity.z, -speed, 0.08F * speed);
 }

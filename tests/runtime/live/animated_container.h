@@ -9,7 +9,7 @@
 namespace relief {
 
 /// A tube whose upper half, by triangles, has another material.
-inline AnimatedMesh dressedTube(const char* lower, const char* upper) {
+inline AnimatedMesh tubeWithMaterials(const char* lower, const char* upper) {
     AnimatedMesh mesh = bendingTube(12, 8);
     mesh.materials = {lower, upper};
     for (const glm::uvec3& t : mesh.triangles) {

@@ -81,7 +81,7 @@ INSTANTIATE_TEST_SUITE_P(Paces, DeathQueueRun,
                                          Pace{"Coarse", 0.0F, 200.0F, 1000.0F}),
                          [](const auto& run) { return std::string(run.param.name); });
 
-TEST(DeathQueue, OneFloatDecides) {
+TEST(DeathQueue, DueTimesAreExact) {
     DeathQueue queue;
     const float due = 1.7F;
     queue.push(due, 7);

@@ -281,7 +281,7 @@ TEST(Emitter, AgesSpreadBirthsOverTheStep) {
     }
 }
 
-TEST(Emitter, ADayOfStepsMatchesOneLongStep) {
+TEST(Emitter, ADayOfStepsHasTheExactCount) {
     EmitterSettings settings;
     settings.rate = 1.0;
     Emitter emitter(settings, 1);

@@ -27,16 +27,16 @@ inline constexpr double kKolmogorovMax = 2.7;
 
 /// Pearson's χ² of counts for expected fractions, minus its mean, in standard deviations. By chance it exceeds 6 once
 /// in millions of runs.
-inline double chiSquare(const std::vector<std::size_t>& counts, const std::vector<double>& shares) {
+inline double chiSquare(const std::vector<std::size_t>& counts, const std::vector<double>& fractions) {
     double whole = 0.0;
     double n = 0.0;
     for (std::size_t i = 0; i < counts.size(); ++i) {
-        whole += shares[i];
+        whole += fractions[i];
         n += static_cast<double>(counts[i]);
     }
     double sum = 0.0;
     for (std::size_t i = 0; i < counts.size(); ++i) {
-        const double expected = n * shares[i] / whole;
+        const double expected = n * fractions[i] / whole;
         sum += (static_cast<double>(counts[i]) - expected) * (static_cast<double>(counts[i]) - expected) /
                expected;
     }

@@ -269,7 +269,7 @@ TEST_P(StepPathGlTest, ToursAreUsedForSweepsOfASingleCollider) {
     EXPECT_FALSE(tours(box, {.sweep = true}));
 }
 
-TEST_P(StepPathGlTest, TheAutomaticPathFollowsTheDevice) {
+TEST_P(StepPathGlTest, AutomaticPathFollowsTheDevice) {
     const auto particles = ParticleSystem::create({.capacity = 10});
     ASSERT_TRUE(particles);
     EXPECT_EQ(particles->path(), context_->software() ? StepPath::kFragment : StepPath::kCompute);

@@ -106,7 +106,7 @@ class TilePainterGlTest : public GlTest {
     }
 
     /// Both methods give one picture. The GL snaps vertices to 1/256 pixel, and blends in half floats.
-    void expectTheSame(const char* what, bool ordered, bool among_collider, double most = 0.04) {
+    void expectSamePicture(const char* what, bool ordered, bool among_collider, double most = 0.04) {
         SCOPED_TRACE(what);
         const std::vector<float> drawn = draw(renderers_[0], ordered, among_collider);
         const std::vector<float> tiles = draw(renderers_[1], ordered, among_collider);
@@ -142,18 +142,18 @@ class TilePainterGlTest : public GlTest {
 
 TEST_P(TilePainterGlTest, EveryStyleMatchesPoints) {
     spawn(1500);
-    expectTheSame("in order", true, true);
-    expectTheSame("as they come", false, false);
+    expectSamePicture("in order", true, true);
+    expectSamePicture("as they come", false, false);
     style_.soft = 0.3F;
-    expectTheSame("soft", true, true);
+    expectSamePicture("soft", true, true);
     style_.soft = 0.0F;
     style_.blend = Blend::kAdditive;
     style_.opacity = 0.1F;
-    expectTheSame("added", false, true);
+    expectSamePicture("added", false, true);
     style_.blend = Blend::kAlpha;
     style_.opacity = 0.6F;
     srgb_ = true;
-    expectTheSame("sRGB", true, true);
+    expectSamePicture("sRGB", true, true);
     srgb_ = false;
     for (const glm::vec3& color :
          {glm::vec3(1.0F, 0.2F, 0.1F), glm::vec3(0.1F, 0.3F, 1.0F), glm::vec3(1.0F)}) {
@@ -162,7 +162,7 @@ TEST_P(TilePainterGlTest, EveryStyleMatchesPoints) {
         look.size = {{0.0F, 0.02F}, {0.5F, 0.1F}};
         look.lit = style_.looks.size() != 2;
     }
-    expectTheSame("types", true, true);
+    expectSamePicture("types", true, true);
     // The order matters, so equal pictures prove that the tiles keep it.
     style_.opacity = 0.9F;
     EXPECT_GT(between(draw(renderers_[1], true, true), draw(renderers_[1], false, true)).most, 0.4);
@@ -195,18 +195,18 @@ TEST_P(TilePainterGlTest, QuadsCellsAndStretchedSpritesMatch) {
     for (const bool quads : {false, true}) {
         style_.sprite = quads ? Sprite::kQuad : Sprite::kPoint;
         style_.atlas = nullptr;
-        expectTheSame(quads ? "quads" : "points", true, true);
+        expectSamePicture(quads ? "quads" : "points", true, true);
         style_.atlas = &atlas;
-        expectTheSame(quads ? "quads of cells" : "points of cells", true, true, kCellSteps);
+        expectSamePicture(quads ? "quads of cells" : "points of cells", true, true, kCellSteps);
     }
     style_.looks[0].stretch = 0.8F;
     style_.looks[2].stretch = 2.0F;
-    expectTheSame("stretched cells", true, true, kCellSteps);
+    expectSamePicture("stretched cells", true, true, kCellSteps);
     style_.atlas = nullptr;
-    expectTheSame("stretched", true, true);
+    expectSamePicture("stretched", true, true);
     style_.blend = Blend::kAdditive;
     style_.opacity = 0.2F;
-    expectTheSame("stretched, added", false, false);
+    expectSamePicture("stretched, added", false, false);
 }
 
 TEST_P(TilePainterGlTest, SpritesOfEverySizeMatch) {
@@ -249,7 +249,7 @@ TEST_P(TilePainterGlTest, SpritesAreDrawnIfTilesAreFull) {
     // Afterwards tiles are painted again.
     style_.diameter = 0.05F;
     style_.opacity = 0.6F;
-    expectTheSame("after that", true, false);
+    expectSamePicture("after that", true, false);
 }
 
 // So far away that all particles are in a few tiles, whose work groups would process all of them: points are drawn.
@@ -264,7 +264,7 @@ TEST_P(TilePainterGlTest, ACloudFarAwayIsDrawnAsPoints) {
     EXPECT_NE(points, draw(renderers_[1], true, false));
 }
 
-TEST_P(TilePainterGlTest, EmptyPicturesAreValid) {
+TEST_P(TilePainterGlTest, EmptyPicturesMatch) {
     spawn(300);
     ASSERT_EQ(sorter_->count(), 0U) << "before its first update";
     EXPECT_TRUE(renderers_[1].draw(*particles_, camera_, style_, target(), {&sorter_->order(), 0}));

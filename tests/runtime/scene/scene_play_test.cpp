@@ -62,7 +62,7 @@ TEST(ScenePlay, MissingClipsAndMeshesAreNamed) {
 
 TEST(ScenePlay, MaterialsHaveColours) {
     const test::TemporaryFolder folder;
-    const AnimatedMesh mesh = dressedTube("arm", "sleeve");
+    const AnimatedMesh mesh = tubeWithMaterials("arm", "sleeve");
     ASSERT_TRUE(saveCollider(folder.path() / "tube.relief", animatedContainer(mesh)));
     const auto load = [&](const std::string& keys) {
         return loadAll(

@@ -54,7 +54,7 @@ class SceneSurface : public testing::Test {
         expectErrorOf(load(text), "scene.toml:" + place + ": ", words);
     }
 
-    const AnimatedMesh mesh_ = dressedTube("cloth", "skin");
+    const AnimatedMesh mesh_ = tubeWithMaterials("cloth", "skin");
     const test::TemporaryFolder folder_;
 };
 

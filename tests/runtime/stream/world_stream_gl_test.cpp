@@ -42,7 +42,7 @@ class TestSource : public ColliderSource {
     explicit TestSource(const std::vector<Collider>& colliders) : colliders_(colliders) {}
 
     void request(std::size_t collider) override {
-        asked.push_back(collider);
+        requested.push_back(collider);
         under_way_.push_back(collider);
     }
     std::optional<Arrival> take() override { return holds_back ? std::nullopt : wait(); }
@@ -58,7 +58,7 @@ class TestSource : public ColliderSource {
 
     bool holds_back = false;
     std::size_t broken = 999;
-    std::vector<std::size_t> asked;
+    std::vector<std::size_t> requested;
 
   private:
     const std::vector<Collider>& colliders_;
@@ -144,13 +144,13 @@ class WorldStreamGlTest : public GlTest {
         return {{10.0F * static_cast<float>(collider), 3.0F, 0.0F}, 2.0F};
     }
     [[nodiscard]] std::vector<std::size_t> finish(const std::vector<std::size_t>& wanted) {
-        source_->asked.clear();
+        source_->requested.clear();
         std::vector<PointOfInterest> points;
         for (const std::size_t collider : wanted) {
             points.push_back(at(collider));
         }
         EXPECT_TRUE(stream_->finish(points));
-        return source_->asked;
+        return source_->requested;
     }
 
     std::vector<Collider> fine_;
@@ -165,7 +165,7 @@ class WorldStreamGlTest : public GlTest {
 };
 
 // Only the CPU decides what is wanted, loaded, evicted and reported, so one API is enough.
-using WorldStreamBooksGlTest = WorldStreamGlTest;
+using WorldStreamPolicyGlTest = WorldStreamGlTest;
 
 TEST_P(WorldStreamGlTest, FieldMatchesThePresentColliders) {
     open({});
@@ -218,7 +218,7 @@ TEST_P(WorldStreamGlTest, CoarseMapsAreUsedUntilTheUploadIsComplete) {
     EXPECT_EQ(stream_->counts().uploaded, fine_[3].texelBytes());
 }
 
-TEST_P(WorldStreamBooksGlTest, LeastRecentlyWantedIsEvicted) {
+TEST_P(WorldStreamPolicyGlTest, LeastRecentlyWantedIsEvicted) {
     // The first to be evicted is the largest, so that its memory suffices for any other.
     std::vector<std::size_t> by_size{0, 1, 2, 3, 4, 5};
     std::ranges::sort(by_size, std::greater(), [&](std::size_t i) { return fine_[i].texelBytes(); });
@@ -239,12 +239,12 @@ TEST_P(WorldStreamBooksGlTest, LeastRecentlyWantedIsEvicted) {
     EXPECT_TRUE(stream_->finish({&all, 1}));
     EXPECT_EQ(stream_->counts().wanted, kColliders);
     EXPECT_GE(stream_->counts().present, 2U);
-    source_->asked.clear();
+    source_->requested.clear();
     updates(10, {all});
-    EXPECT_TRUE(source_->asked.empty());
+    EXPECT_TRUE(source_->requested.empty());
 }
 
-TEST_P(WorldStreamBooksGlTest, UnwantedCollidersMakeRoom) {
+TEST_P(WorldStreamPolicyGlTest, UnwantedCollidersMakeRoom) {
     open({.gpu_bytes = coarse_bytes_ + 2 * largest_});
     // In any order and number: in the end the only wanted collider is present, and nothing was loaded in vain.
     Pcg32 random(12);
@@ -258,24 +258,24 @@ TEST_P(WorldStreamBooksGlTest, UnwantedCollidersMakeRoom) {
         static_cast<void>(finish(some));
         const std::uint64_t present = stream_->counts().present;
         EXPECT_GE(present, std::min<std::size_t>(some.size(), 1));
-        const std::size_t alone = random.next() % kColliders;
-        static_cast<void>(finish({alone}));
-        EXPECT_EQ(stream_->counts().present, 1U) << alone;
+        const std::size_t only = random.next() % kColliders;
+        static_cast<void>(finish({only}));
+        EXPECT_EQ(stream_->counts().present, 1U) << only;
         EXPECT_LE(stream_->counts().gpu_bytes, coarse_bytes_ + 2 * largest_);
     }
     EXPECT_TRUE(stream_->takeWarnings().empty());
 }
 
-TEST_P(WorldStreamBooksGlTest, EquallyNearCollidersDoNotAlternate) {
+TEST_P(WorldStreamPolicyGlTest, EquallyNearCollidersDoNotAlternate) {
     open({.gpu_bytes = coarse_bytes_ + largest_});
     for (int i = 0; i < 12; ++i) {
         const PointOfInterest between{{15.0F + (i % 2 == 0 ? 0.1F : -0.1F), 3.0F, 0.0F}, 20.0F};
         ASSERT_TRUE(stream_->finish({&between, 1}));
     }
-    EXPECT_EQ(source_->asked.size(), 1U);
+    EXPECT_EQ(source_->requested.size(), 1U);
 }
 
-TEST_P(WorldStreamBooksGlTest, BrokenCollidersAreReportedOnceAndStayCoarse) {
+TEST_P(WorldStreamPolicyGlTest, BrokenCollidersAreReportedOnceAndStayCoarse) {
     open({});
     source_->broken = 2;
     EXPECT_EQ(finish({1, 2}), (std::vector<std::size_t>{1, 2}));
@@ -290,28 +290,28 @@ TEST_P(WorldStreamBooksGlTest, BrokenCollidersAreReportedOnceAndStayCoarse) {
     expectFine({1});
 }
 
-TEST_P(WorldStreamBooksGlTest, LateLoadsDoNotBlockAndMayBeDiscarded) {
+TEST_P(WorldStreamPolicyGlTest, LateLoadsDoNotBlockAndMayBeDiscarded) {
     open({});
     source_->holds_back = true;
     updates(5, {at(1)});
-    EXPECT_EQ(source_->asked, std::vector<std::size_t>{1});
+    EXPECT_EQ(source_->requested, std::vector<std::size_t>{1});
     updates(1, {at(4)});
     source_->holds_back = false;
     updates(5, {at(4)});
-    EXPECT_EQ(source_->asked, (std::vector<std::size_t>{1, 4}));
+    EXPECT_EQ(source_->requested, (std::vector<std::size_t>{1, 4}));
     expectFine({4});
 }
 
-TEST_P(WorldStreamBooksGlTest, ConcurrentLoadsAreLimited) {
+TEST_P(WorldStreamPolicyGlTest, ConcurrentLoadsAreLimited) {
     for (const std::size_t most : {1U, 4U}) {
         open({.under_way = most});
         source_->holds_back = true;
         updates(5, {at(0), at(1), at(2), at(3), at(4)});
-        EXPECT_EQ(source_->asked.size(), most);
+        EXPECT_EQ(source_->requested.size(), most);
     }
 }
 
-TEST_P(WorldStreamBooksGlTest, TooLittleMemoryIsReported) {
+TEST_P(WorldStreamPolicyGlTest, TooLittleMemoryIsReported) {
     EXPECT_EQ(make({.gpu_bytes = coarse_bytes_ - 1}).error().code, ErrorCode::kLimit);
     open({.gpu_bytes = coarse_bytes_ + largest_ - 8});
     EXPECT_EQ(stream_->takeWarnings().size(), 1U);
@@ -378,7 +378,7 @@ TEST_P(WorldStreamGlTest, NothingFallsThroughStreamedTiles) {
     }
 }
 
-TEST_P(WorldStreamBooksGlTest, MissingAndReplacedFilesAreNamed) {
+TEST_P(WorldStreamPolicyGlTest, MissingAndReplacedFilesAreNamed) {
     const test::TemporaryFolder folder;
     const auto write = [&](WorldFile& file, const Collider& collider) {
         const std::vector<std::byte> bytes = required(writeContainer(collider));
@@ -410,6 +410,6 @@ TEST_P(WorldStreamBooksGlTest, MissingAndReplacedFilesAreNamed) {
 }  // namespace
 
 RELIEF_INSTANTIATE_GL_TESTS(WorldStreamGlTest);
-INSTANTIATE_TEST_SUITE_P(Apis, WorldStreamBooksGlTest, testing::Values(GlApi::kGl33Core), glApiTestName);
+INSTANTIATE_TEST_SUITE_P(Apis, WorldStreamPolicyGlTest, testing::Values(GlApi::kGl33Core), glApiTestName);
 
 }  // namespace relief

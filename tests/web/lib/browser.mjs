@@ -57,17 +57,17 @@ export async function launch(more = []) {
 }
 
 /** Messages of a page, without the driver's messages about uploads of drawn maps. */
-export const spoken = (said) => said.filter((line) => !/GL Driver Message .*TexSubImage with unpack buffer/.test(line));
+export const pageMessages = (messages) => messages.filter((line) => !/GL Driver Message .*TexSubImage with unpack buffer/.test(line));
 
-/** A page whose console messages and errors are collected in `said`, one line each. Its policy applies to playwright too. */
+/** A page whose console messages and errors are collected in `messages`, one line each. Its policy applies to playwright too. */
 export async function openPage(browser, url, options = {}) {
     const context = await browser.newContext({ viewport: { width: 1000, height: 700 }, bypassCSP: true, ...options });
     const page = await context.newPage();
     page.setDefaultTimeout(120_000); // software rendering on a busy machine is slow
-    const said = [];
-    page.on("console", (message) => said.push(`${message.type()}: ${message.text()}`));
-    page.on("pageerror", (error) => said.push(`error: ${error.message}`));
-    page.on("requestfailed", (request) => said.push(`failed: ${request.url()}`));
+    const messages = [];
+    page.on("console", (message) => messages.push(`${message.type()}: ${message.text()}`));
+    page.on("pageerror", (error) => messages.push(`error: ${error.message}`));
+    page.on("requestfailed", (request) => messages.push(`failed: ${request.url()}`));
     await page.goto(url);
-    return { page, said, close: () => context.close() };
+    return { page, messages, close: () => context.close() };
 }

@@ -4,7 +4,7 @@ import path from "node:path";
 
 import { launch, modules, openPage, root, serve } from "./browser.mjs";
 
-/** Closes at the end of the test. @returns { page, said } */
+/** Closes at the end of the test. @returns { page, messages } */
 export async function libraryPage(t, files, more = []) {
     const server = await serve({
         "/": path.join(root, "tests/web/lib"),

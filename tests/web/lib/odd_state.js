@@ -139,7 +139,7 @@ const kNames = `CURRENT_PROGRAM VERTEX_ARRAY_BINDING ARRAY_BUFFER_BINDING ELEMEN
     UNPACK_COLORSPACE_CONVERSION_WEBGL`.split(/\s+/);
 
 /** All state by name: objects by reference, arrays as text. Does not change the state. */
-export function noteState(gl) {
+export function recordState(gl) {
     const plain = (value) => (value !== null && value.length !== undefined ? [...value].join(" ") : value);
     const state = {};
     kNames.forEach((name) => (state[name] = plain(gl.getParameter(gl[name]))));

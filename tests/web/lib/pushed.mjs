@@ -13,14 +13,14 @@ export const pushedTables = (steps) => ({
 });
 
 /** The final particles in relief-sim. `collider`: the scene's collider table. */
-export function pushedNatively(folder, steps, collider) {
+export function pushedInReliefSim(folder, steps, collider) {
     const native = play(folder, tomlOf(pushedTables(steps)) + collider);
     assert.equal(native.size, 400);
     return native;
 }
 
 /** rows: the page's ParticleSystem.read() */
-export function assertPushedAlike(rows, native) {
+export function assertSamePushes(rows, native) {
     const far = Math.max(...distances(rows, native));
     assert.ok(far < 1e-3, `a particle is ${far} from its position in relief-sim`);
     const pushed = rows.filter((value, i) => i % 12 === 1 && value > 1.6).length;
