@@ -48,7 +48,7 @@ TEST(Materials, NineAxesDistinguishSides) {
 TEST(Materials, EveryFaultIsDetected) {
     struct Case {
         const char* message;
-        std::function<void(Materials&)> spoil;
+        std::function<void(Materials&)> change;
     };
     for (const Case& wrong : std::vector<Case>{
              {"a material tree, but no materials", [](auto& m) { m.list.clear(); }},
@@ -76,7 +76,7 @@ TEST(Materials, EveryFaultIsDetected) {
              {"octant with an invalid material", [](auto& m) { m.nodes[1].leaves[3] = 4; }},
              {"octant with an invalid material", [](auto& m) { m.nodes[0].leaves[7] = 1; }}}) {
         Materials materials = someMaterials();
-        wrong.spoil(materials);
+        wrong.change(materials);
         const std::string fault = faultOfMaterials(materials);
         EXPECT_NE(fault.find(wrong.message), std::string::npos) << wrong.message << ": " << fault;
     }

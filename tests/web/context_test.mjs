@@ -23,12 +23,12 @@ test("a lost context is reported, and restored", { timeout: 60_000 }, async (t) 
         const elsewhere = new relief.ParticleSystem(other, { collider, scene, shaded: false });
         const view = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -12, 1];
         const projection = [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1.02, -1, 0, 0, -0.2, 0];
-        const sayings = {};
+        const outcomes = {};
         const trial = (name, f) => {
             try {
-                sayings[name] = ["no error", String(f())];
+                outcomes[name] = ["no error", String(f())];
             } catch (error) {
-                sayings[name] = [error.name, error.message];
+                outcomes[name] = [error.name, error.message];
             }
         };
         const lit = () => {
@@ -80,21 +80,21 @@ test("a lost context is reported, and restored", { timeout: 60_000 }, async (t) 
         const litAfter = lit();
         fresh.dispose();
         system.dispose();
-        return { sayings, litBefore, litAfter, inside: [...inside], alive, errors: [gl.getError(), other.getError()] };
+        return { outcomes, litBefore, litAfter, inside: [...inside], alive, errors: [gl.getError(), other.getError()] };
     });
     t.diagnostic(JSON.stringify(report));
-    const { sayings } = report;
+    const { outcomes } = report;
     for (const name of ["step", "draw", "read", "bind", "a new system", "step later", "restart"]) {
-        assert.equal(sayings[name][0], "ReliefError", name);
-        assert.match(sayings[name][1], /context is lost.*webglcontextrestored/, name);
+        assert.equal(outcomes[name][0], "ReliefError", name);
+        assert.match(outcomes[name][1], /context is lost.*webglcontextrestored/, name);
     }
     for (const [name, cure] of [["step", "restart\\(\\)"], ["bind", "GpuCollider"]]) {
-        assert.match(sayings[`${name} after`].join(": "), new RegExp(`^ReliefError: .*lost meanwhile; .*${cure}`));
+        assert.match(outcomes[`${name} after`].join(": "), new RegExp(`^ReliefError: .*lost since; .*${cure}`));
     }
     for (const name of ["dispose", "another context's step", "the CPU's query", "dispose after", "restart after"]) {
-        assert.equal(sayings[name][0], "no error", `${name}: ${sayings[name][1]}`);
+        assert.equal(outcomes[name][0], "no error", `${name}: ${outcomes[name][1]}`);
     }
-    assert.equal(sayings["the CPU's query"][1], "true");
+    assert.equal(outcomes["the CPU's query"][1], "true");
     assert.ok(report.inside[0] < 0 && report.inside[1] > 0, `${report.inside}`);
     assert.ok(report.alive.every((count) => count > 1000), `${report.alive}`);
     assert.ok(report.litBefore > 500 && report.litAfter > 0.8 * report.litBefore, `${report.litBefore}, ${report.litAfter}`);

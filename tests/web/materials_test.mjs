@@ -65,18 +65,18 @@ test("hits have the same materials as in relief-sim", { timeout: 120_000 }, asyn
     assert.ok(drops.every((hit) => Math.abs(hit.position[0]) < 0.01 || (hit.position[0] < 0) === (hit.material === "oak")));
 
     const { page, messages } = await libraryPage(t, folder);
-    const [rows, info, told, error] = await page.evaluate(async ([scene, steps]) => {
+    const [rows, info, reports, error] = await page.evaluate(async ([scene, steps]) => {
         const collider = await relief.load("/files/slab.relief");
-        const told = [];
+        const reports = [];
         const system = new relief.ParticleSystem(gl, {
             scene,
             files: { "slab.relief": collider },
-            hits: ({ step, time, dropped, rows }) => told.push({ step, time, dropped, rows: [...rows] }),
+            hits: ({ step, time, dropped, rows }) => reports.push({ step, time, dropped, rows: [...rows] }),
         });
         for (let i = 0; i < steps; ++i) {
             system.step();
         }
-        return [[...system.read()], system.info, told, gl.getError()];
+        return [[...system.read()], system.info, reports, gl.getError()];
     }, [kScene, kSteps]);
     assert.equal(error, 0, "a GL error");
     assert.deepEqual(messages, []);
@@ -86,15 +86,15 @@ test("hits have the same materials as in relief-sim", { timeout: 120_000 }, asyn
     const far = Math.max(...distances(rows, particles));
     assert.ok(far < 1e-3, `a particle is ${far} from its position in relief-sim`);
 
-    assert.deepEqual(told.map(({ step }) => step), Array.from({ length: kSteps - 2 }, (_, i) => i + 1));
-    const heard = told.flatMap(({ step, time, dropped, rows: all }) => {
+    assert.deepEqual(reports.map(({ step }) => step), Array.from({ length: kSteps - 2 }, (_, i) => i + 1));
+    const received = reports.flatMap(({ step, time, dropped, rows: all }) => {
         assert.equal(dropped, 0);
         return Array.from({ length: all.length / 16 }, (_, i) => ({ step, end: time, row: all.slice(16 * i, 16 * i + 16) }));
     });
     const listed = hits.filter((hit) => hit.step <= kSteps - 2);
-    assert.equal(heard.length, listed.length);
+    assert.equal(received.length, listed.length);
     listed.forEach((hit, i) => {
-        const { step, end, row } = heard[i];
+        const { step, end, row } = received[i];
         assert.equal(step, hit.step);
         assert.equal(info.materials[row[12]], hit.material);
         assert.equal(row[13], hit.type);

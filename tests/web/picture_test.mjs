@@ -167,7 +167,7 @@ test("a scene drawn from its meshes looks as in relief-sim", { timeout: 300_000 
         return { meshes: system.info.meshes, without: plain.info.meshes, refused, first: compare(first, await native(0)), last: compare(last, await native(1)),
                  changed: compare(first, last), again: compare(first, again), gl: gl.getError() };
     }, [kScene, kSteps, kWidth, kHeight]);
-    t.diagnostic(`pixels that differ and mean difference: ${got.first} at first, ${got.last} at last, ${got.changed} between them`);
+    t.diagnostic(`different pixels and mean difference: first ${got.first}, last ${got.last}, between them ${got.changed}`);
     assert.equal(got.meshes, true);
     assert.equal(got.without, false);
     assert.match(got.refused, /needs render\.meshes/);

@@ -57,8 +57,8 @@ async function compare(t, ...options) {
     const beyond = (limit) => away.filter((distance) => distance > limit).length / away.length;
     const height = (all) => all.reduce((sum, one) => sum + one.place[1], 0) / all.length / side;
     const lower = height([...web.values()]) - height([...native.values()]);
-    t.diagnostic(`${native.size} particles; the farthest is ${Math.max(...away)} of the side away; ${100 * beyond(1e-4)} % are more than 1e-4 of the side away, ` +
-                 `${100 * beyond(1e-2)} % more than 1e-2; the mean height differs by ${lower}`);
+    t.diagnostic(`${native.size} particles; largest distance ${Math.max(...away)} sides; ${100 * beyond(1e-4)} % above 1e-4, ` +
+                 `${100 * beyond(1e-2)} % above 1e-2; mean heights differ by ${lower}`);
     assert.ok(beyond(1e-4) < 0.02 && beyond(1e-2) < 0.005 && Math.abs(lower) < 1e-4);
 }
 

@@ -50,9 +50,9 @@ test("npm pack, install and vite build give a working page", { timeout: 300_000 
     const development = spawn(process.execPath, ["node_modules/vite/bin/vite.js", "--host", "127.0.0.1", "--logLevel", "info"],
                               { cwd: folder, env: { ...process.env, NO_COLOR: "1" } });
     t.after(() => development.kill());
-    let told = "";
-    while (!/127\.0\.0\.1:\d+/.test(told)) {
-        told += String((await once(development.stdout, "data"))[0]);
+    let output = "";
+    while (!/127\.0\.0\.1:\d+/.test(output)) {
+        output += String((await once(development.stdout, "data"))[0]);
     }
     const server = await serve({ "/": path.join(folder, "dist") });
     const browser = await launch();
@@ -60,7 +60,7 @@ test("npm pack, install and vite build give a working page", { timeout: 300_000 
         await browser.close();
         server.close();
     });
-    for (const url of [server.url, `http://${/127\.0\.0\.1:\d+/.exec(told)[0]}`]) {
+    for (const url of [server.url, `http://${/127\.0\.0\.1:\d+/.exec(output)[0]}`]) {
         const { page, messages } = await openPage(browser, url);
         await page.waitForFunction("window.answer", undefined, { timeout: 120_000 });
         const answer = await page.evaluate("window.answer");

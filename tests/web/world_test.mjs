@@ -29,8 +29,8 @@ time = 0.0
 time = ${kSteps / 64}
 position = [5.0, 1.0, 5.0]
 `;
-    const natively = (more) => play(folder, `world = "w/world.json"\n${tomlOf(scene)}${more}`, "--path", "fragment");
-    const native = { still: natively(""), moved: natively(keys) };
+    const playNatively = (more) => play(folder, `world = "w/world.json"\n${tomlOf(scene)}${more}`, "--path", "fragment");
+    const native = { still: playNatively(""), moved: playNatively(keys) };
     const { page, messages } = await libraryPage(t, folder);
     const got = await page.evaluate(async ([scene, steps]) => {
         const world = await relief.loadWorld("/files/w/world.json");
@@ -41,13 +41,13 @@ position = [5.0, 1.0, 5.0]
             moved.set({ collider: [{ position: [5, i / steps, 5] }] });
             moved.step();
         }
-        const asked = world.query([5, 1.9, 5, 0, 30, 0]);
+        const queried = world.query([5, 1.9, 5, 0, 30, 0]);
         const [body, ...others] = moved.info.bodies;
         const text = (change) => new TextEncoder().encode(JSON.stringify(change(JSON.parse(new TextDecoder().decode(world.files["world.json"])))));
         const changed = (change) => () => (new relief.World({ ...world.files, "world.json": text(change) }));
         return {
             still: [...still.read()], moved: [...moved.read()], bounds: world.bounds, nodes: world.bodies.map((one) => one.node),
-            asked: { distance: [...asked.distance], normal: [...asked.normal], body: [...asked.body] },
+            queried: { distance: [...queried.distance], normal: [...queried.normal], body: [...queried.body] },
             first: { node: body.node, file: body.file, y: body.matrix[13] }, others: others.map((one) => one.node),
             errors: await errorsOf(
                 () => relief.loadWorld("/files/none/world.json"),
@@ -73,9 +73,9 @@ position = [5.0, 1.0, 5.0]
     assert.match(got.first.file, /world\/box-[0-9a-f]+\.relief$/);
     assert.deepEqual(got.others, ["ground", "first", "third", "wide"]);
     assert.ok(Math.abs(got.bounds.min[0] + 20) < 0.01 && Math.abs(got.bounds.max[1] - 2) < 0.01, JSON.stringify(got.bounds));
-    assert.equal(got.asked.body[0], 2);
-    assert.ok(Math.abs(got.asked.distance[0] + 0.1) < 0.01 && got.asked.normal[1] > 0.99, JSON.stringify(got.asked));
-    assert.ok(got.asked.distance[1] > 20);
+    assert.equal(got.queried.body[0], 2);
+    assert.ok(Math.abs(got.queried.distance[0] + 0.1) < 0.01 && got.queried.normal[1] > 0.99, JSON.stringify(got.queried));
+    assert.ok(got.queried.distance[1] > 20);
     const expected = [/404/, /not a world\.json/, /this Response has no URL/, /bodies\[0\]\.collider = 9 is not one of the 3/, /does not match its hash/, /needs a World/,
                       /'window' is not a node of a body/, /collider 0: .*create a new system/];
     got.errors.forEach((message, i) => {

@@ -42,12 +42,12 @@ TEST(Air, InvalidSettingsAreNamed) {
     ASSERT_TRUE(checkAir(good)) << checkAir(good).error().message;
     struct Case {
         const char* part;
-        std::function<void(AirSettings&)> spoil;
+        std::function<void(AirSettings&)> change;
     };
     const float nan = std::nanf("");
     const auto expectNamed = [&](const Case& one, ErrorCode code) {
         AirSettings air = good;
-        one.spoil(air);
+        one.change(air);
         expectError(checkAir(air), code, one.part);
     };
     for (const Case& one : {Case{"wind", [&](auto& a) { a.wind.y = nan; }},

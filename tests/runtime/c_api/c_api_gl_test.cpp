@@ -75,8 +75,8 @@ class CApi : public testing::Test {
         const std::string message = relief_error();
         EXPECT_EQ(message.find(arguments.function.name + "(): "), 0U) << what << ": " << message;
         EXPECT_NE(message.find(says), std::string::npos) << what << ": " << message;
-        static const std::regex kOfCpp("\\bk[A-Z]|::|\\n");
-        EXPECT_FALSE(std::regex_search(message, kOfCpp)) << message;
+        static const std::regex kCppNames("\\bk[A-Z]|::|\\n");
+        EXPECT_FALSE(std::regex_search(message, kCppNames)) << message;
     }
     template <class F>
     void eachArgument(const F& f) {

@@ -181,9 +181,9 @@ RELIEF_INSTANTIATE_STEP_TESTS_ONCE(AnimatedArgumentsGlTest);
 TEST_P(AnimatedArgumentsGlTest, InvalidArgumentsAreRejected) {
     const SharedMesh mesh = shared(movingBox({0.2F, 0.3F, 0.3F}));
     makeAnimated(mesh);
-    const auto refused = [&](const std::function<void(MeshPose&)>& spoil) {
+    const auto refused = [&](const std::function<void(MeshPose&)>& change) {
         MeshPose pose = restPose(*mesh);
-        spoil(pose);
+        change(pose);
         const Result<void> set = animated_->setPose(pose);
         return !set && set.error().code == ErrorCode::kUsage;
     };

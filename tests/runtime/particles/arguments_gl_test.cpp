@@ -29,14 +29,14 @@ class ArgumentsGlTest : public CollisionTest {
         CollisionTest::SetUp();
         make({.capacity = 16});
     }
-    bool refusedType(const std::function<void(ParticleType&)>& spoil) {
+    bool refusedType(const std::function<void(ParticleType&)>& change) {
         ParticleType type;
-        spoil(type);
+        change(type);
         return refused(particles_->setTypes(std::span(&type, 1)));
     }
-    bool refusedBirth(const std::function<void(Birth&)>& spoil) {
+    bool refusedBirth(const std::function<void(Birth&)>& change) {
         std::vector<Birth> births(2);
-        spoil(births[1]);
+        change(births[1]);
         const auto spawned = particles_->spawn(births);
         return refused(spawned) && spawned.error().message.find("birth 1 ") != std::string::npos;
     }
