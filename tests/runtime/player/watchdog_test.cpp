@@ -62,7 +62,7 @@ TEST(GpuTool, OptionsAndTheirErrors) {
     EXPECT_EQ(gpuOptions("--device", "12")->device, 12U);
     EXPECT_EQ(gpuOptions("--gpu-timeout", "0")->limit(false), 0ms);
     EXPECT_EQ(gpuOptions("--gpu-timeout", "2.5")->limit(false), 2500ms);
-    EXPECT_EQ(gpuOptions("--gpu-timeout", "0.0001")->limit(false), 1ms) << "not " no limit "";
+    EXPECT_EQ(gpuOptions("--gpu-timeout", "0.0001")->limit(false), 1ms) << "not unlimited";
     EXPECT_FALSE(gpuOptions("--device", "-1"));
     EXPECT_FALSE(gpuOptions("--gpu-timeout", "1e7"));
     EXPECT_GT(GpuOptions{}.limit(true), GpuOptions{}.limit(false));
