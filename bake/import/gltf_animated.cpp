@@ -15,6 +15,7 @@
 #include "bake/import/gltf_meshes.h"
 #include "bake/import/gltf_nodes.h"
 #include "bake/import/import_readers.h"
+#include "bake/import/scene_polygons.h"
 #include "formats/base/finite.h"
 #include "formats/base/text.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Everything in a mesh file but triangles is counted, named or refused; nothing is left out without a warning.
-#include "bake/import/import_scene.h"
+#include "bake/import/scene_polygons.h"
 
 #include "bake/import/mesh_import.h"
 #include "formats/polygons/obj_mesh.h"

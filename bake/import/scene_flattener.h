@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Merges a scene into one mesh, or into the meshes and bodies of a level.
+#pragma once
+
+#include "bake/import/import_scene.h"
+
+namespace relief {
+
+/// Merges everything that the scene shows into one mesh, with marks for the job's names and with warnings of skipped
+/// parts. Converts to metres and +Y up if the frame or the job gives unit and axis. Counts all triangles before
+/// allocating, because a small file can place one mesh many times.
+/// Errors, without the file name: kInvalidInput (nothing to show, a node within itself, an invalid frame), kUsage (a
+/// name that no triangle has), kLimit (more triangles than the job allows, or three times as many vertices).
+[[nodiscard]] Result<TriangleMesh> flatten(ImportScene scene, const ImportJob& job);
+
+/// Like flatten(), but fills TriangleMesh::level_meshes and level_bodies. Rotation, uniform scale and translation
+/// become a body's pose. Shear, unequal scale and mirrors are applied to the mesh, which then counts as a separate
+/// mesh.
+/// Errors: also kLimit (more meshes or bodies than a world may have).
+[[nodiscard]] Result<TriangleMesh> flattenLevel(ImportScene scene, const ImportJob& job);
+
+}  // namespace relief
