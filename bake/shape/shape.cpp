@@ -24,7 +24,9 @@
 #include "bake/shape/parts.h"
 #include "bake/shape/sealed_voids.h"
 #include "bake/shape/sheet.h"
+#include "bake/shape/shell.h"
 #include "bake/shape/solid_union.h"
+#include "bake/shape/terrain.h"
 #include "bake/shape/walls.h"
 
 namespace relief {

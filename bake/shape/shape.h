@@ -4,8 +4,8 @@
 //
 //   solid             closed
 //   solid with holes  open, but hardly any ray escapes from behind its surface, or cut off below: the holes are closed
-//   sheet             visible from outside on both sides: becomes a shell (sheet.h)
-//   terrain           a height field that covers its rectangle: becomes the ground below it
+//   sheet             visible from outside on both sides: becomes a shell (shell.h)
+//   terrain           a height field that covers its rectangle: becomes the ground below it (terrain.h)
 //
 // Coincident triangles count once. The inside is the union of all parts: solids may overlap, shells may cross a solid,
 // and a sheet within a solid has no effect.

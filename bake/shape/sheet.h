@@ -1,11 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Builds solids from surfaces without thickness: shells around sheets, and the ground below terrains.
-//
-//            top: + thickness/2                    terrain:    surface
-//      ┌──────────────────────────┐                 __/\_____/\___
-//      │· · · · · sheet · · · · · │                │              │ walls
-//      └──────────────────────────┘                └──────────────┘ bottom
-//            bottom: − thickness/2
+// Surfaces without thickness. shell.h and terrain.h build solids from them.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +9,6 @@
 #include <vector>
 
 #include "bake/mesh/mesh_edges.h"
-#include "bake/mesh/mesh_query.h"
 
 namespace relief {
 
@@ -45,21 +38,8 @@ inline constexpr double kFoldCosine = -0.5;
 /// Returns the sheet as a mesh before finishMesh, with its sources as labels.
 [[nodiscard]] TriangleMesh meshOf(const Sheet& sheet, const std::string& name);
 
-/// Closed, consistently wound surfaces that face outwards.
-struct SolidPart {
-    std::vector<glm::vec3> positions;
-    std::vector<glm::uvec3> triangles;
-    std::vector<std::uint32_t> sources;  ///< per triangle, the sheet's triangle that it represents or closes
-    std::size_t surface_triangles = 0;   ///< the first ones, which represent the sheet; the others close it
-};
-
-/// Builds the shell within half the thickness along the sheet's normals. Edges have mitres, the border has flat ends,
-/// and corners have bevels if a common mitre would leave a side thin. Each patch of joined triangles becomes one closed
-/// surface. A region that is thinner than the shell, such as a rod, is filled; its offset surface would turn inside out
-/// and is omitted.
-/// \param query      for the sheet's triangles.
-/// \param thickness  object units, above 0.
-[[nodiscard]] SolidPart thickened(Sheet sheet, const MeshQuery& query, double thickness);
+/// Returns the unit normal of a triangle.
+[[nodiscard]] glm::dvec3 unitNormal(const std::vector<glm::vec3>& positions, const glm::uvec3& t);
 
 /// Twice the projected areas of a sheet along each axis. Both are equal, up to the sign, for a height field.
 struct Shadow {
@@ -67,10 +47,5 @@ struct Shadow {
     glm::dvec3 area{0.0};
 };
 [[nodiscard]] Shadow shadowOf(const Sheet& sheet);
-
-/// Builds the ground below a height field: walls below its border, and a flat bottom.
-/// \param axis    0, 1 or 2: the up axis.
-/// \param bottom  coordinate of the bottom along the axis, object units.
-[[nodiscard]] SolidPart extruded(const Sheet& sheet, int axis, float bottom);
 
 }  // namespace relief

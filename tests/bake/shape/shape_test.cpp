@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What parts of a mesh are taken for, and the solids that stand for them: promises of shape.h and sheet.h.
+// What parts of a mesh are taken for, and the solids that stand for them: promises of shape.h, shell.h and terrain.h.
 #include "bake/shape/shape.h"
 
 #include <algorithm>
