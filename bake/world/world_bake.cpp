@@ -8,43 +8,29 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <map>
 #include <mutex>
-#include <numeric>
 #include <set>
 
 #include "bake/import/level_folder.h"
-#include "bake/measure/self_check.h"
 #include "bake/pipeline/bake.h"
 #include "bake/pipeline/stages.h"
 #include "bake/recipe/bake_cache.h"
 #include "bake/shape/shape_options.h"
-#include "bake/verdict/report_text.h"
 #include "bake/world/budget_share.h"
-#include "bake/world/coarse_collider.h"
 #include "bake/world/error_curves.h"
+#include "bake/world/level_mesh_bake.h"
+#include "bake/world/world_cache.h"
 #include "bake/world/world_files.h"
-#include "formats/base/file_io.h"
 #include "formats/base/hash.h"
 #include "formats/base/stopwatch.h"
-#include "formats/base/text.h"
-#include "formats/container.h"
 
 namespace relief {
 namespace {
 
-namespace fs = std::filesystem;
-
 static_assert(kLevelMeshesMax == kWorldCollidersMax && kLevelBodiesMax == kWorldBodiesMax);
 
-/// Options that affect how a bake runs, but not its bytes.
-constexpr std::array<std::string_view, 6> kWithoutEffect = {"threads",       "time_limit",  "no_check",
-                                                            "import_memory", "import_time", "max_triangles"};
-constexpr std::size_t kKeyDigits = 16;
 /// Approximate limit on the triangles of solids kept between planning and baking; other solids are made again.
 constexpr std::uint64_t kTrianglesKept = 4'000'000;
-/// Prefix of a cache option that lists the tiles of a mesh.
-constexpr std::string_view kTilesWord = "--tiles=";
 
 double areaOf(const TriangleMesh& mesh) {
     double twice = 0.0;
@@ -53,19 +39,6 @@ double areaOf(const TriangleMesh& mesh) {
         twice += std::sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
     }
     return 0.5 * twice;
-}
-
-/// Returns the words of the options that affect the bytes.
-std::vector<std::string> optionWords(const BakeRequest& request, std::uint32_t compress) {
-    std::vector<std::string> words = {"--compress=" + std::to_string(compress)};
-    for (const FieldWords& field : changedFields(request)) {
-        for (const std::string& word : field.words) {
-            if (std::find(kWithoutEffect.begin(), kWithoutEffect.end(), field.name) == kWithoutEffect.end()) {
-                words.push_back(optionName(field.name) + "=" + word);
-            }
-        }
-    }
-    return words;
 }
 
 /// Resets the import options, which have already been applied to the mesh.
@@ -261,11 +234,9 @@ class WorldBaker {
                     entry.options.push_back("--tiles-most=" + std::to_string(tiles_.most));
                 }
             }
-            file_names_.push_back({fileStem(collider.mesh) + "-",
-                                   "-" + assetKey(tool_, entry.options, entry.inputs).substr(0, kKeyDigits) +
-                                       std::string(kColliderExtension)});
-            collider.file = fileOf(i, "");
-            parts_[i] = upToDate(i, entry, *cache);
+            file_names_.push_back(ContainerNames::of(collider.mesh, entry));
+            collider.file = file_names_[i].fileOf("");
+            parts_[i] = upToDate(request_.folder, collider, file_names_[i], entry, *cache);
             if (parts_[i].empty()) {
                 collider.state = WorldColliderState::kFailed;  // until it is baked
                 stale_.push_back(i);
@@ -273,120 +244,6 @@ class WorldBaker {
             entries_.push_back(std::move(entry));
         }
         return {};
-    }
-
-    /// \param tile  its name; empty for the whole mesh.
-    [[nodiscard]] std::string fileOf(std::size_t mesh, const std::string& tile) const {
-        const auto& [front, back] = file_names_[mesh];
-        return front + tile + (tile.empty() ? back.substr(1) : back);
-    }
-
-    /// Returns the cache option that lists all tiles of a mesh; part of the entry of each tile.
-    static std::string tilesWord(const std::vector<std::string>& tiles) {
-        std::string word(kTilesWord);
-        for (const std::string& tile : tiles) {
-            word += (word.size() == kTilesWord.size() ? "" : ",") + tile;
-        }
-        return word;
-    }
-
-    /// Returns the colliders of a mesh; empty unless all are up to date.
-    [[nodiscard]] std::vector<WorldColliderResult> upToDate(std::size_t mesh, BakeCacheEntry expected,
-                                                            const BakeCacheEntries& cache) const {
-        WorldColliderResult part = meshes_[mesh];
-        if (isUpToDate(expected, cache, part)) {
-            return coarseIsUpToDate(expected, cache, part) ? std::vector{part}
-                                                           : std::vector<WorldColliderResult>();
-        }
-        std::vector<WorldColliderResult> parts;
-        const std::vector<std::string> tiles = knownTiles(mesh, cache);
-        expected.options.push_back(tilesWord(tiles));
-        for (const std::string& tile : tiles) {
-            part.tile = tile;
-            part.file = fileOf(mesh, tile);
-            part.coarse.reset();
-            const bool twice = !parts.empty() && std::ranges::count(tiles, tile) > 1;
-            if (twice || !isTileName(tile) || !isUpToDate(expected, cache, part) ||
-                !coarseIsUpToDate(expected, cache, part)) {
-                return {};
-            }
-            parts.push_back(part);
-        }
-        return parts;
-    }
-
-    /// Returns the tiles of a mesh, as listed in the entry of any of them.
-    [[nodiscard]] std::vector<std::string> knownTiles(std::size_t mesh, const BakeCacheEntries& cache) const {
-        const auto& [front, back] = file_names_[mesh];
-        std::vector<std::string> tiles;
-        for (auto at = cache.lower_bound(front); at != cache.end() && at->first.starts_with(front); ++at) {
-            const std::vector<std::string>& options = at->second.options;
-            if (!at->first.ends_with(back) || options.empty() || !options.back().starts_with(kTilesWord)) {
-                continue;
-            }
-            const std::string list = options.back().substr(kTilesWord.size());
-            for (std::size_t from = 0; from < list.size();) {
-                const std::size_t end = std::min(list.find(',', from), list.size());
-                tiles.push_back(list.substr(from, end - from));
-                from = end + 1;
-            }
-            break;
-        }
-        return tiles;
-    }
-
-    static std::string coarseFile(const std::string& file) {
-        const std::size_t key = file.size() - kColliderExtension.size() - kKeyDigits;
-        return file.substr(0, key) + "coarse-" + file.substr(key);
-    }
-
-    [[nodiscard]] bool coarseIsUpToDate(const BakeCacheEntry& expected, const BakeCacheEntries& cache,
-                                        WorldColliderResult& collider) const {
-        if (!collider.has_coarse) {
-            return true;
-        }
-        WorldColliderResult coarse;
-        coarse.file = coarseFile(collider.file);
-        if (!isUpToDate(expected, cache, coarse)) {
-            return false;
-        }
-        collider.coarse = WorldFile{coarse.file, coarse.hash, coarse.gpu_bytes};
-        collider.coarse_bytes = coarse.bytes;
-        return true;
-    }
-
-    [[nodiscard]] bool isUpToDate(const BakeCacheEntry& expected, const BakeCacheEntries& cache,
-                                  WorldColliderResult& collider) const {
-        const auto found = cache.find(collider.file);
-        if (found == cache.end()) {
-            return false;
-        }
-        const BakeCacheEntry& known = found->second;
-        if (known.tool != expected.tool || known.options != expected.options ||
-            known.inputs != expected.inputs) {
-            return false;
-        }
-        const auto bytes = readFile(request_.folder / collider.file);
-        if (!bytes || xxh3_128Hex(*bytes) != known.output_hash) {
-            return false;
-        }
-        const Result<Collider> there = readContainer(*bytes);
-        if (there) {
-            take(*there, *bytes, collider);
-        }
-        return there.has_value();
-    }
-
-    static void take(const Collider& from, std::span<const std::byte> bytes, WorldColliderResult& collider) {
-        collider.box = from.bounds;
-        collider.gpu_bytes = from.texelBytes();
-        collider.has_coarse = hasCoarse(from);
-        collider.bytes = bytes.size();
-        collider.hash = xxh3_128Hex(bytes);
-        collider.materials.clear();
-        for (const Material& material : from.materials.list) {
-            collider.materials.push_back(material.name);
-        }
     }
 
     /// Bakes the largest first, so that the last to finish is a small one.
@@ -433,78 +290,8 @@ class WorldBaker {
     Result<std::vector<WorldColliderResult>> tryBake(std::size_t i, WorldColliderResult& collider) {
         const SolidMesh solid = RELIEF_TRY(solidFor(requests_[i], i));
         solids_[i].reset();
-        BakeResult result = RELIEF_TRY(bake(requests_[i], solid));
-        PartsAccuracy accuracy;
-        if (!request_.bake.no_check) {
-            SelfCheck check = RELIEF_TRY(
-                selfCheck(result.mesh.mesh, solid.parts, result.baked.collider, collider.largest_scale));
-            collider.wrong = check.wrong;
-            accuracy = std::move(check.parts).value_or(PartsAccuracy());
-            collider.verdict = verdictOf(collider.wrong->total(), accuracy, level_.unit);
-            collider.ignored.add(accuracy.ignored, collider.largest_scale);
-        }
-        collider.warnings = result.baked.report.warnings;
-        if (const auto lost = lostPartsWarning(accuracy, solid.parts, result.baked.collider)) {
-            collider.warnings.push_back(collider.mesh + ": " + *lost);
-        }
-        if (collider.wrong && collider.wrong->total() > kGoodPercent) {
-            const bool floats = floatsLimit(*result.mesh.mesh, collider.wrong->total());
-            collider.warnings.push_back(
-                collider.mesh + ": " + shortNumber(collider.wrong->total()) + " % wrong near the surface" +
-                (floats            ? "; move it to the origin"
-                 : collider.budget ? " with its share of " + bytesText(*collider.budget) +
-                                         "; give the level a larger --budget"
-                                   : " with its texel; give the level a smaller --texel"));
-        }
-        PatchTileOptions options = tiles_;
-        options.total = collider.budget.value_or(options.total);
-        const FineCollider whole = FineCollider::of(result.baked.collider);
-        std::vector<ColliderTile> tiles = cutCollider(std::move(result.baked.collider), options);
-        for (ColliderTile& tile : tiles) {
-            if (tiles.size() > 1) {
-                tile.collider.materials = materialsFor(tile.collider, solid.materials.get());
-            }
-        }
-        std::vector<WorldColliderResult> parts;
-        for (const ColliderTile& tile : tiles) {
-            const auto bytes =
-                RELIEF_TRY(writeContainer(tile.collider, {static_cast<int>(request_.compress)}));
-            WorldColliderResult part = collider;
-            part.state = WorldColliderState::kBaked;
-            part.tile = tile.name;
-            part.file = fileOf(i, tile.name);
-            RELIEF_TRY(writeFile(request_.folder / part.file, bytes));
-            take(tile.collider, bytes, part);
-            if (!parts.empty()) {
-                part.warnings.clear();
-                part.ignored = {};
-            }
-            parts.push_back(std::move(part));
-        }
-        TriangleMesh mesh = std::move(level_.meshes[i]);
-        if (std::ranges::any_of(parts, &WorldColliderResult::has_coarse)) {
-            const auto by = [&](const BakeRequest& request) {
-                return solid.suitsAnyBudget() ? bake(request, solid) : bake(request, {}, std::move(mesh));
-            };
-            const Collider coarse = RELIEF_TRY(bakeCoarse(requests_[i], whole, by));
-            for (std::size_t k = 0; k < parts.size(); ++k) {
-                if (parts[k].has_coarse) {
-                    Collider part =
-                        tiles.size() == 1 ? coarse : coarseTile(coarse, FineCollider::of(tiles[k].collider));
-                    part.materials =
-                        tiles[k].collider.materials;  // a program keeps them when it replaces the maps
-                    RELIEF_TRY(writeCoarse(part, parts[k]));
-                }
-            }
-        }
-        return parts;
-    }
-
-    Result<void> writeCoarse(const Collider& coarse, WorldColliderResult& of) const {
-        const auto bytes = RELIEF_TRY(writeContainer(coarse, {static_cast<int>(request_.compress)}));
-        of.coarse = WorldFile{coarseFile(of.file), xxh3_128Hex(bytes), coarse.texelBytes()};
-        of.coarse_bytes = bytes.size();
-        return writeFile(request_.folder / of.coarse->file, bytes);
+        return bakeLevelMesh(
+            {request_, requests_[i], solid, level_.meshes[i], level_.unit, tiles_, file_names_[i]}, collider);
     }
 
     /// \pre No other thread is in this function.
@@ -581,12 +368,8 @@ class WorldBaker {
     PatchTileOptions tiles_;
     std::vector<WorldColliderResult> meshes_;              // shared by the colliders of each mesh
     std::vector<std::vector<WorldColliderResult>> parts_;  // colliders of each mesh; empty while stale
-    struct FileName {
-        std::string front;
-        std::string back;
-    };
-    std::vector<FileName> file_names_;   // by mesh
-    std::vector<BakeRequest> requests_;  // by mesh
+    std::vector<ContainerNames> file_names_;               // by mesh
+    std::vector<BakeRequest> requests_;                    // by mesh
     std::vector<std::vector<InputFile>> inputs_;
     std::vector<std::optional<SolidMesh>> solids_;  // by mesh; kept from planning
     std::atomic<std::uint64_t> kept_triangles_ = 0;

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// The containers of a world in its cache: their names, and which of them are up to date.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bake/recipe/bake_cache.h"
+#include "bake/world/world_bake.h"
+
+namespace relief {
+
+/// Returns the words of the options that affect the bytes.
+[[nodiscard]] std::vector<std::string> optionWords(const BakeRequest& request, std::uint32_t compress);
+
+/// The names of the containers of one mesh.
+struct ContainerNames {
+    std::string front;
+    std::string back;
+
+    /// \param entry  of the mesh, without outputs.
+    [[nodiscard]] static ContainerNames of(const std::string& mesh, const BakeCacheEntry& entry);
+    /// \param tile  its name; empty for the whole mesh.
+    [[nodiscard]] std::string fileOf(const std::string& tile) const;
+};
+
+/// Returns the name of the coarse container beside a container.
+[[nodiscard]] std::string coarseFile(const std::string& file);
+
+/// Returns the cache option that lists all tiles of a mesh; part of the entry of each tile.
+[[nodiscard]] std::string tilesWord(const std::vector<std::string>& tiles);
+
+/// Describes a container in the result of its collider.
+void takeContainer(const Collider& from, std::span<const std::byte> bytes, WorldColliderResult& collider);
+
+/// Finds the colliders of a mesh in the folder of a world.
+/// \param whole  the result of the mesh, with the file of the whole mesh.
+/// \param expected  the entry of the mesh, without outputs.
+/// \return empty unless all are up to date.
+[[nodiscard]] std::vector<WorldColliderResult> upToDate(const std::filesystem::path& folder,
+                                                        const WorldColliderResult& whole,
+                                                        const ContainerNames& names, BakeCacheEntry expected,
+                                                        const BakeCacheEntries& cache);
+
+}  // namespace relief
