@@ -28,7 +28,8 @@ test("npm pack, install and vite build give a working page", { timeout: 300_000 
     const [packed] = JSON.parse(npm("pack", path.join(root, "out/npm"), "--json"));
     assert.equal(packed.name, "relief-particles");
     assert.deepEqual(packed.files.map((file) => file.path).sort(), [
-        "LICENSE", "README.md", "SCENE.md", "fetch.js", "package.json", "pass_state.js", "relief.d.ts", "relief.js", "relief_wasm.mjs", "relief_wasm.wasm"]);
+        "LICENSE", "README.md", "SCENE.md", "arguments.js", "collider.js", "context.js", "fetch.js", "package.json", "particle_system.js",
+        "pass_state.js", "relief.d.ts", "relief.js", "relief_wasm.mjs", "relief_wasm.wasm", "wasm.js", "world.js"]);
     writeFileSync(path.join(folder, "package.json"), '{ "name": "page", "private": true, "type": "module" }');
     npm("install", "--prefer-offline", "--ignore-scripts", `./${packed.filename}`, "vite@5.4.21");
     const installed = path.join(folder, "node_modules/relief-particles");
