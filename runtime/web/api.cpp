@@ -6,35 +6,22 @@
 
 #include <cstdint>
 #include <cstring>
-#include <deque>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "formats/base/file_io.h"
-#include "formats/base/finite.h"
-#include "formats/config/toml_reader.h"
 #include "formats/fields/json_value.h"
 #include "formats/texel.h"
 #include "formats/world/collider_info.h"
 #include "runtime/c_api/call.h"
 #include "runtime/c_api/objects.h"
 #include "runtime/c_api/relief.h"
-#include "runtime/events/event_recorder.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/pass_state.h"
-#include "runtime/picture/depth_sort.h"
-#include "runtime/picture/particle_renderer.h"
-#include "runtime/player/mesh_picture.h"
-#include "runtime/player/simulation.h"
-#include "runtime/scene/loaded_scene.h"
-#include "runtime/scene/scene_parser.h"
-#include "runtime/scene/scene_pictures.h"
-#include "runtime/scene/scene_world.h"
-#include "runtime/web/fetched_source.h"
+#include "runtime/web/player.h"
 
 namespace relief {
 namespace {
@@ -49,270 +36,6 @@ const char* storeText(std::string text) {
 /// Serialises JSON with file names, which may be invalid UTF-8.
 std::string lineOf(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-Json json(const glm::vec3& v) {
-    return {v.x, v.y, v.z};
-}
-
-Json describeStream(const std::optional<StreamCounts>& counts) {
-    return counts ? Json{{"wanted", counts->wanted},
-                         {"present", counts->present},
-                         {"failed", counts->failed},
-                         {"gpu_bytes", counts->gpu_bytes}}
-                  : Json();
-}
-
-/// Describes the colliders of a scene: file, node and current matrix, column-major.
-/// \param poses  one per collider.
-Json describeBodies(const std::vector<SceneCollider>& colliders, const std::vector<Pose>& poses) {
-    Json bodies = Json::array();
-    for (std::size_t at = 0; at < colliders.size(); ++at) {
-        const SceneCollider& collider = colliders[at];
-        const Pose& pose = poses[at];
-        const glm::mat3 turned = pose.scale * glm::mat3_cast(pose.rotation);
-        Json matrix = Json::array();
-        for (int i = 0; i < 3; ++i) {
-            matrix.insert(matrix.end(), {turned[i].x, turned[i].y, turned[i].z, 0.0F});
-        }
-        matrix.insert(matrix.end(), {pose.position.x, pose.position.y, pose.position.z, 1.0F});
-        bodies.push_back({{"file", collider.path.string()},
-                          {"node", collider.node},
-                          {"deforms", collider.deforms()},
-                          {"moves", !collider.keys.empty() || collider.play},
-                          {"matrix", matrix}});
-    }
-    return bodies;
-}
-
-/// Adds a JSON value to a toml::table, or appends it to a toml::array.
-template <class To>
-void add(To& to, const std::string& key, const Json& value) {
-    constexpr bool kTable = std::is_same_v<To, toml::table>;
-    const auto put = [&](auto made) {
-        if constexpr (kTable) {
-            to.insert_or_assign(key, std::move(made));
-        } else {
-            to.push_back(std::move(made));
-        }
-    };
-    const auto putAll = [&](auto made) {
-        for (const auto& [name, one] : value.items()) {
-            add(made, name, one);
-        }
-        put(std::move(made));
-    };
-    if (value.is_object()) {
-        putAll(toml::table());
-    } else if (value.is_array()) {
-        putAll(toml::array());
-    } else if (value.is_string()) {
-        put(value.get<std::string>());
-    } else if (value.is_boolean()) {
-        put(value.get<bool>());
-    } else if (value.is_number_integer()) {
-        put(value.get<std::int64_t>());
-    } else if (value.is_number()) {
-        put(value.get<double>());
-    } else if (!kTable) {
-        put(std::string("null"));  // no key accepts it, so the error message names the place
-    }
-}
-
-/// \param text  a scene file, or a JSON object with the same keys.
-/// \param path  a path with extension .toml for a file; otherwise the name of the object in messages.
-Result<Scene> readScene(std::string_view text, const std::filesystem::path& path) {
-    if (path.extension() == ".toml") {
-        return parseScene(text, path);
-    }
-    toml::array one;
-    add(one, "", Json::parse(text));
-    Scene scene;
-    RELIEF_TRY(readTomlTable(*one[0].as_table(), {path.string(), path.parent_path(), {}, "scene"},
-                             [&](const TomlValue& top) { relief::readScene(top, scene); }));
-    return scene;
-}
-
-/// A running scene with its renderers.
-struct Player {
-    LoadedScene loaded;
-    std::optional<Simulation> simulation;
-    std::unique_ptr<SpriteAtlas> atlas;
-    std::optional<ParticleRenderer> renderer;
-    std::optional<DepthSorter> sorter;
-    std::optional<MeshPicture> meshes;  // created by the first drawPlayerMeshes()
-    ParticleStyle style;
-    std::vector<ParticleState> read;  // reused buffer
-    FetchedSource* source = nullptr;  // owned by the simulation; null unless the page fetches
-    std::optional<glm::vec3> eye;     // camera position of the last picture
-    std::vector<PointOfInterest> near;
-    std::vector<std::string> warnings;  // not returned yet
-    std::deque<StepEvents> hits;        // not returned yet
-
-    /// Sets the points around which a world is streamed, besides the emitters.
-    void setPoints() {
-        std::vector<PointOfInterest> points = near;
-        if (eye && loaded.scene.stream) {
-            points.push_back({*eye, loaded.scene.stream->radius});
-        }
-        simulation->setPoints(std::move(points));
-    }
-    /// Collects the warnings of the simulation and returns their number.
-    int takeWarnings() {
-        for (std::string& line : simulation->takeWarnings()) {
-            warnings.push_back(std::move(line));
-        }
-        return static_cast<int>(warnings.size());
-    }
-
-    Result<void> makeSorter(const Scene& scene) {
-        if (scene.render.sort_frames > 0 && !sorter) {
-            sorter.emplace(RELIEF_TRY(DepthSorter::create(scene.particles.capacity, StepPath::kFragment)));
-        }
-        return {};
-    }
-};
-
-Result<Player*> createPlayer(const char* text, const char* path, bool shaded, bool fetches) {
-    auto player = std::make_unique<Player>();
-    Scene read = RELIEF_TRY(readScene(text, path));
-    if (fetches && !read.stream) {
-        return fail(ErrorCode::kUsage, quotedPath(path) +
-                                           " has no [stream], which streamWorld() requires in a scene "
-                                           "given as text; add it, with a radius");
-    }
-    player->loaded = RELIEF_TRY(loadAll(std::move(read), path, {}));
-    const Scene& scene = player->loaded.scene;
-    SimulationOptions options{.path = StepPath::kFragment};
-    if (fetches) {
-        auto source = std::make_unique<FetchedSource>(player->loaded.world);
-        player->source = source.get();
-        options.source = std::move(source);
-    }
-    player->simulation.emplace(RELIEF_TRY(Simulation::create(player->loaded, std::move(options))));
-    player->atlas = RELIEF_TRY(loadAtlas(scene));
-    player->style = particleStyle(scene, player->atlas.get());
-    const ColliderView view = colliderView(player->loaded, player->simulation->textures());
-    player->renderer.emplace(
-        RELIEF_TRY(ParticleRenderer::create(shaded ? std::optional<ColliderView>(view) : std::nullopt)));
-    RELIEF_TRY(player->makeSorter(scene));
-    return player.release();
-}
-
-/// Returns whether neither plays a clip, or both play one with maps of the same size.
-bool sameMaps(const SceneCollider& a, const SceneCollider& b) {
-    return a.play.has_value() == b.play.has_value() &&
-           (!a.play || (a.play->resolution == b.play->resolution && a.play->room == b.play->room));
-}
-
-/// Applies the wanted poses and clips; fails if anything else of a collider changes.
-Result<void> applyPoses(std::vector<SceneCollider>& now, const std::vector<SceneCollider>& wanted) {
-    for (std::size_t i = 0; i < now.size(); ++i) {
-        SceneCollider& body = now[i];
-        const SceneCollider& to = wanted[i];
-        if (to.path != body.path || to.node != body.node || to.live.has_value() != body.live.has_value() ||
-            !sameMaps(to, body) || to.keys != body.keys || to.pose.scale != body.pose.scale ||
-            to.restitution != body.restitution || to.friction != body.friction) {
-            return fail(ErrorCode::kUsage, "collider " + std::to_string(i) +
-                                               ": only position, axis, angle and clip can change; "
-                                               "create a new system for other changes");
-        }
-        body.play = to.play;
-        if (to.pose == body.pose) {
-            continue;
-        }
-        if (!body.keys.empty()) {
-            return fail(ErrorCode::kUsage, "collider " + std::to_string(i) +
-                                               " follows its keys; remove 'key' to move it by set()");
-        }
-        if (now.size() == 1 && !body.posed && !body.deforms()) {
-            return fail(
-                ErrorCode::kUsage,
-                "a single collider can only move if it has a pose from the beginning; create the system with "
-                "collider: { position: [0, 0, 0] } in its scene");
-        }
-        body.pose = to.pose;
-    }
-    return {};
-}
-
-/// Applies all changes of a scene except those of colliders, capacity, integrator and materials, which fail.
-/// \param emitters  whether the emitters restart.
-Result<int> changePlayer(Player& player, const char* text, const char* path, bool emitters) {
-    Scene& now = player.loaded.scene;
-    Scene read = RELIEF_TRY(readScene(text, path));
-    if (!read.world.empty()) {
-        RELIEF_TRY(placeBodies(read, player.loaded.world));
-    }
-    Scene wanted = RELIEF_TRY(withDefaults(std::move(read), player.loaded.bounds));
-    if (wanted.particles.capacity != now.particles.capacity ||
-        wanted.time.integrator != now.time.integrator || wanted.colliders.size() != now.colliders.size() ||
-        wanted.world != now.world) {
-        return fail(ErrorCode::kUsage,
-                    "colliders, capacity and integrator cannot change; create a new system");
-    }
-    if (wanted.stream.has_value() != now.stream.has_value() ||
-        (now.stream && wanted.stream->memory != now.stream->memory)) {
-        return fail(ErrorCode::kUsage,
-                    "only the radius of 'stream' can change; create a new system for other changes");
-    }
-    if (wanted.materials != now.materials) {
-        return fail(ErrorCode::kUsage, "materials cannot change; create a new system");
-    }
-    RELIEF_TRY(checkMaterials(wanted, player.loaded));
-    std::optional<std::vector<Emitter>> made;
-    if (emitters) {
-        made = RELIEF_TRY(makeEmitters(wanted.emitters, player.loaded.meshes()));
-    }
-    std::vector<SceneCollider> colliders = now.colliders;
-    RELIEF_TRY(applyPoses(colliders, wanted.colliders));
-    std::vector<std::optional<PlayedMesh>> played = player.loaded.played;
-    for (std::size_t i = 0; i < colliders.size(); ++i) {
-        RELIEF_TRY(played[i] ? changeClip(*played[i], colliders[i]) : Result<void>());
-    }
-    wanted.air.flow = now.air.flow;
-    wanted.render.atlas = now.render.atlas;
-    wanted.colliders = std::move(colliders);
-    RELIEF_TRY(player.makeSorter(wanted));
-    std::swap(now, wanted);
-    std::swap(player.loaded.played, played);
-    if (const Result<void> done = player.simulation->change(std::move(made)); !done) {
-        now = std::move(wanted);
-        player.loaded.played = std::move(played);
-        return forward(done);
-    }
-    player.style = particleStyle(now, player.atlas.get());
-    if (now.ground.enabled != wanted.ground.enabled || now.ground.height != wanted.ground.height ||
-        now.render.meshes != wanted.render.meshes) {
-        player.meshes.reset();
-    }
-    player.setPoints();
-    return 0;
-}
-
-Result<int> drawPlayer(Player& player, const CameraMatrices& camera, const RenderTarget& target) {
-    const ParticleSystem& particles = player.simulation->particles();
-    ParticleOrder order;
-    if (player.sorter && player.loaded.scene.render.sort_frames > 0) {
-        order = sortedFor(player.loaded.scene, particles, camera.eye(), *player.sorter);
-    }
-    RELIEF_TRY(player.renderer->draw(particles, camera, player.style, target, order));
-    if (isFinite(camera.eye())) {
-        player.eye = camera.eye();
-        player.setPoints();
-    }
-    return 0;
-}
-
-Result<int> drawPlayerMeshes(Player& player, const CameraMatrices& camera, const RenderTarget& target) {
-    if (player.loaded.scene.render.meshes.empty()) {
-        return fail(ErrorCode::kUsage, "drawMeshes() needs render.meshes in the scene; add it");
-    }
-    if (!player.meshes) {
-        player.meshes = RELIEF_TRY(MeshPicture::create(player.loaded));
-    }
-    RELIEF_TRY(player.meshes->draw(camera, player.simulation->particles().time(), target));
-    return 0;
 }
 
 /// \param matrices  view matrix, then projection matrix, column-major.
@@ -570,32 +293,7 @@ EMSCRIPTEN_KEEPALIVE int relief_player_draw_meshes(Player* player, const float* 
 
 /// Returns JSON.
 EMSCRIPTEN_KEEPALIVE const char* relief_player_info(const Player* player) {
-    const ParticleSystem& particles = player->simulation->particles();
-    const ParticleCounts counts = particles.counts();
-    const Scene& scene = player->loaded.scene;
-    const Bounds& bounds = player->loaded.bounds;
-    const std::span<const std::string> materials = player->simulation->textures().materialNames();
-    const Camera camera = sceneCamera(scene, bounds, particles.time());
-    return storeText(
-        Json{{"time", particles.time()},
-             {"alive", counts.alive},
-             {"born", counts.born},
-             {"died", counts.died},
-             {"refused", counts.refused + player->simulation->refused()},
-             {"extent", counts.extent},
-             {"capacity", particles.capacity()},
-             {"width", particles.textureWidth()},
-             {"dt", scene.time.dt},
-             {"steps", scene.time.steps},
-             {"bounds", {{"min", json(bounds.min)}, {"max", json(bounds.max)}}},
-             {"ground", scene.ground.enabled && scene.ground.height ? Json(*scene.ground.height) : Json()},
-             {"camera", {{"eye", json(camera.eye)}, {"target", json(camera.target)}, {"fov", camera.fov}}},
-             {"background", json(scene.render.background)},
-             {"meshes", !scene.render.meshes.empty()},
-             {"materials", std::vector<std::string>(materials.begin(), materials.end())},
-             {"stream", describeStream(player->simulation->streamCounts())},
-             {"bodies", describeBodies(scene.colliders, player->simulation->poses())}}
-            .dump());
+    return storeText(describePlayer(*player).dump());
 }
 
 /// Returns the GL name of a state texture. \param which  0: positions, 1: velocities, 2: births.
