@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parts with holes, after closing, and whether they are bodies or vessels.
+#pragma once
+
+#include <optional>
+
+#include "bake/mesh/prepared_mesh.h"
+#include "formats/base/result.h"
+
+namespace relief {
+
+/// A part with holes, after closing.
+struct ClosedPart {
+    std::optional<PreparedMesh> mesh;
+    bool balanced = true;
+    bool is_body = true;  ///< not a vessel
+};
+
+/// Closes a part. Returns no mesh if the holes cannot be closed, or if the result encloses nothing.
+/// \param is_body  already known to be a body.
+/// \param z_is_up  +z may be up, too.
+[[nodiscard]] Result<ClosedPart> closePart(const TriangleMesh& open, bool is_body, bool z_is_up);
+
+}  // namespace relief

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bake/shape/open_part.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <glm/common.hpp>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "bake/mesh/inside.h"
+#include "bake/mesh/mesh_query.h"
+#include "bake/mesh/ray_cost.h"
+#include "bake/mesh/surface_sampler.h"
+
+namespace relief {
+namespace {
+
+/// Sight samples of all open parts together, and the minimum for each part.
+constexpr std::size_t kSightPoints = 4096;
+constexpr std::size_t kSightPointsMin = 8;
+/// Sheet: more than this fraction of the rays from its darker side escape.
+constexpr double kSheetSight = 0.1;
+/// Visible part: more than this fraction of the rays from its lighter side escape.
+constexpr double kSeen = 0.02;
+/// A sheet that may be a solid with larger holes has at least this fraction of the mesh's extent. At most the second
+/// fraction of its projected area has no opposite.
+constexpr double kBodyExtent = 0.25;
+constexpr double kMouthMax = 0.5;
+/// Minimum fraction of its rectangle that a terrain covers, minimum number of triangles, and minimum fraction of the
+/// mesh's extent.
+constexpr double kTerrainCover = 0.98;
+constexpr std::size_t kTerrainTriangles = 200;
+constexpr double kTerrainExtent = 0.8;
+
+/// Returns, for each side of a sheet, the fraction of rays that escape from the mesh; a lower bound if both exceed
+/// kSheetSight.
+std::array<double, 2> sightOf(const Sheet& sheet, std::size_t samples, const MeshQuery& query) {
+    const double side = query.mesh().bounds.longestSide();
+    const TriangleMesh mesh = meshOf(sheet, "");
+    const AreaTable areas(mesh);
+    MersenneRandom random(1);
+    std::array<double, 2> out{};
+    const auto rays = static_cast<double>(samples * kParityDirections.size());
+    const auto isSheet = [&] { return std::min(out[0], out[1]) > kSheetSight * rays; };
+    for (std::size_t k = 0; k < samples && !isSheet(); ++k) {
+        const double at = (static_cast<double>(k) + random.uniform()) / static_cast<double>(samples);
+        const auto [on, normal] = drawOnSurface(mesh, areas, at, random);
+        for (std::size_t i = 0; i < kParityDirections.size() && !isSheet(); ++i) {
+            const glm::dvec3& direction = kParityDirections[i];
+            for (std::size_t face = 0; face < 2; ++face) {
+                const glm::dvec3 towards = face == 0 ? normal : -normal;
+                const glm::dvec3 from = on + kSurfaceStep * side * towards;
+                const glm::dvec3 ray = dot(direction, towards) < 0.0 ? -direction : direction;
+                out[face] += query.segmentIsFree(from, from + 4.0 * side * ray) ? 1.0 : 0.0;
+            }
+        }
+    }
+    return {out[0] / rays, out[1] / rays};
+}
+
+/// Returns the mesh without future shells, which have free space on both sides, however dark.
+PreparedMesh opaque(const PreparedMesh& prepared, std::span<const ShapeAs> kinds) {
+    const TriangleMesh& whole = *prepared;
+    TriangleMesh mesh;
+    for (std::size_t i = 0; i < kinds.size(); ++i) {
+        if (kinds[i] != ShapeAs::kShell) {
+            mesh.triangles.push_back(whole.triangles[i]);
+        }
+    }
+    if (mesh.triangles.size() == kinds.size()) {
+        return prepared;
+    }
+    mesh.name = whole.name;
+    mesh.positions = whole.positions;
+    Result<TriangleMesh> finished = finishMesh(std::move(mesh));
+    return finished ? PreparedMesh(std::move(*finished)) : prepared;  // may be too small for a mesh
+}
+
+/// Returns the up axis of a sheet that is the ground of its mesh.
+/// \param parts  number of parts of the mesh.
+std::optional<int> terrainAxis(const Sheet& sheet, const TriangleMesh& mesh, std::size_t parts) {
+    if (sheet.triangles.size() < kTerrainTriangles) {
+        return std::nullopt;
+    }
+    const glm::dvec3 size = boundsOf(sheet.positions).size();
+    const glm::dvec3 whole = mesh.bounds.size();
+    const Shadow shadow = shadowOf(sheet);
+    // If the mesh has a unit, the importer has rotated it to +Y up. Otherwise +z may also be up.
+    for (const int axis : {1, 2}) {
+        const int across = (axis + 1) % 3;
+        const int along = (axis + 2) % 3;
+        const double rectangle = size[across] * size[along];
+        const bool ground = size[axis] < 0.7 * std::min(size[across], size[along]) &&
+                            size[across] >= kTerrainExtent * whole[across] &&
+                            size[along] >= kTerrainExtent * whole[along];
+        // All triangles face the same way, so nothing is covered twice.
+        const bool heights = std::abs(shadow.signed_area[axis]) >= 0.9999 * shadow.area[axis] &&
+                             0.5 * shadow.area[axis] >= kTerrainCover * rectangle;
+        if (ground && heights && (axis == 1 || (mesh.unit.empty() && parts == 1))) {
+            return axis;
+        }
+    }
+    return std::nullopt;
+}
+
+/// Returns the axis of the largest projection.
+int flattestAxis(const Sheet& sheet) {
+    const glm::dvec3 area = glm::abs(shadowOf(sheet).signed_area);
+    return area.y >= std::max(area.x, area.z) ? 1 : area.z >= area.x ? 2 : 0;
+}
+
+}  // namespace
+
+double sizeOf(const Sheet& sheet) {
+    return double{boundsOf(sheet.positions).longestSide()};
+}
+
+Result<void> sortSheets(std::span<OpenPart> open, const PreparedMesh& mesh, std::span<const ShapeAs> kinds,
+                        std::size_t parts) {
+    std::vector<OpenPart*> unclear;
+    for (OpenPart& part : open) {
+        if (part.as == ShapeAs::kTerrain) {
+            part.role = {OpenKind::kTerrain,
+                         terrainAxis(part.sheet, *mesh, parts).value_or(flattestAxis(part.sheet))};
+        } else if (part.as == ShapeAs::kSolid) {
+            part.role.kind = OpenKind::kHoled;
+        } else if (part.as == ShapeAs::kAuto) {
+            unclear.push_back(&part);
+        }
+    }
+    if (unclear.empty()) {
+        return {};
+    }
+    const MeshQuery query = RELIEF_TRY(MeshQuery::build(opaque(mesh, kinds)));
+    const auto least = static_cast<std::size_t>(
+        std::ceil(affordableRays(query.mesh()) * static_cast<double>(kSightPointsMin)));
+    const std::size_t samples = std::max(least, kSightPoints / unclear.size());
+    tbb::parallel_for(std::size_t{0}, unclear.size(), [&](std::size_t i) {
+        OpenPart& part = *unclear[i];
+        const std::array<double, 2> sight = sightOf(part.sheet, samples, query);
+        const auto [dark, light] = std::minmax(sight[0], sight[1]);
+        if (dark <= kSheetSight && light > kSeen) {
+            part.role.kind = OpenKind::kHoled;
+        } else if (const std::optional<int> axis = terrainAxis(part.sheet, *mesh, parts)) {
+            part.role = {OpenKind::kTerrain, *axis};
+        } else if (const Shadow shadow = shadowOf(part.sheet);
+                   sizeOf(part.sheet) >= kBodyExtent * mesh->bounds.longestSide() &&
+                   length(shadow.signed_area) <= kMouthMax * length(shadow.area)) {
+            part.role.kind = OpenKind::kPerhapsHoled;
+        }
+    });
+    return {};
+}
+
+}  // namespace relief

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// The open parts of a mesh, and which of them are solids with holes, sheets and terrains.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "bake/mesh/prepared_mesh.h"
+#include "bake/shape/shape_options.h"
+#include "bake/shape/sheet.h"
+#include "formats/base/result.h"
+
+namespace relief {
+
+enum class OpenKind : std::uint8_t { kHoled, kPerhapsHoled, kJoined, kSheet, kTerrain };
+struct OpenRole {
+    OpenKind kind = OpenKind::kSheet;
+    int axis = 1;  ///< up axis of a terrain
+};
+
+struct OpenPart {
+    Sheet sheet;
+    ShapeAs as = ShapeAs::kAuto;
+    OpenRole role;
+    bool full = false;  ///< closed separately, and a solid
+};
+
+/// Returns the longest side of a sheet's bounds.
+[[nodiscard]] double sizeOf(const Sheet& sheet);
+
+/// Finds the solids with holes and the terrains among the open parts of a mesh.
+/// \param kinds  per triangle; empty: all of one kind.
+/// \param parts  number of parts of the mesh, including the closed ones.
+/// Errors: those of MeshQuery::build.
+[[nodiscard]] Result<void> sortSheets(std::span<OpenPart> open, const PreparedMesh& mesh,
+                                      std::span<const ShapeAs> kinds, std::size_t parts);
+
+}  // namespace relief
