@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "bake/pipeline/stages.h"
-#include "bake/world/world_bake.h"
 #include "bake/world/world_cache.h"
+#include "bake/world/world_collider.h"
 
 namespace relief {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bake/recipe/bake_cache.h"
-#include "bake/world/world_bake.h"
+#include "bake/world/world_collider.h"
 
 namespace relief {
 
