@@ -168,10 +168,10 @@ TEST(SceneErrors, LooksAndPictures) {
 TEST(SceneErrors, Camera) {
     const std::string key = "[[camera.key]]\ntime = 1\neye = [1, 2, 3]\n";
     expectErrors(kSceneHead, {{"[camera]\neye = [1, 1, 1]\ntarget = [1, 1, 1]\n", "4:7", "camera.target"},
-                              {"[camera]\neye = [1, 9, 1]\ntarget = [1, 1, 1]\n", "4:7", "aside"},
+                              {"[camera]\neye = [1, 9, 1]\ntarget = [1, 1, 1]\n", "4:7", "sideways"},
                               {key + key, "7:8", "is not ascending"},
-                              {key + "target = [1, 0, 3]\n", "5:7", "aside"},
-                              {key + "target = [1, 2, 3]\n", "5:7", "aside"},
+                              {key + "target = [1, 0, 3]\n", "5:7", "sideways"},
+                              {key + "target = [1, 2, 3]\n", "5:7", "sideways"},
                               {"[camera]\neye = [1, 2, 3]\n" + key, "4:7", "exclude each other"}});
 }
 
@@ -194,7 +194,7 @@ TEST(SceneErrors, Emitters) {
          {"shape = \"sphere\"\n", "4:9", "emitter.center"},
          {"shape = \"disc\"\ncenter = [0, 0, 0]\n", "4:9", "emitter.radius"},
          {"shape = \"points\"\n", "4:9", "emitter.points"},
-         {"shape = \"point\"\n", "4:9", "emitter.point "},
+         {"shape = \"point\"\n", "4:9", "emitter.point"},
          {"radius = 1\n", "4:10", "emitter.radius"},
          {"center = [0, 0, 0]\n", "4:10", "emitter.center"},
          {"point = [0, 0, 0]\nradius = 1\n", "5:10", "emitter.radius"},
