@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reports all problems of a container as numbered issues. readContainer rejects a file at any error; inspection
 // continues with everything that is still readable, adds warnings, and reports which parts of the file can be trusted.
-// README.md in this folder, "Issues", lists the codes; their meaning never changes.
+// README.md in this folder, "Validation", lists the codes; their meaning never changes.
 #pragma once
 
 #include <cstddef>

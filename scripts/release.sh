@@ -26,7 +26,8 @@ if tagged=$(git rev-parse -q --verify "refs/tags/$tag^{commit}"); then
 else
     old=$(sed -n 's/^project(Relief VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
     sed -i "s/^project(Relief VERSION $old/project(Relief VERSION $version/" CMakeLists.txt
-    sed -i "s/find_package(Relief ${old%.*} /find_package(Relief ${version%.*} /" README.md scripts/install/README.md
+    sed -i "s/find_package(Relief ${old%.*} /find_package(Relief ${version%.*} /" README.md scripts/install/README.md \
+        samples/in_your_build.md
     sed -i "/relief_version/s/\"$old\"/\"$version\"/" runtime/c_api/relief.h
     [ "$old" = "$version" ] || git commit -qam "release: set the version to $version"
     git tag -a "$tag" -m "Relief $version"

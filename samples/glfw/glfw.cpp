@@ -5,7 +5,6 @@
 #include <runtime/picture/collider_renderer.h>
 #include <runtime/picture/particle_renderer.h>
 #include <cstdio>
-#include <cstdlib>
 #include <relief/relief.hpp>
 #include <stdexcept>
 
@@ -24,7 +23,6 @@ int main(int argc, char** argv) {
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     GLFWwindow* window = glfwCreateWindow(1280, 720, "Relief", nullptr, nullptr);
     glfwMakeContextCurrent(window);
-
     const relief::Collider body = *need(relief::loadCollider(argc > 1 ? argv[1] : "bunny.relief"));
     const auto textures = *need(relief::ColliderTextures::create(body));
     const relief::ColliderView view{&textures, body.bounds, relief::finestTexel(body)};
@@ -44,7 +42,7 @@ int main(int argc, char** argv) {
     relief::Emitter emitter(sky, 1);
     relief::Camera camera{.eye = center + size * glm::vec3(0.8F, 0.5F, 2.2F), .target = center};
     relief::setClipPlanes(camera, body.bounds);
-    const long frames = argc > 2 ? std::atol(argv[2]) : -1;  // -1: no limit
+    const long frames = argc > 2 ? std::stol(argv[2]) : -1;  // -1: no limit
     for (long frame = 0; frame != frames && !glfwWindowShouldClose(window); ++frame) {
         std::vector<relief::Birth> births;
         emitter.emit(1.0 / 60.0, snow.room(), births);
