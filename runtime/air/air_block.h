@@ -19,8 +19,8 @@ class AirBlock {
         int uniform_block = 1;
     };
 
-    /// Uploads settings. Needs a current context. Without wind, flow, noise, attractors and vortices it allocates
-    /// nothing, and bind() and attach() do nothing.
+    /// Uploads settings. Needs a current context. Without forces it allocates nothing, and bind() and attach() do
+    /// nothing.
     /// Errors: those of checkAir; kLimit (a flow larger than this GL supports, or out of memory).
     [[nodiscard]] static Result<AirBlock> create(const AirSettings& air);
 
@@ -35,8 +35,8 @@ class AirBlock {
     /// Binds block and flow for the next draw. PassState restores the previous bindings.
     void bind(const Binding& binding) const;
 
-    /// Returns lines for makeProgram: RELIEF_HAS_AIR if there are any forces, and RELIEF_HAS_FLOW, RELIEF_HAS_CURL,
-    /// RELIEF_HAS_ATTRACTORS and RELIEF_HAS_VORTICES as needed; otherwise "".
+    /// Returns lines for makeProgram: RELIEF_HAS_AIR if there are any forces, and RELIEF_HAS_… for each kind of force;
+    /// otherwise "".
     [[nodiscard]] const std::string& defines() const { return defines_; }
     [[nodiscard]] std::size_t bytes() const { return bytes_; }  ///< size of the flow on the GPU
 
