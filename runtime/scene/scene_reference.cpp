@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/scene/scene_reference.h"
 
-#include <algorithm>
-#include <array>
-
 #include "formats/fields/reference.h"
 #include "runtime/scene/scene.h"
 
@@ -30,26 +27,24 @@ CustomSchemas customSchemas() {
           {"ground"}}}};
 }
 
-const FieldReference& tableOf(const std::vector<FieldReference>& fields, std::string_view name) {
-    return *std::find_if(fields.begin(), fields.end(),
-                         [&](const FieldReference& f) { return f.name == name; });
-}
-
 }  // namespace
 
 GeneratedTexts sceneReference() {
     const std::vector<FieldReference> fields = referenceOf(Scene{}, customSchemas());
     const std::string readme = "runtime/scene/README.md";
-    static constexpr std::array<std::string_view, 13> kTables = {
-        "material", "stream",     "time",      "particles", "forces", "attractor", "vortex",
-        "flow",     "curl_noise", "collision", "ground",    "camera", "render"};
-    GeneratedTexts texts{{readme, "tables", markdownTables(fields, kTables)}};
-    for (const std::string_view name : {"collider", "emitter"}) {
-        texts.push_back({readme, std::string(name), markdownTables(fields, {&name, 1})});
+    GeneratedTexts texts;
+    std::vector<std::string_view> tables;
+    for (const FieldReference& field : fields) {
+        const std::string part(field.name);
+        if (part == "collider" || part == "emitter") {
+            texts.push_back({readme, part, markdownTables(fields, {&field.name, 1})});
+        } else if (part == "type" || part == "spawn") {
+            texts.push_back({readme, part, markdownTable(field.fields)});
+        } else {
+            tables.push_back(field.name);
+        }
     }
-    for (const std::string_view name : {"type", "spawn"}) {
-        texts.push_back({readme, std::string(name), markdownTable(tableOf(fields, name).fields)});
-    }
+    texts.push_back({readme, "tables", markdownTables(fields, tables)});
     Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
                    {"title", "A scene of relief-sim"}};
     schema.update(fileSchema(fields));
