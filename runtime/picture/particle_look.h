@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The appearance of particles over their age: key frames, and the texture that shaders/picture/look.glsl reads.
+// The appearance of particles over their age: key frames, and the texture that shaders/picture/sprite.glsl reads.
 //
 //     row = type     texel 0            turn, spin, first cell (-1: round dot), number of cells
 //                    texel 1            lit, fade in, fade out, number of keys
@@ -48,6 +48,8 @@ struct ParticleLook {
     /// Exposure time in seconds, ≥ 0. Above 0, a sprite is stretched back along its velocity by the distance of that
     /// time; rotation, turn and spin then have no effect. Only for quads.
     float stretch = 0.0F;
+    /// Returns the name of a setting that needs quads, or nullptr.
+    [[nodiscard]] const char* needsQuads() const { return stretch > 0.0F ? "stretch" : nullptr; }
     /// Atlas cells shown from birth to death, counted row by row from the top left; nullopt: a round dot.
     std::optional<std::uint32_t> cell_first;
     std::uint32_t cell_last = 0;  ///< ≥ cell_first

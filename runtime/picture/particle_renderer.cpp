@@ -36,7 +36,7 @@ bool anyLit(const ParticleStyle& style) {
 
 bool anyStretched(const ParticleStyle& style) {
     return std::any_of(style.looks.begin(), style.looks.end(),
-                       [](const ParticleLook& look) { return look.stretch > 0.0F; });
+                       [](const ParticleLook& look) { return look.needsQuads() != nullptr; });
 }
 
 std::uint32_t spriteCount(const ParticleSystem& particles, const ParticleOrder& order) {

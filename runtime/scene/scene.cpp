@@ -23,7 +23,7 @@ const char* cameraFault(const glm::vec3& eye, const glm::vec3& target) {
     return nullptr;
 }
 
-std::string nth(const char* list, std::size_t i, const char* key) {
+std::string nth(const char* list, std::size_t i, const std::string& key) {
     return std::string(list) + "[" + std::to_string(i) + "]" + key;
 }
 
@@ -123,8 +123,8 @@ std::optional<FieldFault> completeTypes(Scene& scene, const GivenFields& given) 
         inherit(".restitution", type.restitution, scene.collision.restitution);
         inherit(".friction", type.friction, scene.collision.friction);
         inherit(".friction_threshold", type.friction_threshold, scene.collision.friction_threshold);
-        if (type.look.stretch > 0.0F && scene.render.sprite == Sprite::kPoint) {
-            return FieldFault{nth("type", i, ".stretch"),
+        if (const char* key = type.look.needsQuads(); key && scene.render.sprite == Sprite::kPoint) {
+            return FieldFault{nth("type", i, "." + std::string(key)),
                               "has no effect on points; set render.sprite = \"quad\""};
         }
         for (std::size_t k = 0; k < i && !type.name.empty(); ++k) {
