@@ -72,16 +72,6 @@ Texel decodeFrontBack(std::span<const std::byte> bytes, bool half) {
 
 }  // namespace
 
-const char* mapFormatName(MapFormat format) {
-    constexpr std::array kNames = {"float", "fixed8", "front-back", "cube", "front-back", "patches"};
-    return kNames.at(static_cast<std::size_t>(format));
-}
-
-const char* depthEncodingName(MapFormat format) {
-    constexpr std::array kNames = {"float32", "unorm16", "half", "unorm16", "unorm16", "unorm8"};
-    return kNames.at(static_cast<std::size_t>(format));
-}
-
 std::uint16_t encodeFixedDepth(float depth, float depth_max) {
     const double unit = std::clamp(static_cast<double>(depth) / depth_max, 0.0, 1.0);
     return static_cast<std::uint16_t>(1 + static_cast<int>(std::floor(unit * kDepthSteps + 0.5)));

@@ -18,11 +18,13 @@
 // float32, where its depth is −1.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <span>
+#include <string_view>
 
 #include "formats/normal_index.h"
 
@@ -45,28 +47,40 @@ inline constexpr int kMapFormatCount = 6;
 
 inline constexpr std::uint32_t kMapSizeMax = 16384;  ///< texels along one side of a map
 
-/// Returns the bytes of one texel, see the table above.
+/// The properties of a format, see the table above.
+struct MapFormatInfo {
+    const char* name;          ///< in `relief bake --map` and in reports
+    const char* depth;         ///< encoding of depths
+    const char* macro;         ///< RELIEF_HAS_<macro> compiles its code in the shaders
+    std::size_t texel_size;    ///< bytes; formats of the same size share a texture on the GPU
+    std::size_t normal_bytes;  ///< leading bytes of a texel that are normal indices
+};
+/// Indexed by MapFormat.
+inline constexpr std::array<MapFormatInfo, kMapFormatCount> kMapFormats{{
+    {"float", "float32", "FLOAT", 16, 0},
+    {"fixed8", "unorm16", "FIXED", 4, 2},
+    {"front-back", "half", "FRONT_BACK_HALF", 8, 4},
+    {"cube", "unorm16", "CUBE", 4, 2},
+    {"front-back", "unorm16", "FRONT_BACK_FIXED", 8, 4},
+    {"patches", "unorm8", "PATCHES", 8, 0},
+}};
+/// The different names.
+inline constexpr std::array<std::string_view, 5> kMapFormatWords{"float", "fixed8", "front-back", "cube",
+                                                                 "patches"};
+
+/// Returns 0 for an unknown format.
 [[nodiscard]] constexpr std::size_t texelSize(MapFormat format) {
-    switch (format) {
-        case MapFormat::kFloat32:
-            return 16;
-        case MapFormat::kFrontBackHalf:
-        case MapFormat::kFrontBackFixed:
-        case MapFormat::kPatches:
-            return 8;
-        case MapFormat::kFixed8:
-        case MapFormat::kCube8:
-            return 4;
-    }
-    return 0;
+    const auto index = static_cast<std::size_t>(format);
+    return index < kMapFormats.size() ? kMapFormats[index].texel_size : 0;
 }
 
-/// Returns "float", "fixed8", "front-back" (for either depth encoding), "cube" or "patches": the names in `relief bake
-/// --map` and in reports.
-[[nodiscard]] const char* mapFormatName(MapFormat format);
+[[nodiscard]] constexpr const char* mapFormatName(MapFormat format) {
+    return kMapFormats.at(static_cast<std::size_t>(format)).name;
+}
 
-/// Returns the encoding of depths: "float32", "unorm16", "half", or "unorm8" (patches, each with its own range).
-[[nodiscard]] const char* depthEncodingName(MapFormat format);
+[[nodiscard]] constexpr const char* depthEncodingName(MapFormat format) {
+    return kMapFormats.at(static_cast<std::size_t>(format)).depth;
+}
 
 /// One surface in a texel.
 struct Surface {

@@ -215,11 +215,11 @@ std::string shellWord(const std::string& path) {
 }
 
 void fields(FieldVisitor& visit, BakeRequest& request) {
-    visit("map", request.map,
-          {.help = "Bake this map instead of patches: FORMAT[:KEY=VALUE,...] with FORMAT float, fixed8, "
-                   "front-back, cube or patches; repeatable",
-           .value = "SPEC",
-           .recorded = true});
+    static const std::string kMapHelp =
+        "Bake this map instead of patches: FORMAT[:KEY=VALUE,...] with FORMAT " +
+        listed(std::span(kMapFormatWords).first(kMapFormatWords.size() - 1)) + " or " +
+        std::string(kMapFormatWords.back()) + "; repeatable";
+    visit("map", request.map, {.help = kMapHelp, .value = "SPEC", .recorded = true});
     visit("decode", request.decode,
           {.help = "Default of the key decode in --map; the paper uses projected", .fallback = "plane"});
     visit(

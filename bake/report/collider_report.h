@@ -13,8 +13,6 @@
 
 namespace relief {
 
-inline constexpr std::span<const std::string_view> kMapFormatWords =
-    kWords<"float", "fixed8", "front-back", "cube", "patches">;
 inline constexpr std::string_view kHashPattern = "^([0-9a-f]{32})?$";
 
 void fields(FieldVisitor& visit, const Bounds& bounds);

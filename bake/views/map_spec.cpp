@@ -16,7 +16,6 @@
 namespace relief {
 namespace {
 
-constexpr std::array<std::string_view, 5> kFormatWords = {"float", "fixed8", "front-back", "cube", "patches"};
 constexpr std::array<std::string_view, 10> kKeys = {"dir", "up",    "size",   "compare", "center",
                                                     "box", "depth", "decode", "bytes",   "texel"};
 
@@ -119,18 +118,15 @@ class MapSpecBuilder {
 };
 
 Result<void> MapSpecBuilder::setFormat(std::string_view word) {
-    const auto* found = std::ranges::find(kFormatWords, word);
-    if (found == kFormatWords.end()) {
-        return unknown("format", word, kFormatWords);
+    const auto* found = std::ranges::find(kMapFormats, word, &MapFormatInfo::name);
+    if (found == kMapFormats.end()) {
+        return unknown("format", word, kMapFormatWords);
     }
-    if (word == mapFormatName(MapFormat::kPatches)) {
-        spec_.format = MapFormat::kPatches;
-        spec_.decode = Decode::kPlane;
-        return {};
-    }
-    spec_.format = static_cast<MapFormat>(found - kFormatWords.begin());
+    spec_.format = static_cast<MapFormat>(found - kMapFormats.begin());
     if (isFrontBack(spec_.format)) {
         spec_.format = defaults_.front_back;
+    } else if (spec_.format == MapFormat::kPatches) {
+        spec_.decode = Decode::kPlane;
     }
     return {};
 }

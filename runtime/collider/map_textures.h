@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The maps of colliders on the GPU: three textures and a uniform block, read by shaders/collider/collider.glsl.
 //
-// Maps with the same texel layout share a 2-D texture: RGBA32F for float, RGBA8 for fixed8 and cube, RGBA16UI for
-// front-back of either depth and for patches. Texels are in container order (runtime/layout/gpu_image.h), wrapped at
-// the texture's width. A texture therefore takes the bytes of its maps plus less than one row:
+// Maps with the same texel size share a 2-D texture: RGBA32F, RGBA8 or RGBA16UI. Texels are in container order
+// (runtime/layout/gpu_image.h), wrapped at the texture's width. A texture therefore takes the bytes of its maps plus
+// less than one row:
 //
 //     bytes on the GPU < Σ texel bytes + Σ over the textures: width · texel size
 //

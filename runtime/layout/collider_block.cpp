@@ -114,14 +114,17 @@ std::string mapDefines(std::span<const PlacedMap> maps, const MapLayout& layout)
             define(std::string("HAS_") + name);
         }
     };
-    defineIf("FLOAT", [](const DepthMap& map) { return map.format == MapFormat::kFloat32; });
-    defineIf("FIXED", [](const DepthMap& map) { return map.format == MapFormat::kFixed8; });
-    defineIf("CUBE", [](const DepthMap& map) { return map.format == MapFormat::kCube8; });
-    defineIf("FRONT_BACK", [](const DepthMap& map) { return isFrontBack(map.format); });
-    defineIf("FRONT_BACK_HALF", [](const DepthMap& map) { return map.format == MapFormat::kFrontBackHalf; });
-    defineIf("FRONT_BACK_FIXED",
-             [](const DepthMap& map) { return map.format == MapFormat::kFrontBackFixed; });
-    defineIf("PATCHES", [](const DepthMap& map) { return map.format == MapFormat::kPatches; });
+    for (const TexelKind kind : {kFloatTexels, kFixedTexels, kFrontBackTexels}) {
+        if (kind == kFrontBackTexels) {
+            defineIf("FRONT_BACK", [](const DepthMap& map) { return isFrontBack(map.format); });
+        }
+        for (std::size_t i = 0; i < kMapFormats.size(); ++i) {
+            const auto format = static_cast<MapFormat>(i);
+            if (texelKindOf(format) == kind) {
+                defineIf(kMapFormats[i].macro, [&](const DepthMap& map) { return map.format == format; });
+            }
+        }
+    }
     defineIf("PLANE", [](const DepthMap& map) { return map.decode == Decode::kPlane; });
     defineIf("PROJECTED", [](const DepthMap& map) { return map.decode == Decode::kProjected; });
     return defines;

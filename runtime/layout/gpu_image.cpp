@@ -19,12 +19,6 @@ constexpr std::array<TexelFormat, kTexelKinds> kFormats = {{
 
 constexpr std::byte kLastIndex{2 * kNormalHalfRange};
 
-void clampIndices(std::span<std::byte> normal) {
-    for (std::byte& index : normal) {
-        index = std::min(index, kLastIndex);
-    }
-}
-
 /// Returns the map's texels, modified if that saves the shader a test per particle. Votes are unchanged:
 ///
 /// - a normal index of 255, which decodes like 254, becomes 254;
@@ -33,21 +27,22 @@ void clampIndices(std::span<std::byte> normal) {
 /// - texels of float maps are unchanged.
 std::vector<std::byte> shaderTexels(const DepthMap& map) {
     std::vector<std::byte> texels = map.texels;
-    if (map.format == MapFormat::kFloat32) {  // its normals are not indices
+    const MapFormatInfo& format = kMapFormats[static_cast<std::size_t>(map.format)];
+    if (format.normal_bytes == 0) {
         return texels;
     }
-    const std::size_t size = texelSize(map.format);
+    const std::size_t size = format.texel_size;
     for (std::size_t at = 0; at + size <= texels.size(); at += size) {
         const std::span<std::byte> texel(texels.data() + at, size);
-        if (map.format == MapFormat::kFixed8 || map.format == MapFormat::kCube8) {
-            clampIndices(texel.first(2));
-        } else if (isFrontBack(map.format)) {
+        for (std::byte& index : texel.first(format.normal_bytes)) {
+            index = std::min(index, kLastIndex);
+        }
+        if (isFrontBack(map.format) && map.decode == Decode::kPlane) {
             // Front normal, back normal, front depth and back depth, 16 bits each.
-            clampIndices(texel.first(4));
             const auto isEmpty = [&](std::size_t end) {
                 return texel[4 + 2 * end] == std::byte{0} && texel[5 + 2 * end] == std::byte{0};
             };
-            if (map.decode == Decode::kPlane && isEmpty(0) != isEmpty(1)) {
+            if (isEmpty(0) != isEmpty(1)) {
                 const std::size_t full = isEmpty(0) ? 1 : 0;
                 for (const std::size_t word : {std::size_t{0}, std::size_t{4}}) {
                     std::memcpy(&texel[word + 2 * (1 - full)], &texel[word + 2 * full], 2);

@@ -91,18 +91,8 @@ std::int32_t TexelLayout::place(std::int32_t side_max) {
 }
 
 TexelKind texelKindOf(MapFormat format) {
-    switch (format) {
-        case MapFormat::kFloat32:
-            return kFloatTexels;
-        case MapFormat::kFrontBackHalf:
-        case MapFormat::kFrontBackFixed:
-        case MapFormat::kPatches:
-            return kFrontBackTexels;
-        case MapFormat::kFixed8:
-        case MapFormat::kCube8:
-            break;
-    }
-    return kFixedTexels;
+    const std::size_t size = texelSize(format);
+    return size == 16 ? kFloatTexels : size == 4 ? kFixedTexels : kFrontBackTexels;
 }
 
 Result<MapLayout> MapLayout::create(std::span<const PlacedMap> maps, std::int32_t side_max,

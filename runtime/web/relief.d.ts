@@ -76,7 +76,7 @@ export interface Answers {
 }
 
 export interface MapInfo {
-    /** float, fixed8, front-back, cube or patches. */
+    /** As in `relief bake --map`: "patches", for example. */
     format: string;
     encoding: string;
     compare: string;
