@@ -1,5 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
-// For collider.glsl: the votes of projected maps, orthographic and cube.
+// For collider.glsl: the formats that a program is compiled for, and the votes of projected maps, orthographic and cube.
+
+// The format of a map, a constant if all are alike: otherwise a GL may execute the branches of all formats for every
+// map. ColliderTextures defines RELIEF_HAS_... for the formats present.
+bool reliefIsCube(ivec4 info) {
+#if !defined(RELIEF_HAS_CUBE)
+    return false;
+#elif defined(RELIEF_HAS_FLOAT) || defined(RELIEF_HAS_FIXED) || defined(RELIEF_HAS_FRONT_BACK)
+    return info.y == RELIEF_MAP_FORMAT_CUBE8;
+#else
+    return true;
+#endif
+}
+
+// Test this before the other formats.
+bool reliefIsPatches(ivec4 info) {
+#if !defined(RELIEF_HAS_PATCHES)
+    return false;
+#elif defined(RELIEF_HAS_FLOAT) || defined(RELIEF_HAS_FIXED) || defined(RELIEF_HAS_CUBE) || defined(RELIEF_HAS_FRONT_BACK)
+    return info.y == RELIEF_MAP_FORMAT_PATCHES;
+#else
+    return true;
+#endif
+}
+
+bool reliefIsFrontBack(ivec4 info) {  // orthographic maps only
+#if !defined(RELIEF_HAS_FRONT_BACK)
+    return false;
+#elif defined(RELIEF_HAS_FLOAT) || defined(RELIEF_HAS_FIXED)
+    return info.y == RELIEF_MAP_FORMAT_FRONT_BACK_HALF || info.y == RELIEF_MAP_FORMAT_FRONT_BACK_FIXED;
+#else
+    return true;
+#endif
+}
 
 // The vote of one map. An abstention is RELIEF_FAR_INSIDE, which never wins.
 struct ReliefVote {
@@ -77,12 +110,21 @@ ReliefVote reliefVoteFloat(ivec4 info, ReliefSight sight, out bool found) {
                                  : reliefSightProjected(info, values.a, sight);
     return ReliefVote(distance, values.rgb);
 }
-#else
-ReliefVote reliefVoteFloat(ivec4 info, ReliefSight sight, out bool found) {
-    found = false;
-    return ReliefVote(RELIEF_FAR_INSIDE, RELIEF_NO_CODE);
-}
 #endif
+
+// Texels with one surface.
+ReliefVote reliefVoteSingle(ivec4 info, ReliefSight sight, out bool found) {
+    ReliefVote vote;
+#if defined(RELIEF_HAS_FLOAT)
+    if (info.y == RELIEF_MAP_FORMAT_FLOAT32) {
+        vote = reliefVoteFloat(info, sight, found);
+    } else
+#endif
+    {
+        vote = reliefVoteFixed(info, sight, found);
+    }
+    return vote;
+}
 
 // Without `whole`, any distance >= 0 means outside.
 ReliefVote reliefVoteOrthographic(int i, vec3 p, ivec4 place, ivec4 info, bool whole) {
@@ -100,10 +142,8 @@ ReliefVote reliefVoteOrthographic(int i, vec3 p, ivec4 place, ivec4 info, bool w
         bool found;
         if (reliefIsFrontBack(info)) {
             vote = reliefVoteFrontBack(info, sight, whole, found);
-        } else if (reliefIsFloat(info)) {
-            vote = reliefVoteFloat(info, sight, found);
         } else {
-            vote = reliefVoteFixed(info, sight, found);
+            vote = reliefVoteSingle(info, sight, found);
         }
         if (sees_beyond && !in_depth && !(vote.distance >= 0.0)) {  // the collider does not extend there
             vote.distance = RELIEF_FAR_OUTSIDE;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For collider.glsl: the maps of a collider, their texel layout, and the formats that a program is compiled for.
+// For collider.glsl: the maps of a collider and their texel layout.
 struct ReliefMap {
     vec4 row[3];           // object space to map space; the rows are orthogonal. Orthographic maps: x and y are in
                            // texels
@@ -75,47 +75,6 @@ uniform highp usampler2D u_relief_front_back;
 // 1: a texel of planes may have only one surface. ColliderTextures copies the plane of a texel's only surface to
 // the other one on upload, which changes no vote. Maps of live bodies are used as rendered.
 #define RELIEF_HALF_EMPTY (RELIEF_LIVE == 1)
-
-// The format of a map, a constant if all are alike: otherwise a GL may execute the branches of all formats for every
-// map. ColliderTextures defines RELIEF_HAS_... for the formats present.
-bool reliefIsCube(ivec4 info) {
-#if !defined(RELIEF_HAS_CUBE)
-    return false;
-#elif defined(RELIEF_HAS_FLOAT) || defined(RELIEF_HAS_FIXED) || defined(RELIEF_HAS_FRONT_BACK)
-    return info.y == RELIEF_MAP_FORMAT_CUBE8;
-#else
-    return true;
-#endif
-}
-
-// Test this before the other formats.
-bool reliefIsPatches(ivec4 info) {
-#if !defined(RELIEF_HAS_PATCHES)
-    return false;
-#elif defined(RELIEF_HAS_FLOAT) || defined(RELIEF_HAS_FIXED) || defined(RELIEF_HAS_CUBE) || defined(RELIEF_HAS_FRONT_BACK)
-    return info.y == RELIEF_MAP_FORMAT_PATCHES;
-#else
-    return true;
-#endif
-}
-
-bool reliefIsFrontBack(ivec4 info) {  // orthographic maps only; likewise the next function
-#if !defined(RELIEF_HAS_FRONT_BACK)
-    return false;
-#elif defined(RELIEF_HAS_FLOAT) || defined(RELIEF_HAS_FIXED)
-    return info.y == RELIEF_MAP_FORMAT_FRONT_BACK_HALF || info.y == RELIEF_MAP_FORMAT_FRONT_BACK_FIXED;
-#else
-    return true;
-#endif
-}
-
-bool reliefIsFloat(ivec4 info) {
-#if !defined(RELIEF_HAS_FLOAT)
-    return false;
-#else
-    return info.y == RELIEF_MAP_FORMAT_FLOAT32;
-#endif
-}
 
 bool reliefIsPlane(ivec4 info) {
 #if !defined(RELIEF_HAS_PLANE)

@@ -43,10 +43,8 @@ bool surfaces(ivec4 info, ReliefSight sight, out vec2 votes) {
             votes.x = words.b != 0u ? sight.scale * (front - sight.z) : RELIEF_FAR_INSIDE;
             votes.y = words.a != 0u ? sight.scale * (sight.z - back) : RELIEF_FAR_INSIDE;
         }
-    } else if (reliefIsFloat(info)) {
-        votes.x = reliefVoteFloat(info, sight, found).distance;
     } else {
-        votes.x = reliefVoteFixed(info, sight, found).distance;
+        votes.x = reliefVoteSingle(info, sight, found).distance;
     }
     return found;
 }
