@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For collider.glsl: the formats that a program is compiled for, and the votes of projected maps, orthographic and cube.
+// For collider.glsl: tests of map formats, and the votes of projected maps, orthographic and cube.
 
 // The format of a map, a constant if all are alike: otherwise a GL may execute the branches of all formats for every
 // map. ColliderTextures defines RELIEF_HAS_... for the formats present.
