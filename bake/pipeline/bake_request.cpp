@@ -158,10 +158,18 @@ bool readRecorded(std::string_view name, std::string_view value, BakeRequest& re
 
 }  // namespace
 
+Result<ShapeOptions> shapeOptionsOf(const BakeRequest& request) {
+    ShapeOptions options = RELIEF_TRY(parseShapeOptions(request.as));
+    options.thickness_by_part = !request.thickness || request.thickness->by_part;
+    options.thickness_by_texel = options.thickness_by_part && request.texel;
+    options.voids = request.voids.value_or(VoidsAs::kFull);
+    return options;
+}
+
 Result<BakeSettings> settingsOf(const BakeRequest& request) {
     BakeSettings settings;
     settings.source = RELIEF_TRY(sourceOf(request));
-    settings.shape = RELIEF_TRY(parseShapeOptions(request.as));
+    settings.shape = RELIEF_TRY(shapeOptionsOf(request));
     const std::string conflict = conflictOf(request, settings);
     if (!conflict.empty()) {
         return fail(ErrorCode::kUsage, conflict);

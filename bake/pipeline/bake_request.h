@@ -78,6 +78,9 @@ struct BakeSettings {
     ShapeOptions shape;  ///< without a thickness, which depends on the mesh
 };
 
+/// Returns the shape options without a thickness. Errors: those of parseShapeOptions.
+[[nodiscard]] Result<ShapeOptions> shapeOptionsOf(const BakeRequest& request);
+
 /// Validates the combination of fields. Errors: kUsage (two ways to select the maps, options without effect), those of
 /// parseMapSpec, checkMapSize, parseShapeOptions and wrapAlpha.
 [[nodiscard]] Result<BakeSettings> settingsOf(const BakeRequest& request);

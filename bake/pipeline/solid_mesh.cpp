@@ -108,10 +108,7 @@ Result<ShapedMesh> makeSolid(const BakeRequest& request, const PreparedMesh& mes
     if (request.holes == Holes::kKeep || request.animated) {
         return ShapedMesh{mesh, {}, surfacePartsOf(mesh)};
     }
-    ShapeOptions options = RELIEF_TRY(parseShapeOptions(request.as));
-    options.thickness_by_part = !request.thickness || request.thickness->by_part;
-    options.thickness_by_texel = options.thickness_by_part && request.texel;
-    options.voids = request.voids.value_or(VoidsAs::kFull);
+    ShapeOptions options = RELIEF_TRY(shapeOptionsOf(request));
     options.thickness =
         request.thickness ? request.thickness->length
         : request.texel
