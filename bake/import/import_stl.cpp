@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // assimp 5.2 is not used: it reads text that is truncated after a facet as a smaller mesh, and reads no triangles from
 // a binary file whose header begins with "solid" if bytes follow the last triangle (import_text_test.cpp, Stl and
-// BinaryStlOfAnyHeaderAndLength).
+// BinaryStlWithAnyHeaderAndLength).
 #include "bake/import/import_readers.h"
 
 #include <array>

@@ -47,7 +47,7 @@ glm::dvec2 nearSeam(std::mt19937& random, double away, std::uint32_t seams) {
     return at;
 }
 
-TEST_F(GroundBakes, NoPointNearASeamIsWrongBeyondTheBound) {
+TEST_F(GroundBakes, SeamsAreWithinTheBound) {
     for (const double spacing : {1.0, 0.7}) {
         const HeightGrid grid = writeHills(64 * 4, 64 * 3 + 7);
         const std::string settings =
@@ -83,7 +83,7 @@ TEST_F(GroundBakes, NoPointNearASeamIsWrongBeyondTheBound) {
 }
 
 /// The coarse tiles are the ground of every fourth sample, seams among it, and each in the box of the tile it stands for.
-TEST_F(GroundBakes, CoarseTilesAreTheGroundOfFewerSamples) {
+TEST_F(GroundBakes, CoarseTilesMatchEveryFourthSample) {
     const HeightGrid grid = writeHills(64 * 12 - 5, 64 * 8 + 3);
     HeightGrid fewer{(grid.columns + 2) / 4 + 1, (grid.rows + 2) / 4 + 1, {}};
     for (std::size_t row = 0; row < fewer.rows; ++row) {
@@ -123,7 +123,7 @@ TEST_F(GroundBakes, CoarseTilesAreTheGroundOfFewerSamples) {
     EXPECT_GT(below, 90'000);
 }
 
-TEST_F(GroundBakes, CoarseTilesHoldSmallHolesAndFineOnesDoNot) {
+TEST_F(GroundBakes, OnlyCoarseTilesFillSmallHoles) {
     write("hills.raw", 257, 257, [](double x, double z) {
         const bool small = x == 100 && z == 100;  // at a coarse sample
         return small || (x >= 200 && z >= 200) ? double{kHole} : 9.0;
@@ -139,7 +139,7 @@ TEST_F(GroundBakes, CoarseTilesHoldSmallHolesAndFineOnesDoNot) {
     }
 }
 
-TEST_F(GroundBakes, ThreadsDoNotChangeAByteAndAnotherBakeLeavesNothingBehind) {
+TEST_F(GroundBakes, OutputIsDeterministicAndReplacesOldTiles) {
     writeHills(150, 150);
     static_cast<void>(bakeWorld("tile=64"));
     const auto first = worldFiles();
@@ -152,7 +152,7 @@ TEST_F(GroundBakes, ThreadsDoNotChangeAByteAndAnotherBakeLeavesNothingBehind) {
     EXPECT_EQ(worldFiles().size(), 5U);
 }
 
-TEST_F(GroundBakes, TilesWithoutGroundAreLeftOutAndNoneAtAllIsAnError) {
+TEST_F(GroundBakes, EmptyTilesAreOmitted) {
     write("hills.raw", 129, 129, [](double x, double) { return x > 40 ? double{kHole} : 0.0; });
     const WorldField field = bakeWorld("tile=64,hole=0");
     EXPECT_EQ(field.world().bodies.size(), 2U);
@@ -171,7 +171,7 @@ void expectHas(const std::string& text, std::string_view words) {
 }
 
 /// Settings that are not those of the file are named, as far as they can be known.
-TEST_F(GroundBakes, SamplesOfAnotherKindAreNamed) {
+TEST_F(GroundBakes, WrongSampleFormatsGetAdvice) {
     const auto warned = [&](const std::string& settings) {
         std::string all;
         for (const std::string& warning : bake("h.raw", parseHeightsSpec(settings).value()).warnings) {
@@ -243,7 +243,7 @@ TEST_F(GroundBakes, SamplesOfAnotherKindAreNamed) {
 }
 
 /// A square along whose diagonal the ground rises by 66° has no bound, though each of its sides rises by 58°.
-TEST_F(GroundBakes, SteepSquaresAreCountedByTheirRiseAndHaveNoBound) {
+TEST_F(GroundBakes, SteepSquaresAreCountedAndHaveNoBound) {
     const auto report = [&](double slope, double kink) {
         write("slope.raw", 9, 9, [&](double x, double z) {
             return slope * std::max(x - kink, 0.0) + slope * std::max(z - kink, 0.0);

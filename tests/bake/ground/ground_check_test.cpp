@@ -33,7 +33,7 @@ class GroundChecks : public RawHeights {
     }
 };
 
-TEST_F(GroundChecks, APlaneIsRightWithinTheErrorOfTheBake) {
+TEST_F(GroundChecks, PlaneIsWithinTheBakeError) {
     const auto plane = [](double x, double z) { return 3.0 + 0.25 * x - 0.125 * z; };
     write("plane.raw", 90, 70, plane);
     const std::string settings = "width=90,offset=7/1/-3";
@@ -51,7 +51,7 @@ TEST_F(GroundChecks, APlaneIsRightWithinTheErrorOfTheBake) {
     EXPECT_TRUE(result.warnings.empty());
 }
 
-TEST_F(GroundChecks, AShiftIsMeasured) {
+TEST_F(GroundChecks, ShiftIsMeasured) {
     write("hills.raw", 150, 150, hills);
     const WorldField field = baked("hills.raw", spec("tile=64"), true);
     ASSERT_EQ(field.world().bodies.size(), 9U);
@@ -108,7 +108,7 @@ TEST_F(GroundChecks, HolesAreOutside) {
     EXPECT_GT(less.anywhere.false_outside, 2.0);
 }
 
-TEST_F(GroundChecks, ALostTileIsMissing) {
+TEST_F(GroundChecks, LostTileIsMissing) {
     write("hills.raw", 200, 200, hills);
     LoadedWorld loaded = baked("hills.raw", spec("tile=64"), true).loaded();
     ASSERT_EQ(loaded.world.bodies[5].node, "tile 1 1");
@@ -121,7 +121,7 @@ TEST_F(GroundChecks, ALostTileIsMissing) {
     EXPECT_FALSE(result.worst.back().error);
 }
 
-TEST_F(GroundChecks, WrongMapsAndBodiesAreRefused) {
+TEST_F(GroundChecks, WrongMapsAndBodiesAreRejected) {
     write("hills.raw", 100, 100, hills);
     write("other.raw", 120, 120, hills);
     const WorldField field = baked("hills.raw", spec(""));

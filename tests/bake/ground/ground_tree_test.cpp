@@ -68,7 +68,7 @@ int wrongPoints(const HeightGrid& grid, const GroundPlace& place, int points = 1
     return wrongPoints(grid, place, ground, points);
 }
 
-TEST(GroundTree, ASlopeKeepsToItsPlaneWithNormalsAndDepths) {
+TEST(GroundTree, SlopesHaveExactNormalsAndDepths) {
     const HeightGrid grid = gridOf(65, 49, [](double x, double z) { return 0.5 * x - 0.25 * z + 3.0; });
     const Ground ground = checked(grid);
     EXPECT_EQ(wrongPoints(grid, {}), 0);
@@ -87,7 +87,7 @@ TEST(GroundTree, ASlopeKeepsToItsPlaneWithNormalsAndDepths) {
     }
 }
 
-TEST(GroundTree, ShapesSpacingsPlacesAndHeightsKeepToTheBound) {
+TEST(GroundTree, ErrorsAreWithinTheBound) {
     const auto cone = [](double x, double z) { return 60.0 - 0.9 * std::hypot(x - 64.3, z - 50.1); };
     const auto step = [](double x, double) { return x < 33.5 ? 0.0 : 2.5; };
     const std::pair<HeightGrid, GroundPlace> cases[] = {
@@ -104,7 +104,7 @@ TEST(GroundTree, ShapesSpacingsPlacesAndHeightsKeepToTheBound) {
     }
 }
 
-TEST(GroundTree, NoVariationIsExactWhereverItLies) {
+TEST(GroundTree, FlatGroundIsExact) {
     for (const double height : {0.0, 4.0, 64.0, -64.0, 1.25, -0.001}) {
         const HeightGrid flat = gridOf(80, 80, [&](double, double) { return height; });
         EXPECT_EQ(wrongPoints(flat, {}, 10'000), 0) << height;
@@ -117,7 +117,7 @@ TEST(GroundTree, NoVariationIsExactWhereverItLies) {
 }
 
 /// Heights of all leaves by what they hold, and not by points that may miss the worst.
-TEST(GroundTree, TheBoundIsHalfAStepOfTheSteepestLeaf) {
+TEST(GroundTree, BoundIsHalfAStepOfTheSteepestLeaf) {
     const HeightGrid grid = gridOf(129, 129, hills);
     const Ground ground = checked(grid);
     double worst = 0.0;
@@ -148,7 +148,7 @@ TEST(GroundTree, TheBoundIsHalfAStepOfTheSteepestLeaf) {
     EXPECT_LE(ground.error_max, 0.5 * (range + 4.0 / 512.0) * 17.0 / 16.0 / 255.0);
 }
 
-TEST(GroundTree, SquaresThatTouchAHoleHaveNoGround) {
+TEST(GroundTree, SquaresAtHolesAreEmpty) {
     std::mt19937 random(seedFrom(5));
     HeightGrid grid = gridOf(90, 75, hills);
     for (int i = 0; i < 120; ++i) {
@@ -176,7 +176,7 @@ TEST(GroundTree, SquaresThatTouchAHoleHaveNoGround) {
     EXPECT_EQ(none.squares, 0U);
 }
 
-TEST(GroundTree, SteepSquaresErrAsideByLessThanAShareOfASquare) {
+TEST(GroundTree, SteepSquaresHaveSmallSidewaysErrors) {
     std::mt19937 random(seedFrom(8));
     std::uniform_real_distribution<double> share(0.0, 1.0);
     const HeightGrid cliffs = gridOf(40, 37, [&](double x, double z) {
@@ -203,7 +203,7 @@ TEST(GroundTree, SteepSquaresErrAsideByLessThanAShareOfASquare) {
     EXPECT_EQ(wrong, 0);
 }
 
-TEST(GroundTree, GroundIsSolidDownToATwentiethBelowItsLowestPointAndNoSideIsInside) {
+TEST(GroundTree, GroundIsSolidToATwentiethBelowItsLowestPoint) {
     const HeightGrid grid = gridOf(201, 101, hills);
     const Ground ground = checked(grid);
     const float lowest = ground.bounds.min.y;
@@ -217,7 +217,7 @@ TEST(GroundTree, GroundIsSolidDownToATwentiethBelowItsLowestPointAndNoSideIsInsi
     EXPECT_EQ(vote(ground.map, {10.0F, 200.0F, 50.0F})->distance, kFarOutside);
 }
 
-TEST(GroundTree, HeightsThatNoTreeHoldsAreRefusedBeforeTheyTakeMemory) {
+TEST(GroundTree, OversizedGridsAreRejectedBeforeAllocation) {
     std::mt19937 random(seedFrom(2));
     const HeightGrid noise = gridOf(600, 600, [&](double, double) { return 1e5 * double(random() % 1000); });
     for (const GroundPlace& place : {GroundPlace{1.0, {}}, GroundPlace{1e-3, {}}, GroundPlace{1e-6, {}}}) {

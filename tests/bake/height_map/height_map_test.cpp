@@ -147,7 +147,7 @@ class HeightMaps : public testing::Test {
     fs::path folder_ = temporary_.path();
 };
 
-TEST(HeightsSettings, AreReadAndWrittenBack) {
+TEST(HeightsSettings, RoundTrip) {
     const HeightsSpec spec = required(
         parseHeightsSpec("spacing=0.25,low=-3,high=500.5,hole=0,width=2048,offset=-1/0/2.5,tile=512"));
     EXPECT_EQ(spec.offset.at, glm::dvec3(-1.0, 0.0, 2.5));
@@ -156,7 +156,7 @@ TEST(HeightsSettings, AreReadAndWrittenBack) {
     EXPECT_EQ(toString(*parseHeightsSpec(toString(spec))), toString(spec));
 }
 
-TEST(HeightsSettings, ThatMakeNoSenseAreRefusedWithACure) {
+TEST(HeightsSettings, InvalidSettingsAreRejectedWithAFix) {
     for (const Wrong& wrong :
          {Wrong{"", "unknown key ''; use one of spacing, low"}, Wrong{"spacin=1", "did you mean 'spacing'?"},
           Wrong{"spacing", "spacing is '' but must be a length"},
@@ -175,7 +175,7 @@ TEST(HeightsSettings, ThatMakeNoSenseAreRefusedWithACure) {
     }
 }
 
-TEST_F(HeightMaps, OfSixteenAndEightBitsGoFromLowToHigh) {
+TEST_F(HeightMaps, IntegerImagesSpanLowToHigh) {
     const std::array<std::uint16_t, 6> samples = {0, 65535, 13107, 1, 258, 40000};
     std::vector<std::byte> words(sizeof(samples));
     std::memcpy(words.data(), samples.data(), words.size());
@@ -192,7 +192,7 @@ TEST_F(HeightMaps, OfSixteenAndEightBitsGoFromLowToHigh) {
     EXPECT_EQ(heightsOf(bytes, "low=0,high=5,hole=7", 9.0F), (std::vector<float>{0.0F, 5.0F, 1.0F, 9.0F}));
 }
 
-TEST_F(HeightMaps, OfFloatsAreMetresAndNaNIsAHole) {
+TEST_F(HeightMaps, FloatsAreMetresAndNanIsAHole) {
     ExrImage image;
     image.width = 3;
     image.height = 2;
@@ -219,7 +219,7 @@ TEST_F(HeightMaps, OfFloatsAreMetresAndNaNIsAHole) {
     EXPECT_TRUE(std::isnan(heightsOf(lowest, message.substr(cure).c_str())[1]));
 }
 
-TEST_F(HeightMaps, RawSamplesAreSquareUnlessTheyHaveAWidth) {
+TEST_F(HeightMaps, RawSamplesAreSquareWithoutAWidth) {
     const fs::path square = writeRaw("a.r16", std::vector<std::uint16_t>(49, 7));
     EXPECT_EQ(heightsOf(square, "low=0,high=1").size(), 49U);
     const fs::path cut = writeRaw("b.raw", std::vector<std::uint16_t>(48, 7));
@@ -282,7 +282,7 @@ TEST_F(HeightMaps, RawSamplesHaveATypeAndAByteOrder) {
 }
 
 /// Ground of 65² samples about 40 m high, which the sea cuts, written in every format and read as each.
-TEST_F(HeightMaps, ALikelierFormatOfRawSamplesIsFound) {
+TEST_F(HeightMaps, LikelierRawFormatIsSuggested) {
     std::vector<double> ground;
     for (int i = 0; i < 65 * 65; ++i) {
         ground.push_back(
@@ -362,7 +362,7 @@ TEST_F(HeightMaps, ALikelierFormatOfRawSamplesIsFound) {
 }
 
 /// Bytes in the wrong order scale heights by 256 if all lie within 256 m, and signs in the wrong type make pillars of 65 km.
-TEST_F(HeightMaps, ALikelierFormatOfLowlandIsFound) {
+TEST_F(HeightMaps, LikelierFormatOfLowlandIsSuggested) {
     const auto found = [&](double low, double high, const std::string& settings, int lone = 0) {
         std::vector<std::uint16_t> samples;
         for (int i = 0; i < 65 * 65; ++i) {
@@ -406,7 +406,7 @@ TEST_F(HeightMaps, ALikelierFormatOfLowlandIsFound) {
     EXPECT_EQ(found(32000, 33500, "type=int16"), "type=uint16");
 }
 
-TEST_F(HeightMaps, ALoneSampleFarFromAllOthersIsFound) {
+TEST_F(HeightMaps, OutlierSampleIsReported) {
     const auto lone = [](std::initializer_list<float> samples) {
         SampleRange range;
         for (const float sample : samples) {
@@ -430,7 +430,7 @@ TEST_F(HeightMaps, ALoneSampleFarFromAllOthersIsFound) {
     EXPECT_EQ(lone({1.0F, 2.0F, 3.0F}), "");
 }
 
-TEST_F(HeightMaps, GreyMayBeSavedInColourAndOpaque) {
+TEST_F(HeightMaps, GreyCanBeSavedAsOpaqueColor) {
     const auto png = [&](std::uint32_t format, std::initializer_list<unsigned char> values) {
         const std::span<const unsigned char> all(values.begin(), values.size());
         return writePng("c.png", format, 2, 2, {std::as_bytes(all).begin(), std::as_bytes(all).end()});
@@ -450,7 +450,7 @@ TEST_F(HeightMaps, GreyMayBeSavedInColourAndOpaque) {
             "it is transparent at column 1 of row 0; save it", ErrorCode::kUnsupported);
 }
 
-TEST_F(HeightMaps, TransparentColoursOfPngAreHoles) {
+TEST_F(HeightMaps, TransparentPngColorsAreHoles) {
     const std::array<std::uint16_t, 4> samples = {0, 300, 44, 65535};
     std::vector<std::byte> words(sizeof(samples));
     std::memcpy(words.data(), samples.data(), words.size());
@@ -480,7 +480,7 @@ TEST_F(HeightMaps, TransparentColoursOfPngAreHoles) {
     EXPECT_EQ(holesOf(addChunk(rgb(), "tRNS", {7, 7, 0}), "low=0,high=255"), "....");
 }
 
-TEST_F(HeightMaps, OfTheWrongSizeOrKindAreRefused) {
+TEST_F(HeightMaps, WrongSizesAndFormatsAreRejected) {
     const std::vector<std::byte> pixels(64);
     refuses(writePng("one.png", PNG_FORMAT_GRAY, 1, 1, pixels), "low=0,high=1",
             "one.png': it has 1x1 samples; a height map has at least 2x2");
@@ -501,7 +501,7 @@ std::string statusOf(const std::string& pid, const std::string& name) {
     return word;
 }
 
-TEST_F(HeightMaps, ImagesAreDecodedByASandboxedProcess) {
+TEST_F(HeightMaps, ImagesAreDecodedInASandbox) {
     const auto children = [] {
         std::string list;
         std::ifstream("/proc/self/task/" + std::to_string(::getpid()) + "/children") >> list;
@@ -538,7 +538,7 @@ TEST_F(HeightMaps, ImagesAreDecodedByASandboxedProcess) {
 }
 
 /// A file of which every part may be missing or changed; and one that claims 10⁹ samples.
-TEST_F(HeightMaps, DamagedImagesAreRefusedInOneLine) {
+TEST_F(HeightMaps, DamagedImagesAreRejectedInOneLine) {
     std::vector<std::byte> pixels(2 * 40 * 40);
     for (std::size_t i = 0; i < pixels.size(); ++i) {
         pixels[i] = static_cast<std::byte>(i * i >> 3U);

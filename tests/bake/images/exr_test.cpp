@@ -11,7 +11,7 @@
 namespace relief::test {
 namespace {
 
-TEST(ExrExport, HoldsTheMapAndItsCamera) {
+TEST(ExrExport, ContainsTheMapAndItsCamera) {
     const Collider collider = bakeSpecs(makeIcosphere({0.2, 0.1, -0.3}, 0.9, 3),
                                         {"front-back:dir=1/2/3,size=40x30", "cube:size=20", "float:size=16"});
     EXPECT_EQ(mapImageName(collider.maps[2], 2, 0), "map2_float.exr");

@@ -14,7 +14,7 @@ Collider sampleCollider() {
                      {"front-back:dir=-z", "fixed8:dir=-x,box=0/-1/-1/2/1/1", "cube"}, 48);
 }
 
-TEST(Slice, HoldsTheFieldOfItsPoints) {
+TEST(Slice, ContainsTheFieldAtItsPoints) {
     const Collider collider = sampleCollider();
     for (int axis = 0; axis < 3; ++axis) {
         const Slice slice = required(evaluateSlice(collider, {.axis = axis, .at = 0.125F, .size = 90}));
@@ -46,7 +46,7 @@ TEST(Slice, HoldsTheFieldOfItsPoints) {
 }
 
 // Read back by OpenEXR's own reader; the camera in the header finds the pixel of each point.
-TEST(Slice, HoldsItsDistancesAsExr) {
+TEST(Slice, WritesDistancesAsExr) {
     Collider collider = sampleCollider();
     for (int axis = 0; axis < 3; ++axis) {
         const Slice slice = required(evaluateSlice(collider, {.axis = axis, .at = 0.125F, .size = 60}));
@@ -82,13 +82,13 @@ TEST(Slice, HoldsItsDistancesAsExr) {
     EXPECT_TRUE(std::isnan(ExrFile(distanceImage(slice, collider)).channel("distance").front()));
 }
 
-TEST(Slice, RefusesSizes) {
+TEST(Slice, RejectsInvalidSizes) {
     const Collider collider = sampleCollider();
     EXPECT_EQ(evaluateSlice(collider, {.axis = 0, .at = {}, .size = 1}).error().code, ErrorCode::kUsage);
     EXPECT_EQ(evaluateSlice(collider, {.axis = 0, .at = {}, .size = 8193}).error().code, ErrorCode::kLimit);
 }
 
-TEST(SliceFigure, DrawsWhateverTheFieldIs) {
+TEST(SliceFigure, DrawsAnyField) {
     // Nothing but far outside; nothing but abstention; names of any length; huge and tiny coordinates.
     Collider collider = sampleCollider();
     EXPECT_TRUE(drawSlice(*evaluateSlice(collider, {.axis = 0, .at = 1e6F, .size = 20}),

@@ -7,7 +7,7 @@
 namespace relief::test {
 namespace {
 
-TEST(Errors, ThePlaneHoldsTheNormalAndTheSamplesLieRoundThePlace) {
+TEST(Errors, PlaneContainsTheNormalAndSamplesSurroundThePlace) {
     const VerdictSlice wall = verdictSlice({1.0F, 2.0F, 3.0F}, {0.6F, 0.8F, 0.0F}, 4.0);
     EXPECT_EQ(wall.axis, 2);
     EXPECT_EQ(verdictSlice({}, {0.0F, 0.6F, 0.8F}, 1.0).axis, 0);
@@ -21,7 +21,7 @@ TEST(Errors, ThePlaneHoldsTheNormalAndTheSamplesLieRoundThePlace) {
     EXPECT_EQ(low.z, 3.0);
 }
 
-TEST(Errors, EachVerdictIsSeenAndTheSameSliceIsTheSamePicture) {
+TEST(Errors, EveryVerdictHasAColorAndPicturesAreDeterministic) {
     VerdictSlice slice = verdictSlice({}, {0.0F, 1.0F, 0.0F}, 1.0);
     const auto picture = [&] { return *drawVerdicts(slice, "m"); };
     const std::vector<std::byte> outside = picture();

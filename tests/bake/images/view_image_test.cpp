@@ -64,7 +64,7 @@ struct View {
     float near;
 };
 
-TEST(ViewImage, OfABox) {
+TEST(ViewImage, ShowsABox) {
     const Collider box = bakeSpecs(makeBoxMesh({0.1, 0.2, -0.3}, {0.5, 0.3, 0.2}), {"patches:bytes=8kB"});
     const float texel = finestTexel(box);
     for (int view = 0; view < 6; ++view) {
@@ -86,7 +86,7 @@ TEST(ViewImage, OfABox) {
 }
 
 // Every surface of the field is off by less than a texel, and so along the ray by less than a texel over the cosine.
-TEST(ViewImage, OfABall) {
+TEST(ViewImage, ShowsABall) {
     const glm::dvec3 center(0.2, 0.1, -0.3);
     constexpr double kRadius = 0.9;
     const Collider ball = bakeSpecs(makeIcosphere(center, kRadius, 5), {"patches:bytes=60kB"});
@@ -167,7 +167,7 @@ TEST(ViewImage, ShowsTheFieldFromOppositeSides) {
     }
 }
 
-TEST(ViewImage, OfTinyAndOfHugeColliders) {
+TEST(ViewImage, ShowsTinyAndHugeColliders) {
     for (const double scale : {1e-12, 1e12}) {
         const Collider box =
             bakeSpecs(makeBoxMesh({0, 0, 0}, scale * glm::dvec3(1.0, 0.01, 1.0)), {"patches:bytes=4kB"});
@@ -183,7 +183,7 @@ TEST(ViewImage, OfTinyAndOfHugeColliders) {
 }
 
 // A ridge along y at x = 0.5, as high as the cell, in one patch: beside it the surface is a flat floor at z = 0.
-TEST(ViewImage, OfARidgeWithinAPatch) {
+TEST(ViewImage, ShowsARidgeWithinAPatch) {
     PatchHeights heights;
     heights.side = 5;
     heights.scale = 12 << 4;

@@ -85,7 +85,7 @@ const std::string kInput = kAnimation + "/samplers/0/input";
 const std::string kOutput = kAnimation + "/samplers/0/output";
 const std::string kInstances = "/nodes/2/extensions/EXT_mesh_gpu_instancing/attributes/TRANSLATION";
 
-TEST(AnimatedImport, KeepsWhatMoves) {
+TEST(AnimatedImport, KeepsAnimatedParts) {
     const AnimatedMesh bar = loaded(bendingBar()).mesh;
     ASSERT_EQ(bar.positions.size(), 12U);
     EXPECT_EQ(bar.joints.size(), 2U);
@@ -118,7 +118,7 @@ TEST(AnimatedImport, KeepsWhatMoves) {
 }
 
 // One name is one material, whichever of the file has it; what has none is "", and where none has a name, nothing is kept.
-TEST(AnimatedImport, KeepsTheNamesOfMaterials) {
+TEST(AnimatedImport, KeepsMaterialNames) {
     GltfScribe scribe = robot();
     EXPECT_TRUE(loaded(scribe).mesh.materials.empty());
     Json& primitives = scribe.json["meshes"][0]["primitives"];
@@ -141,7 +141,7 @@ TEST(AnimatedImport, KeepsTheNamesOfMaterials) {
     EXPECT_FALSE(load(scribe)) << "there is none";
 }
 
-TEST(AnimatedImport, UnitAndAxisStandAboveAllNodes) {
+TEST(AnimatedImport, UnitAndAxisApplyAboveTheRoot) {
     const AnimatedImport import = loaded(bendingBar(), {"cm", UpAxis::kPlusZ});
     const std::vector<glm::vec3> plain = at(loaded(bendingBar()).mesh, "bend", 0.7);
     const std::vector<glm::vec3> turned = at(import.mesh, "bend", 0.7);
@@ -151,7 +151,7 @@ TEST(AnimatedImport, UnitAndAxisStandAboveAllNodes) {
     EXPECT_EQ(import.rest.unit, "m");
 }
 
-TEST(AnimatedImport, ANodeWithAMatrixMovesIfItIsNoShear) {
+TEST(AnimatedImport, NodeMatricesMustNotShear) {
     GltfScribe scribe = robot();
     scribe.json["nodes"][2].erase("translation");
     scribe.json["nodes"][2]["matrix"] = {0, 2, 0, 0, -3, 0, 0, 0, 0, 0, 1, 0, 5, 0, 0, 1};
@@ -163,7 +163,7 @@ TEST(AnimatedImport, ANodeWithAMatrixMovesIfItIsNoShear) {
     expectRefused(load(scribe), "nodes[2], whose matrix is not a translation");
 }
 
-TEST(AnimatedImport, InstancesAndJointsOutsideTheSceneMove) {
+TEST(AnimatedImport, InstancesAndJointsOutsideTheSceneAreAnimated) {
     GltfScribe scribe = robot();
     floats(kInstances, "VEC3", {0, 0, 0, 0, 0, 10})(scribe);
     const AnimatedMesh instances = loaded(scribe).mesh;
@@ -221,7 +221,7 @@ void compareWithTheBook(const GltfCase& file, std::size_t clips) {
     }
 }
 
-TEST(AnimatedImport, PosesAreThoseOfTheBook) {
+TEST(AnimatedImport, PosesMatchTheReferenceReader) {
     compareWithTheBook(bendingBar().file(), 1);
     compareWithTheBook(robot().file(), 2);
     compareWithTheBook(morphingCube().file(), 1);
@@ -259,7 +259,7 @@ TEST(AnimatedImport, PosesAreThoseOfTheBook) {
 
 // --- names and clips of other files ---
 
-TEST(AnimatedImport, ClipsOfOtherFilesMoveNodesOfTheSameName) {
+TEST(AnimatedImport, ClipsOfOtherFilesAnimateNodesByName) {
     const TemporaryFolder folder;
     GltfScribe still = robot();
     still.json.erase("animations");
@@ -294,7 +294,7 @@ TEST(AnimatedImport, ClipsOfOtherFilesMoveNodesOfTheSameName) {
     EXPECT_FALSE(importAnimatedInWorker(file, {file})) << "no animation";
 }
 
-TEST(AnimatedImport, ClipsHaveNamesOfTheirOwn) {
+TEST(AnimatedImport, ClipNamesAreUnique) {
     GltfScribe scribe = robot();
     scribe.json["animations"][0].erase("name");
     scribe.json["animations"][1]["name"] = "clip 0";
@@ -307,7 +307,7 @@ TEST(AnimatedImport, ClipsHaveNamesOfTheirOwn) {
 
 // --- right and wrong ---
 
-TEST(AnimatedImport, WhatMovesNothingIsLeftOut) {
+TEST(AnimatedImport, EmptyChannelsAreDropped) {
     GltfScribe scribe = robot();
     const std::size_t once = scribe.floats("SCALAR", {0});
     scribe.animate(2, "translation", once, scribe.floats("VEC3", {0, 0, 0}), "LINEAR", "pose");
@@ -321,7 +321,7 @@ TEST(AnimatedImport, WhatMovesNothingIsLeftOut) {
     EXPECT_TRUE(warns(import.rest, "the animation 'away' does not move the mesh; it is left out"));
 }
 
-TEST(AnimatedImport, WeightsOfAnotherSumAreScaled) {
+TEST(AnimatedImport, WeightsAreNormalized) {
     GltfScribe scribe = bendingBar();
     std::vector<float> weights(48, 0.0F);
     for (std::size_t i = 0; i < weights.size(); i += 4) {
@@ -333,7 +333,7 @@ TEST(AnimatedImport, WeightsOfAnotherSumAreScaled) {
     EXPECT_EQ(import.mesh.influences[0].weight, 1.0F);
 }
 
-TEST(AnimatedImport, BadFilesAreRefusedInOneLine) {
+TEST(AnimatedImport, InvalidFilesAreRejectedInOneLine) {
     struct Case {
         const char* words;
         GltfScribe (*base)();
@@ -427,7 +427,7 @@ TEST(AnimatedImport, BadFilesAreRefusedInOneLine) {
     }
 }
 
-TEST(AnimatedImport, ChangedFilesAreReadOrRefusedInOneLine) {
+TEST(AnimatedImport, MutatedFilesAreReadOrRejectedInOneLine) {
     const TemporaryFolder folder;
     Dice dice(seedFrom(11));
     int read = 0;
@@ -453,13 +453,13 @@ TEST(AnimatedImport, ChangedFilesAreReadOrRefusedInOneLine) {
     EXPECT_GT(refused, 30);
 }
 
-TEST(AnimatedImport, OtherFormatsAreNotRead) {
+TEST(AnimatedImport, OnlyGltfIsRead) {
     const TemporaryFolder folder;
     expectRefused(importAnimatedInWorker(folder.write("t.obj", tetrahedronObj()), {}),
                   "animations of a .obj are not supported; convert it to glTF", ErrorCode::kUnsupported);
 }
 
-TEST(AnimatedImport, AnswersOfAWorkerThatLiesAreRefused) {
+TEST(AnimatedImport, InvalidWorkerResultsAreRejected) {
     const TemporaryFolder folder;
     const ImportSource source = required(ImportSource::open(folder.write("l.glb", "glTF")));
     const AnimatedMesh mesh = loaded(robot()).mesh;

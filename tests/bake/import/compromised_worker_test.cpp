@@ -268,7 +268,7 @@ bool isAnswered(long call) {
 }
 
 // Changes of files, sockets, other programs and processes, ways into the kernel: a number at a time.
-TEST(CompromisedWorker, EndsByEveryOtherSystemCall) {
+TEST(CompromisedWorker, OtherSystemCallsEndIt) {
     ASSERT_TRUE(kernelHasSeccomp());
     const Place place;
     ASSERT_TRUE(place.ready());
@@ -311,7 +311,7 @@ TEST(CompromisedWorker, ReachesNothing) {
     }
 }
 
-TEST(CompromisedWorker, WouldReachAllThatWithoutTheSandbox) {
+TEST(CompromisedWorker, CouldReachEverythingWithoutTheSandbox) {
     for (std::size_t i = 0; i < attempts(Place()).size(); ++i) {
         const Place place;
         ASSERT_TRUE(place.ready());
@@ -349,7 +349,7 @@ TEST(CompromisedWorker, CanDoItsWork) {
     EXPECT_EQ(aborted.signal, SIGABRT);
 }
 
-TEST(CompromisedWorker, OfAnImageWritesIntoItsPipeOnly) {
+TEST(CompromisedWorker, ImageWorkerWritesOnlyToItsPipe) {
     const Place place(true);
     ASSERT_TRUE(place.ready());
     static char byte = 'X';
@@ -369,7 +369,7 @@ TEST(CompromisedWorker, OfAnImageWritesIntoItsPipeOnly) {
     EXPECT_EQ(place.contents("leaked"), std::string(kPage, 'l'));
 }
 
-TEST(CompromisedWorker, HasTheLimitsOfTheKernel) {
+TEST(CompromisedWorker, HasKernelLimits) {
     const Place place;
     ASSERT_TRUE(place.ready());
     const auto hard = [](__rlimit_resource resource) {
@@ -403,7 +403,7 @@ TEST(CompromisedWorker, HasTheLimitsOfTheKernel) {
                : descend(depth + 1, here) + static_cast<std::size_t>(here[0]);
 }
 
-TEST(CompromisedWorker, HasALittleStack) {
+TEST(CompromisedWorker, HasASmallStack) {
     const Place place;
     ASSERT_TRUE(place.ready());
     const auto recurse = [] {

@@ -57,7 +57,7 @@ std::vector<T> unpacked(const Json& extension, const Bytes& packed, std::size_t 
     return values;
 }
 
-TEST(GltfMeshopt, WhatWasPackedComesBack) {
+TEST(GltfMeshopt, DecodesPackedBuffers) {
     Dice dice(5);
     for (const std::size_t stride : {4U, 12U, 16U, 256U}) {
         std::vector<std::uint8_t> values(300 * stride);
@@ -88,7 +88,7 @@ TEST(GltfMeshopt, WhatWasPackedComesBack) {
     }
 }
 
-TEST(GltfMeshopt, FiltersAreThoseOfTheExtension) {
+TEST(GltfMeshopt, FiltersMatchTheSpecification) {
     // 2 to the power of the high byte, times the low 24 bits, both signed.
     const std::vector<std::uint32_t> powers = {0xFE000003, 0x02FFFFFF, 0x00000000, 0x01000007};
     EXPECT_EQ(
@@ -154,7 +154,7 @@ GltfCase packedFile(const GltfScribe& scribe) {
     return file;
 }
 
-TEST(GltfMeshopt, PackedFilesAreTheSameMeshes) {
+TEST(GltfMeshopt, PackedFilesDecodeToTheSameMeshes) {
     const TemporaryFolder folder;
     for (const GltfScribe& scribe : {bendingBar(), robot()}) {
         const auto meshOf = [&](const GltfCase& file) {
@@ -164,7 +164,7 @@ TEST(GltfMeshopt, PackedFilesAreTheSameMeshes) {
     }
 }
 
-TEST(GltfMeshopt, HostileSizesAreRefusedBeforeTheyAreUnpacked) {
+TEST(GltfMeshopt, HostileSizesAreRejectedBeforeDecoding) {
     const std::vector<float> values(300, 1.5F);
     const Bytes packed = packAttributes(values.data(), 100, 12);
     const Json right = {{"mode", "ATTRIBUTES"}, {"count", 100}, {"byteStride", 12}};

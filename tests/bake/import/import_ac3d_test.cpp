@@ -23,7 +23,7 @@ std::string tetrahedron(const std::string& name, const std::string& keys = "",
            kids + "\n";
 }
 
-TEST(Ac3d, ObjectsAreBodiesPlacedByAllAboveThem) {
+TEST(Ac3d, ObjectsInheritTransforms) {
     // The kids of a shifted object move along; x becomes y by 'rot', whose triples are the images of the axes.
     const TemporaryFolder folder;
     const Level read = required(importLevel(folder.write(
@@ -69,14 +69,14 @@ TEST(Ac3d, SurfacesOfEveryKind) {
     EXPECT_TRUE(mesh.warnings.size() == 1 && warns(mesh, "left out 2 lines"));
 }
 
-TEST(Ac3d, NamesAndMaterialsCanBeSelected) {
+TEST(Ac3d, NamesAndMaterialsAreSelectable) {
     ImportOptions options;
     options.names = {"red paint", "big tower"};
     const std::string one = kHead + "OBJECT world\nkids 1\n" + tetrahedron("big tower");
     EXPECT_EQ(imported("n.ac", one, options).marks, std::vector<std::uint8_t>(4, 2));
 }
 
-TEST(Ac3d, OddFilesAreReadWithAWarningOrRefusedWithTheirLine) {
+TEST(Ac3d, OddFilesWarnOrFailWithTheLine) {
     const std::string one = kHead + "OBJECT world\nkids 1\n" + tetrahedron("t");
     const TriangleMesh fewer =
         imported("a.ac", kHead + "OBJECT world\nkids 3\n" + tetrahedron("t", "subdiv 2\n"));

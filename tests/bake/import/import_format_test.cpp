@@ -16,7 +16,7 @@ std::string model(const char* name) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-TEST(ImportFormat, SignaturesCountUnderEveryName) {
+TEST(ImportFormat, SignaturesOverrideNames) {
     const std::vector<std::pair<std::string, std::string>> contents = {
         {"ply", tetrahedronPly()},
         {"fbx", tetrahedronFbx(1, 1, "100")},
@@ -45,7 +45,7 @@ TEST(ImportFormat, SignaturesCountUnderEveryName) {
     expectRefused(importTextInWorker("b.obj", "glTF and other words\n"), "b.obj");
 }
 
-TEST(ImportFormat, OthersAreReadAsTheirNameSaysOrRefused) {
+TEST(ImportFormat, FilesWithoutSignatureAreReadByName) {
     for (const std::string& text : {tetrahedronObj(), tetrahedronStl(), tetrahedronOff(), tetrahedronGltf(),
                                     tetrahedronDae(""), tetrahedronBinaryStl(""), tetrahedron3ds()}) {
         int read = 0;
@@ -63,7 +63,7 @@ TEST(ImportFormat, OthersAreReadAsTheirNameSaysOrRefused) {
     }
 }
 
-TEST(ImportFormat, WhatIsNoMeshIsRefused) {
+TEST(ImportFormat, NonMeshesAreRejected) {
     const std::string rest(300, '\x01');
     for (const char* begin : {"\x1f\x8b\b", "PK\x03\x04", "\xff\xfe", "\x89PNG\r\n", "\xff\xd8\xff",
                               "%PDF-1.4", "<html><body>", "version https://git-lfs.github.com/spec/v1\n"}) {
@@ -80,11 +80,11 @@ TEST(ImportFormat, WhatIsNoMeshIsRefused) {
     }
 }
 
-TEST(ImportFormat, BlendFilesAreOftenPacked) {
+TEST(ImportFormat, CompressedBlendFilesAreDetected) {
     EXPECT_EQ(imported("a.blend", model("BLEND/BlenderDefault_250_Compressed.blend")).triangles.size(), 12U);
 }
 
-TEST(ImportFormat, TextMayBeginWithAByteOrderMark) {
+TEST(ImportFormat, TextCanStartWithAByteOrderMark) {
     const std::string mark = "\xef\xbb\xbf";
     const TriangleMesh plain = imported("a.obj", tetrahedronObj());
     const TriangleMesh marked = imported("a.obj", mark + tetrahedronObj());

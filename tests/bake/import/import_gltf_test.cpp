@@ -140,12 +140,12 @@ Verdicts compareMany(std::uint32_t first, std::uint64_t count, bool right,
     return verdicts;
 }
 
-TEST(ImportGltf, WhatTheSpecificationAllowsIsRead) {
+TEST(ImportGltf, ValidFilesAreRead) {
     const Verdicts verdicts = compareMany(0, 150, true, [](GltfCase&, Dice&) { return ""; });
     EXPECT_GT(verdicts.read, 135) << "some are thin all over";
 }
 
-TEST(ImportGltf, MutantsAreReadRightOrRefused) {
+TEST(ImportGltf, MutantsAreReadCorrectlyOrRejected) {
     const Verdicts verdicts = compareMany(
         1000, 350, false, [](GltfCase& gltf, Dice& dice) { return mutateGltf(gltf.document, dice); });
     EXPECT_GT(verdicts.read, 70);
@@ -153,7 +153,7 @@ TEST(ImportGltf, MutantsAreReadRightOrRefused) {
     EXPECT_LT(verdicts.stricter, 50) << "names that are none, say";
 }
 
-TEST(ImportGltf, BytesOfBuffersAreIndicesThatExistOrNot) {
+TEST(ImportGltf, BufferBytesMayBeInvalidIndices) {
     const Verdicts verdicts = compareMany(5000, 150, false, [](GltfCase& gltf, Dice& dice) {
         for (int i = 0; i < 3; ++i) {
             gltf.buffer[dice.roll(gltf.buffer.size())] = static_cast<char>(dice.roll(256));
@@ -166,7 +166,7 @@ TEST(ImportGltf, BytesOfBuffersAreIndicesThatExistOrNot) {
 
 // --- by hand ---
 
-TEST(ImportGltf, TheNodeOfASkinnedMeshDoesNotMoveIt) {
+TEST(ImportGltf, SkinnedMeshIgnoresItsNode) {
     const std::string nodes =
         R"({"mesh":0,"skin":0,"translation":[100,0,0],"scale":[2,2,2]},{"translation":[0,9,0]})";
     const auto skinned = [&](const std::string& skin) {
@@ -191,7 +191,7 @@ TEST(ImportGltf, TheNodeOfASkinnedMeshDoesNotMoveIt) {
          parts(skinned(R"("joints":[1],"inverseBindMatrices":0)"), "accessors[0] is not of type MAT4")});
 }
 
-TEST(ImportGltf, TransformsThatAreNone) {
+TEST(ImportGltf, InvalidTransformsAreRejected) {
     const std::string zeros = R"("matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0)";
     EXPECT_TRUE(loadParts({.nodes = R"({"mesh":0,)" + zeros + ",1]}"}));
     expectWrong({node(zeros + "]", "nodes[0].matrix has 15 numbers instead of 16"),
@@ -268,7 +268,7 @@ TEST(ImportGltf, InstancesAreRepeated) {
                        "different counts of TRANSLATION, ROTATION and SCALE")});
 }
 
-TEST(ImportGltf, EqualKeysAndJsonThatIsNone) {
+TEST(ImportGltf, DuplicateKeysAndInvalidJson) {
     EXPECT_TRUE(loadParts({.more = R"("extras":{"a":[{"b":1},{"b":1}]},)"}));
     EXPECT_TRUE(load(tetrahedronGltf() + std::string("\n\0\0", 3))) << "filled up";
     expectWrong({node(R"("scale":[1,1,1],"scale":[2,2,2])", "the key 'scale' twice"),
@@ -281,7 +281,7 @@ TEST(ImportGltf, EqualKeysAndJsonThatIsNone) {
                  {"{", "not valid JSON"}});
 }
 
-TEST(ImportGltf, AccessorsAndIndicesThatAreWrong) {
+TEST(ImportGltf, InvalidAccessorsAndIndices) {
     const auto positions = [](const std::string& members, const std::string& words,
                               ErrorCode code = ErrorCode::kInvalidInput) {
         return parts({.position = members + R"(,"componentType":5126,"type":"VEC3")"}, words, code);
@@ -390,7 +390,7 @@ TEST(ImportGltf, BinaryChunks) {
                                 {with(12, "\xf1\xff\xff\x7f"), "extends beyond the end of the file"}});
 }
 
-TEST(ImportGltf, SparseAndQuantised) {
+TEST(ImportGltf, SparseAndQuantizedAccessors) {
     // Bytes of −127 and 127 as −1 and 1, moved by the values of a sparse accessor.
     const std::string text =
         R"({"asset":{"version":"2.0"},"extensionsRequired":["KHR_mesh_quantization"],"scenes":[{"nodes":[0]}],)"
@@ -434,7 +434,7 @@ TEST(ImportGltf, FlatAndMorphedPartsWarn) {
     EXPECT_EQ(morphed.bounds.max, glm::vec3(1, 2, 3));
 }
 
-TEST(ImportGltf, ScenesAreTreesThatShowSomething) {
+TEST(ImportGltf, ScenesMustBeNonemptyTrees) {
     std::string unfolding;
     for (int i = 0; i < 40; ++i) {  // a kilobyte; 2⁴⁰ instances
         const std::string next = std::to_string(i + 1);

@@ -245,7 +245,7 @@ std::vector<std::pair<std::string, std::string>> hiddenFiles() {
     };
 }
 
-TEST(ImportHidden, WhatAFileDoesNotShowIsLeftOutAndCounted) {
+TEST(ImportHidden, HiddenGeometryIsSkippedAndCounted) {
     for (const auto& [name, text] : hiddenFiles()) {
         SCOPED_TRACE(name);
         const TriangleMesh mesh = imported(name, text);
@@ -258,14 +258,14 @@ TEST(ImportHidden, WhatAFileDoesNotShowIsLeftOutAndCounted) {
 }
 
 // In FBX, Visibility is that of all below, but Show is that of the node only.
-TEST(ImportHidden, ShowIsThatOfTheNodeOnly) {
+TEST(ImportHidden, FbxShowAffectsOnlyItsNode) {
     const TriangleMesh mesh = imported("show.fbx", nestedFbx(propertyShow(0), ""));
     EXPECT_EQ(mesh.triangles.size(), 8U);
     EXPECT_TRUE(mesh.warnings.empty()) << ::testing::PrintToString(mesh.warnings);
     EXPECT_EQ(imported("show.fbx", binary(nestedFbx(propertyShow(0), ""))).triangles.size(), 8U);
 }
 
-TEST(ImportHidden, LevelsLeaveItOutToo) {
+TEST(ImportHidden, LevelsSkipHiddenGeometry) {
     const TemporaryFolder folder;
     for (const auto& [name, text] : hiddenFiles()) {
         SCOPED_TRACE(name);
@@ -273,7 +273,7 @@ TEST(ImportHidden, LevelsLeaveItOutToo) {
     }
 }
 
-TEST(ImportHidden, WhatIsShownStays) {
+TEST(ImportHidden, VisibleGeometryIsKept) {
     for (const std::string& properties :
          {visibility("1"), visibility("0.5"), propertyShow(1), std::string()}) {
         const TriangleMesh mesh = imported("shown.fbx", twoFbx(properties));
@@ -287,7 +287,7 @@ TEST(ImportHidden, WhatIsShownStays) {
     EXPECT_EQ(imported("apart.fbx", binary(nestedFbx(visibility("0"), apart))).triangles.size(), 8U);
 }
 
-TEST(ImportHidden, KeepTakesAll) {
+TEST(ImportHidden, KeepReadsHiddenGeometry) {
     ImportOptions keep;
     keep.hidden = HiddenAs::kKeep;
     std::vector<std::pair<std::string, std::string>> files = hiddenFiles();
@@ -301,7 +301,7 @@ TEST(ImportHidden, KeepTakesAll) {
 }
 
 /// Names of COLLADA nodes may be missing, or occur several times; an id is not needed, and a sid is not unique.
-TEST(ImportHidden, ColladaNodesOfTheSameNameAreHiddenOneByOne) {
+TEST(ImportHidden, ColladaNodesWithEqualNamesAreHiddenSeparately) {
     const std::string other = R"(<technique profile="OTHER"><kind>1</kind></technique>)";
     for (const std::string& extra : {std::string(kUnseen), replaced(kUnseen, "<extra>", "<extra>" + other),
                                      "<extra>" + other + "</extra>" + kUnseen}) {
@@ -326,7 +326,7 @@ TEST(ImportHidden, ColladaNodesOfTheSameNameAreHiddenOneByOne) {
     EXPECT_TRUE(warns(mesh, "left out 1 hidden object ('k'")) << ::testing::PrintToString(mesh.warnings);
 }
 
-TEST(ImportHidden, AFileThatShowsNothingIsRefusedWithTheOption) {
+TEST(ImportHidden, FullyHiddenFilesAreRejectedWithTheOption) {
     const std::string all = R"({"mesh":0,"extensions":{"KHR_node_visibility":{"visible":false}}})";
     expectWrong("none.gltf", {{tetrahedronGltf({.nodes = all}), "all of its objects are hidden"}});
     // The object gets a chunk 0x4010, and the keyframer a node of it.
@@ -346,7 +346,7 @@ TEST(ImportHidden, AFileThatShowsNothingIsRefusedWithTheOption) {
     expectWrong("none.3ds", {{file, "--hidden keep"}});
 }
 
-TEST(ImportHidden, NamesOfWhatIsLeftOutSelectNothing) {
+TEST(ImportHidden, HiddenNamesSelectNothing) {
     ImportOptions options;
     options.names = {"other"};
     expectRefused(importText("names.fbx", twoFbx(visibility("0")), options),
@@ -386,7 +386,7 @@ TEST(ImportHidden, OnlyTheFirstLevelOfDetailIsBaked) {
     }
 }
 
-TEST(ImportHidden, LevelsOfDetailThatLeadBackAreRefused) {
+TEST(ImportHidden, CyclicLevelsOfDetailAreRejected) {
     const auto node = [](const std::string& levels, const std::string& more = "") {
         return R"({"mesh":0,"extensions":{"MSFT_lod":{"ids":[)" + levels + "]}}" + more + "}";
     };
@@ -412,7 +412,7 @@ TEST(ImportHidden, LevelsOfDetailThatLeadBackAreRefused) {
 }
 
 /// Each of the matches below holds all that follow it.
-TEST(ImportHidden, LongStringsOfFbxAreNotCopied) {
+TEST(ImportHidden, LongFbxStringsAreNotCopied) {
     constexpr std::uint32_t kSize = 1U << 20;
     const auto string = [](std::uint32_t size, const char* text) {
         std::string all = "S0000" + std::string(text);
@@ -431,7 +431,7 @@ TEST(ImportHidden, LongStringsOfFbxAreNotCopied) {
     EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 1.0);
 }
 
-TEST(ImportHidden, AnimatedVisibilityGetsANote) {
+TEST(ImportHidden, AnimatedVisibilityIsNoted) {
     const std::string curve = "AnimationCurveNode: 9000, \"AnimCurveNode::Visibility\", \"\" {\n}\n";
     const std::string fbx = replaced(twoFbx(""), "Model: 3000", curve + "Model: 3000");
     EXPECT_TRUE(warns(imported("moves.fbx", fbx), "animations show and hide"));
@@ -443,7 +443,7 @@ TEST(ImportHidden, AnimatedVisibilityGetsANote) {
     EXPECT_TRUE(warns(imported("moves.gltf", tetrahedronGltf(gltf)), "animations show and hide"));
 }
 
-TEST(ImportHidden, ColladaInstancesOfWhatIsMissingAreNamed) {
+TEST(ImportHidden, MissingColladaInstancesAreNamed) {
     const std::string lost = R"(<node name="lost"><instance_geometry url="#missing"/></node>)";
     const TriangleMesh mesh = imported("missing.dae", dae(kShownNode + lost));
     EXPECT_EQ(mesh.triangles.size(), 4U);

@@ -21,7 +21,7 @@ const std::string kPhysics =
     R"({"name":"rubber","restitution":0.75,"dynamicFriction":1.5,"staticFriction":9},{"name":"ice","restitution":0.25},)"
     R"({"restitution":-1},{"name":"tar","dynamicFriction":1}]}},"extensionsRequired":["KHR_physics_rigid_bodies"],)";
 
-TEST(ImportMaterials, PhysicsMaterialsNameSurfacesAndTheirResponses) {
+TEST(ImportMaterials, PhysicsMaterialsGiveNamesAndResponses) {
     const TemporaryFolder folder;
     const auto path =
         folder.write("m.gltf", tetrahedronGltf({.nodes = node(physics("0")) + "," +
@@ -50,13 +50,13 @@ TEST(ImportMaterials, PhysicsMaterialsNameSurfacesAndTheirResponses) {
     EXPECT_EQ(importLevel(path, without)->meshes.size(), 1U);
 }
 
-TEST(ImportMaterials, AMaterialThatOnlyStatesFrictionDoesNotBounce) {
+TEST(ImportMaterials, FrictionOnlyMaterialDoesNotBounce) {
     const auto mesh =
         required(importText("m.gltf", tetrahedronGltf({.nodes = node(physics("3")), .more = kPhysics})));
     EXPECT_EQ(mesh.surface_names.at(0), (SurfaceName{0, "", "tar", 0.0F, 1.0F}));
 }
 
-TEST(ImportMaterials, CombineModesWarnOnceIfTheyWouldChangeMuch) {
+TEST(ImportMaterials, SignificantCombineModesWarnOnce) {
     const auto import = [](const std::string& first, const std::string& second) {
         return importText(
             "m.gltf",
@@ -78,7 +78,7 @@ TEST(ImportMaterials, CombineModesWarnOnceIfTheyWouldChangeMuch) {
     EXPECT_FALSE(import(R"("frictionCombine":2)", ""));
 }
 
-TEST(ImportMaterials, ABrokenPhysicsMaterialHasItsPlace) {
+TEST(ImportMaterials, InvalidPhysicsMaterialIsLocated) {
     const auto with = [](const char* material) {
         return tetrahedronGltf({.nodes = node(physics(material)), .more = kPhysics});
     };

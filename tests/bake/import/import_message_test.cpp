@@ -35,7 +35,7 @@ std::vector<std::byte> bytesOf(const Result<TriangleMesh>& raw) {
     return bytes;
 }
 
-TEST(ImportMessage, CarriesMeshesAndErrors) {
+TEST(ImportMessage, RoundTripsMeshesAndErrors) {
     TriangleMesh raw = rawTriangle();
     for (const bool labelled : {false, true}) {
         if (labelled) {
@@ -70,7 +70,7 @@ TEST(ImportMessage, CarriesMeshesAndErrors) {
     EXPECT_EQ(error.error().message.find_first_of("\n\x1b"), std::string::npos);
 }
 
-TEST(ImportMessage, EveryTruncationAndExtensionIsRefused) {
+TEST(ImportMessage, TruncationsAndExtensionsAreRejected) {
     const std::vector<std::byte> whole = bytesOf(rawTriangle());
     for (std::size_t size = 0; size < whole.size(); ++size) {
         const std::vector<std::byte> cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
@@ -81,7 +81,7 @@ TEST(ImportMessage, EveryTruncationAndExtensionIsRefused) {
     EXPECT_FALSE(readImportMessage(longer));
 }
 
-TEST(ImportMessage, AnyFlippedBitsAreReadSafely) {
+TEST(ImportMessage, FlippedBitsAreSafe) {
     // The sanitizers watch; nothing but a mesh that finishMesh takes or an error may come out.
     const TemporaryFolder folder;
     const ImportSource source = required(ImportSource::open(folder.write("t.obj", tetrahedronObj())));
@@ -104,7 +104,7 @@ TEST(ImportMessage, AnyFlippedBitsAreReadSafely) {
     EXPECT_LT(refused, 20000);
 }
 
-TEST(ImportSource, ClaimsOfTheWorkerAreChecked) {
+TEST(ImportSource, WorkerClaimsAreValidated) {
     const TemporaryFolder folder;
     const ImportSource source = required(ImportSource::open(folder.write("t.obj", tetrahedronObj())));
     expectLiesRefused(
@@ -128,7 +128,7 @@ TEST(ImportSource, ClaimsOfTheWorkerAreChecked) {
     EXPECT_FALSE(source.finish(rawTriangle())) << "marks that nobody asked for";
 }
 
-TEST(ImportSource, FilesAreNamedAsTheyCanBeOpenedAndSorted) {
+TEST(ImportSource, FileNamesAreOpenableAndSorted) {
     const TemporaryFolder folder;
     const std::filesystem::path path = folder.write("t.obj", tetrahedronObj());
     const ImportSource source = required(ImportSource::open(path));

@@ -50,7 +50,7 @@ std::string gltf(const std::string& nodes, const std::string& roots) {
     return replaced(text, R"("meshes":[{)", R"("meshes":[{"name":"door-1",)");
 }
 
-TEST(ImportNames, OfObjAreGroupsObjectsAndMaterials) {
+TEST(ImportNames, ObjNamesAreGroupsObjectsAndMaterials) {
     const std::string text =
         obj("g body\nusemtl paint\nf 1 2 3\nusemtl glass\nf 1 2 4\n"
             "g wheel\nf 2 3 4\no house\nusemtl paint\nf 1 3 4\n");
@@ -77,7 +77,7 @@ TEST(ImportNames, OfObjAreGroupsObjectsAndMaterials) {
     expectMarks("d.obj", obj("g a\nf 1 1 3\nf 1 2 3\ng b\nf 4 4 4\nf 1 2 4\n"), {{{"a", "b"}, {1, 2}}});
 }
 
-TEST(ImportNames, OfGltfAreNodesMeshesAndMaterials) {
+TEST(ImportNames, GltfNamesAreNodesMeshesAndMaterials) {
     // Two cars share a mesh of two materials; the second has two of it. A node's name is that of all below it.
     const std::string text =
         gltf(R"({"name":"first","mesh":0},{"name":"second","children":[2,3]},{"name":"near","mesh":0},)"
@@ -95,7 +95,7 @@ TEST(ImportNames, OfGltfAreNodesMeshesAndMaterials) {
     expectUnknown("p.ply", tetrahedronPly(), {"nothing"}, "the file has no names, so leave it out");
 }
 
-TEST(ImportNames, HostileOnesAreMadeClean) {
+TEST(ImportNames, HostileNamesAreSanitized) {
     const std::string text = gltf(R"({"name":"a\nb\u001b[31m","mesh":0},{"name":")" + std::string(5000, 'y') +
                                       R"(","mesh":0},{"name":"","mesh":0})",
                                   "0,1,2");
@@ -114,7 +114,7 @@ TEST(ImportNames, HostileOnesAreMadeClean) {
 }
 
 // Neither does it overflow the stack.
-TEST(ImportNames, AChainOfNodesIsWalkedOnce) {
+TEST(ImportNames, NodeChainIsWalkedOnce) {
     // Each of 20,000 nodes has the next below it, and a mesh.
     constexpr int kNodes = 20'000;
     std::string nodes;

@@ -41,7 +41,7 @@ void expectRead(const std::vector<Expected>& cases) {
     }
 }
 
-TEST(ImportParts, WordsForEachCount) {
+TEST(ImportParts, EveryCountHasAWarning) {
     const auto warning = [](const MeshParts& parts) {
         Lines warnings;
         warnOfParts(parts, warnings);
@@ -77,7 +77,7 @@ TEST(ImportParts, ObjStatementsAreCounted) {
     EXPECT_EQ(obj("v 1 2 3\\").vertices, 1U);
 }
 
-TEST(ImportParts, UnusedVerticesOfEachFormat) {
+TEST(ImportParts, UnusedVerticesAreCountedInEveryFormat) {
     const std::string warning =
         "2 of its 6 vertices belong to no polygon: faces may be missing; compare its triangle count "
         "with that of the exporting program";
@@ -107,7 +107,7 @@ TEST(ImportParts, UnusedVerticesOfEachFormat) {
           2}});
 }
 
-TEST(ImportParts, LinesPointsAndFreeFormsAreCountedOrRefused) {
+TEST(ImportParts, LinesPointsAndFreeFormsAreCountedOrRejected) {
     const std::string patch = "cstype bezier\ndeg 1 1\nsurf 0 1 0 1 1 2 3 4\nparm u 0 1\nparm v 0 1\nend\n";
     const std::string whole = R"("attributes":{"POSITION":0},"indices":1},{)";
     const std::string part = R"("attributes":{"POSITION":0},"mode":)";

@@ -114,7 +114,7 @@ std::string strips(const std::string& element, const std::string& lists,
     return kHead + element + "\nproperty " + type + " vertex_indices\nend_header\n" + kCorners + lists;
 }
 
-TEST(ImportPly, AStripBakesAsItsTrianglesDo) {
+TEST(ImportPly, StripsMatchTheirTriangles) {
     const TriangleMesh truth = imported("triangles.ply", boxOf(kEncodings[1], true));
     const DepthMap expected = bakeMap(truth, "float:dir=-z,size=32");
     for (const char* encoding : kEncodings) {
@@ -129,7 +129,7 @@ TEST(ImportPly, AStripBakesAsItsTrianglesDo) {
     }
 }
 
-TEST(ImportPly, StripsBeginEndAndTurn) {
+TEST(ImportPly, StripsRestartAndAlternate) {
     using Corners = std::vector<std::uint32_t>;
     struct Case {
         const char* lists;
@@ -164,7 +164,7 @@ TEST(ImportPly, StripsBeginEndAndTurn) {
     EXPECT_EQ(mesh.positions[3], glm::vec3(1));
 }
 
-TEST(ImportPly, HostileStripsAreRefused) {
+TEST(ImportPly, HostileStripsAreRejected) {
     for (const char* list : {"3 0 1 4\n", "3 0 1 -2\n", "4 0 1 2 2147483647\n", "3 0 1 0.5\n", "3 0 1 nan\n",
                              "3 0 1 4294967295\n"}) {
         expectWrong("p.ply", {{strips("element tristrips 1", list), "refers to vertex"}});
@@ -185,7 +185,7 @@ TEST(ImportPly, HostileStripsAreRefused) {
                  {vertices("99999999999"), "", ErrorCode::kLimit}});
 }
 
-TEST(ImportPly, EveryTruncationIsRefused) {
+TEST(ImportPly, TruncationsAreRejected) {
     for (const char* encoding : kEncodings) {
         const std::string whole = boxOf(encoding);
         ASSERT_TRUE(read(whole));
@@ -197,7 +197,7 @@ TEST(ImportPly, EveryTruncationIsRefused) {
     }
 }
 
-TEST(ImportPly, BytesBehindTheLastElement) {
+TEST(ImportPly, TrailingBytes) {
     // A line with a number too many shifts all that follows: four columns for three.
     expectWrong("p.ply",
                 {{strips("element face 1", "3 0 1 2 9\n", "list uchar int"), "does not end with its line"}});
@@ -209,7 +209,7 @@ TEST(ImportPly, BytesBehindTheLastElement) {
     EXPECT_TRUE(more.warnings.size() == 1 && warns(more, "4 bytes"));
 }
 
-TEST(ImportPly, HeadersThatNobodyWrites) {
+TEST(ImportPly, MalformedHeaders) {
     expectWrong("p.ply", {{"ply\nformat ascii 1.0\n", "header does not end"},
                           {"solid t\nend_header\n", "not a PLY"},
                           {"ply\nelement vertex 1\nend_header\n", "not name a supported format"},
@@ -221,7 +221,7 @@ TEST(ImportPly, HeadersThatNobodyWrites) {
     }
 }
 
-TEST(ImportPly, FacesOfOtherNamesAreRefusedOrNamed) {
+TEST(ImportPly, UnknownFaceListsAreRejectedOrNamed) {
     const std::string polygon = replaced(kFace, "face", "polygon");
     const std::string rest = "end_header\n" + kCorners + "3 0 1 2\n";
     expectWrong(
@@ -244,7 +244,7 @@ TEST(ImportPly, FacesOfOtherNamesAreRefusedOrNamed) {
                     .warnings.empty());
 }
 
-TEST(ImportPly, PointsAndEdgesAreNoSurface) {
+TEST(ImportPly, PointsAndEdgesAreNotASurface) {
     const std::string rest = "end_header\n" + kCorners;
     expectWrong(
         "p.ply",
@@ -257,7 +257,7 @@ TEST(ImportPly, PointsAndEdgesAreNoSurface) {
           "4 vertices and edges but no faces; export"}});
 }
 
-TEST(ImportPly, CoordinatesAreTheNearestFloats) {
+TEST(ImportPly, CoordinatesRoundToTheNearestFloat) {
     const PolygonMesh mesh =
         polygons(replaced(kHead, "vertex 4", "vertex 3") + kFace +
                  "end_header\n0.1 7.941797 -0.927566\n16777217 1e-3 +3.4028235e38\n0 1 0\n3 0 1 2\n");

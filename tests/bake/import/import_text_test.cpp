@@ -103,7 +103,7 @@ TEST(ImportText, Off) {
     EXPECT_EQ(imported("large.off", "OFF\n100 1 0\n" + corners + face + "\n").triangles.size(), 98U);
 }
 
-TEST(ImportText, OffOverAnyLines) {
+TEST(ImportText, OffRecordsCanSpanLines) {
     const std::string head = kOff.substr(0, 10);
     const std::string vertices = kOff.substr(10, 24);
     const std::string faces = kOff.substr(34);
@@ -165,7 +165,7 @@ TEST(ImportText, Stl) {
                  {replaced(stl, "endsolid t\n", ""), "line 29: it ends without"}});
 }
 
-TEST(ImportText, CutOffBehindAnyWordButTheLastIsRefused) {
+TEST(ImportText, TruncationsAreRejected) {
     for (const auto& [name, text] :
          {std::pair{"a.stl", tetrahedronStl()}, std::pair{"a.off", tetrahedronOff()},
           std::pair{"a.ply", tetrahedronPly()}}) {
@@ -179,7 +179,7 @@ TEST(ImportText, CutOffBehindAnyWordButTheLastIsRefused) {
 }
 
 // The size decides: a header may begin as any other format does.
-TEST(ImportText, BinaryStlOfAnyHeaderAndLength) {
+TEST(ImportText, BinaryStlWithAnyHeaderAndLength) {
     for (const char* header : {"solid vertex", "OFF", "ply\n", "glTF\x02", "BB3D", "\x1f\x8b", "\xff\xfe",
                                "{\"asset\"", "v 0 0 0\nf 1 2 3\n", "MM", "<COLLADA"}) {
         expectTetrahedron("a.stl", tetrahedronBinaryStl(header));

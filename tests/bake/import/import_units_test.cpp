@@ -45,7 +45,7 @@ const glm::vec3 kLowZ(0, 0, -2);  // with z upwards
 const glm::vec3 kHighZ(1, 3, 0);
 constexpr std::optional<UpAxis> kOwnAxis;
 
-TEST(ImportUnits, EveryTurnIsARotationThatLiftsItsAxis) {
+TEST(ImportUnits, EveryUpAxisIsARotation) {
     for (const char* name : {"+x", "-x", "+y", "-y", "+z", "-z"}) {
         SCOPED_TRACE(name);
         const std::optional<UpAxis> up = fromWord<UpAxis>(name);
@@ -61,7 +61,7 @@ TEST(ImportUnits, EveryTurnIsARotationThatLiftsItsAxis) {
     }
 }
 
-TEST(ImportUnits, WordsAreMetres) {
+TEST(ImportUnits, UnitNamesAreMetres) {
     EXPECT_DOUBLE_EQ(metresPer("ft").value_or(0), 12 * 0.0254);
     EXPECT_DOUBLE_EQ(metresPer("yd").value_or(0), 36 * 0.0254);
     EXPECT_FALSE(metresPer(""));
@@ -71,7 +71,7 @@ TEST(ImportUnits, WordsAreMetres) {
     }
 }
 
-TEST(ImportUnits, FormatsWithoutUnitStayAsTheyAreUntilToldOtherwise) {
+TEST(ImportUnits, FormatsWithoutUnitsAreUnchanged) {
     for (const auto& [name, text] :
          {std::pair{"t.obj", tetrahedronObj()}, std::pair{"t.ply", tetrahedronPly()},
           std::pair{"t.off", tetrahedronOff()}, std::pair{"t.stl", tetrahedronStl()}}) {
@@ -83,7 +83,7 @@ TEST(ImportUnits, FormatsWithoutUnitStayAsTheyAreUntilToldOtherwise) {
     }
 }
 
-TEST(ImportUnits, FormatsWithUnitsAndAxesLandAtTheSamePlace) {
+TEST(ImportUnits, FormatsWithUnitsAndAxesAgree) {
     const std::string whole =
         replaced(tetrahedronFbx(1, 1, "100"), R"("double", "Number")", R"("int", "Integer")");
     expectPlaced(
@@ -155,7 +155,7 @@ std::string tetrahedronSmd() {
     return replaced(text, "\nendloop\nendfacet", " 0 0 1 0 0");
 }
 
-TEST(ImportUnits, FormatsOfAssimpLieWhereTheirFilesHaveThem) {
+TEST(ImportUnits, AssimpFormatsKeepTheirCoordinates) {
     const std::string x =
         "xof 0303txt 0032\nMesh t {\n4;\n0;0;0;,\n1;0;0;,\n0;2;0;,\n0;0;3;;\n4;\n"
         "3;0,2,1;,\n3;0,1,3;,\n3;1,2,3;,\n3;0,3,2;;\n}\n";
@@ -174,7 +174,7 @@ TEST(ImportUnits, FormatsOfAssimpLieWhereTheirFilesHaveThem) {
                   {"t.dae", replaced(tetrahedronDae(""), " 3<", " 3,5<"), "", kOwnAxis, kLow, {1, 2, 3.5F}}});
 }
 
-TEST(ImportUnits, AnOptionWinsOverTheFileWithAWarning) {
+TEST(ImportUnits, OptionsOverrideTheFileWithAWarning) {
     const std::string dae = tetrahedronDae("<unit meter=\"0.0254\"/><up_axis>Z_UP</up_axis>");
     expectPlaced({{"same.dae", dae, "in", UpAxis::kPlusZ, 0.0254F * kLowZ, 0.0254F * kHighZ},
                   {"t.gltf", tetrahedronGltf(), "mm", kOwnAxis, kLow, 0.001F * kHigh, "m", 1},
@@ -186,7 +186,7 @@ TEST(ImportUnits, AnOptionWinsOverTheFileWithAWarning) {
     EXPECT_TRUE(warns(mesh, "--up +x overrides the file's up axis, +z"));
 }
 
-TEST(ImportUnits, ColladaHeadersAreReadAsWritten) {
+TEST(ImportUnits, ColladaHeadersAreParsed) {
     const auto frame = [](const std::string& asset, const char* begin = "<asset>") {
         const std::string text = "<COLLADA>" + (begin + asset) + "</asset></COLLADA>";
         return colladaFrame(std::as_bytes(std::span(text)));
@@ -210,7 +210,7 @@ TEST(ImportUnits, ColladaHeadersAreReadAsWritten) {
 }
 
 // A file whose unit cannot be meant is refused, and read if the caller names one.
-TEST(ImportUnits, UnitsThatCannotBeMeantAreRefusedUntilToldOtherwise) {
+TEST(ImportUnits, ImplausibleUnitsNeedAnOption) {
     struct Case {
         std::string name;
         std::string text;
@@ -244,7 +244,7 @@ TEST(ImportUnits, UnitsThatCannotBeMeantAreRefusedUntilToldOtherwise) {
                   "UnitScaleFactor is 0, which is not a length; export it again");
 }
 
-TEST(ImportUnits, FbxUnitsAreReadInTextAndInBytes) {
+TEST(ImportUnits, FbxUnitsAreReadFromTextAndBinary) {
     const auto unit = [](const std::string& document) { return fbxUnit(std::as_bytes(std::span(document))); };
     const auto value = [&](const std::string& document) { return unit(document).value().value; };
     EXPECT_EQ(value("; FBX\n P: \"UnitScaleFactor\", \"double\", \"Number\", \"\", 2.54\r\n P: 1"), 2.54);
@@ -267,7 +267,7 @@ TEST(ImportUnits, FbxUnitsAreReadInTextAndInBytes) {
 }
 
 // What a left-handed file calls z is turned round when it is asked for.
-TEST(ImportUnits, UpOfALeftHandedFileIsItsOwn) {
+TEST(ImportUnits, UpAxisOfLeftHandedFiles) {
     SourceFrame left;
     left.mirrored = true;
     EXPECT_EQ(changeOf(left, "", UpAxis::kPlusZ).turn, turnUpwards(UpAxis::kMinusZ));

@@ -46,7 +46,7 @@ Result<TriangleMesh> load(const TemporaryFolder& folder, const std::string& name
     return importMeshInWorker(folder.write(name, contents));
 }
 
-TEST(ImportWorker, GivesTheSameMeshAsTheImporterInThisProcess) {
+TEST(ImportWorker, MatchesTheInProcessImporter) {
     const TemporaryFolder folder;
     for (const fs::path& path :
          {fs::path("/usr/share/glmark2/models/bunny.obj"), folder.write("t.gltf", tetrahedronGltf()),
@@ -65,7 +65,7 @@ TEST(ImportWorker, GivesTheSameMeshAsTheImporterInThisProcess) {
     }
 }
 
-TEST(ImportWorker, MaterialsBesideAreReadAndRecorded) {
+TEST(ImportWorker, MaterialLibrariesAreReadAndRecorded) {
     const TemporaryFolder folder;
     fs::create_directory(folder.path() / "sub");
     constexpr std::string_view kText = "newmtl z\n";
@@ -120,7 +120,7 @@ TEST(ImportWorker, NoFileOutsideTheFolderIsOpened) {
     EXPECT_TRUE(watch.opened());
 }
 
-TEST(ImportWorker, DeepJsonIsRefused) {
+TEST(ImportWorker, DeepJsonIsRejected) {
     for (const char* bracket : {"[", "{\"a\":"}) {
         std::string deep;
         for (int i = 0; i < 100000; ++i) {
@@ -133,7 +133,7 @@ TEST(ImportWorker, DeepJsonIsRefused) {
         "t.gltf", tetrahedronGltf({.more = "\"extras\":\"\\\"" + std::string(1000, '[') + "\","})));
 }
 
-TEST(ImportWorker, LeavesNoDescriptorsAndNoChildren) {
+TEST(ImportWorker, LeaksNoDescriptorsOrChildren) {
     const TemporaryFolder folder;
     const auto open = [] {
         return std::distance(fs::directory_iterator("/proc/self/fd"), fs::directory_iterator());
@@ -154,7 +154,7 @@ TEST(ImportWorker, LeavesNoDescriptorsAndNoChildren) {
     EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 2);
 }
 
-TEST(ImportWorker, EveryModelOfThePackageIsReadOrRefused) {
+TEST(ImportWorker, EveryModelOfThePackageIsReadOrRejected) {
     // Every seventh, and all invalid ones; scripts/nightly.sh import takes all. Nothing may crash the worker.
     const bool all = std::getenv("RELIEF_SOAK") != nullptr;
     std::set<fs::path> files;
@@ -198,7 +198,7 @@ TEST(ImportWorker, EveryModelOfThePackageIsReadOrRefused) {
     EXPECT_GT(4 * read, tried) << "hardly any is read";
 }
 
-TEST(ImportWorker, TrianglesAreCountedBeforeTheyAreMade) {
+TEST(ImportWorker, TrianglesAreCountedBeforeAllocation) {
     const TemporaryFolder folder;
     const fs::path gltf = folder.write("i.gltf", manyNodes(100));
     const fs::path dae = folder.write("t.dae", tetrahedronDae(""));

@@ -53,7 +53,7 @@ void expectSameCorners(const Level& level, const fs::path& path, const ImportOpt
     EXPECT_EQ(triangle, whole.triangles.size());
 }
 
-TEST_F(Levels, OneMeshInManyNodesIsOne) {
+TEST_F(Levels, SharedMeshIsImportedOnce) {
     const Level read = gltf(
         R"({"mesh":0,"name":"a"},{"mesh":0,"name":"b","translation":[5,0,0],"rotation":[0,0.6,0,0.8],"scale":[2,2,2]},)"
         R"({"name":"group","rotation":[1,0,0,0],"scale":[0.5,0.5,0.5],"children":[3]},{"mesh":0,"name":"c","translation":[1,2,3]})",
@@ -70,7 +70,7 @@ TEST_F(Levels, OneMeshInManyNodesIsOne) {
     expectSameCorners(read, folder_ / "l.gltf");
 }
 
-TEST_F(Levels, EveryTurnIsFoundAgain) {
+TEST_F(Levels, RotationsAreRecovered) {
     // Quarter turns, half turns, and those whose w is nearly 0: each branch of the conversion.
     for (const char* q :
          {"1,0,0,0", "0,1,0,0", "0,0,1,0", "0.70710678,0,0,0.70710678", "0,-0.70710678,0,0.70710678",
@@ -83,7 +83,7 @@ TEST_F(Levels, EveryTurnIsFoundAgain) {
     }
 }
 
-TEST_F(Levels, ShapesThatAPoseWouldChangeAreMeshesOfTheirOwn) {
+TEST_F(Levels, NonRigidInstancesAreSeparateMeshes) {
     const Level read = gltf(
         R"({"mesh":0,"name":"plain"},{"mesh":0,"scale":[1,2,1]},{"mesh":0,"scale":[1,2,1],"translation":[9,0,0]},)"
         R"({"mesh":0,"scale":[-1,1,1]},{"mesh":0,"scale":[2,2,-2],"translation":[0,9,0]},)"
@@ -97,7 +97,7 @@ TEST_F(Levels, ShapesThatAPoseWouldChangeAreMeshesOfTheirOwn) {
     expectSameCorners(read, folder_ / "l.gltf");
 }
 
-TEST_F(Levels, UnitsAndAxesAreThoseOfTheMeshes) {
+TEST_F(Levels, UnitsAndAxesMatchTheMeshes) {
     const fs::path path = write("l.obj", tetrahedronObj());
     const ImportOptions options = {"cm", UpAxis::kPlusZ};
     const Level read = level(path, options);
@@ -107,7 +107,7 @@ TEST_F(Levels, UnitsAndAxesAreThoseOfTheMeshes) {
     expectSameCorners(read, path, options);
 }
 
-TEST_F(Levels, ObjectsOfAnObjAreMeshesWithOnePlace) {
+TEST_F(Levels, ObjObjectsAreMeshesWithOneBody) {
     const std::string shape = "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
     const Level read = level(write("l.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\no one\nusemtl a\n" + shape +
                                                 "o two\n" + shape + "usemtl b\nf 1 2 3\n"));
@@ -119,7 +119,7 @@ TEST_F(Levels, ObjectsOfAnObjAreMeshesWithOnePlace) {
     EXPECT_EQ(read.meshes[1].surface_names.size(), 2U);
 }
 
-TEST_F(Levels, EqualMeshesAreJoinedAndThoseWithoutAreaLeftOut) {
+TEST_F(Levels, EqualMeshesAreMergedAndFlatOnesDropped) {
     const std::string a = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\no a\nf 1 3 2\nf 1 2 4\n";
     const std::string b = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\no b\nf 5 7 6\nf 5 6 8\n";
     const Level read = level(write("l.obj", a + b + "o flat\nf 1 1 2\n"));
@@ -130,7 +130,7 @@ TEST_F(Levels, EqualMeshesAreJoinedAndThoseWithoutAreaLeftOut) {
     EXPECT_FALSE(importLevel(write("m.obj", "v 0 0 0\nv 1 0 0\no flat\nf 1 1 2\n")));
 }
 
-TEST_F(Levels, OfAFolderEachFileIsAMesh) {
+TEST_F(Levels, EachFileOfAFolderIsAMesh) {
     write("b.obj", tetrahedronObj());
     write("a.ply", tetrahedronPly());
     write("c.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
@@ -157,7 +157,7 @@ TEST_F(Levels, OfAFolderEachFileIsAMesh) {
     expectRefused(importLevel(folder_), "contains no mesh files");
 }
 
-TEST_F(Levels, TrianglesOfAMeshCountOnceAndBodiesHaveALimit) {
+TEST_F(Levels, TriangleAndBodyLimits) {
     const fs::path path = write("l.gltf", manyNodes(100));
     ImportLimits limits{.triangles = 50};
     EXPECT_FALSE(importMeshInWorker(path, {}, limits));
@@ -179,7 +179,7 @@ TEST_F(Levels, InstancesAreBodies) {
     expectSameCorners(read, folder_ / "l.gltf");
 }
 
-TEST_F(Levels, PlacesThatNoWorldHasAreRefused) {
+TEST_F(Levels, InvalidPosesAreRejected) {
     const auto lost = [&](const std::string& place) {
         return importLevel(
             write("l.gltf", tetrahedronGltf({.nodes = R"({"mesh":0,"name":"lost",)" + place + "}"})));
@@ -191,7 +191,7 @@ TEST_F(Levels, PlacesThatNoWorldHasAreRefused) {
     EXPECT_FALSE(lost(R"("scale":[0,0,0])"));
 }
 
-TEST_F(Levels, NamesMarkTheTrianglesOfTheirNodes) {
+TEST_F(Levels, NamesMarkTrianglesOfNodes) {
     ImportOptions options;
     options.names = {"a"};
     const Level read =
@@ -202,7 +202,7 @@ TEST_F(Levels, NamesMarkTheTrianglesOfTheirNodes) {
     EXPECT_EQ(read.bodies[2].mesh, 0U);
 }
 
-TEST_F(Levels, AnswersOfAWorkerThatLiesAreRefused) {
+TEST_F(Levels, InvalidWorkerResultsAreRejected) {
     TriangleMesh honest;
     honest.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     honest.triangles = {{0, 1, 2}};

@@ -18,7 +18,7 @@ constexpr const char* kBoxObj =
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
     "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 1 5 8 4\n";
 
-TEST(MeshImport, ObjOfQuads) {
+TEST(MeshImport, ObjWithQuads) {
     const TriangleMesh mesh = imported("box.obj", kBoxObj);
     EXPECT_EQ(mesh.triangles.size(), 12U);
     EXPECT_NEAR(signedVolume(mesh), 1.0, 1e-6);
@@ -30,7 +30,7 @@ TEST(MeshImport, ObjOfQuads) {
     EXPECT_EQ(imported("h\xc3\xa4se\xff \x1b.obj", kBoxObj).name, "h\xc3\xa4se\xef\xbf\xbd \xef\xbf\xbd.obj");
 }
 
-TEST(MeshImport, MirroredNodesKeepTheirOutside) {
+TEST(MeshImport, MirroredNodesKeepOutwardWinding) {
     const auto read = [](const std::string& nodes) {
         return imported("m.gltf", tetrahedronGltf({.nodes = nodes}));
     };
@@ -52,7 +52,7 @@ TEST(MeshImport, MirroredNodesKeepTheirOutside) {
     }
 }
 
-TEST(MeshImport, WrongFilesAreNamed) {
+TEST(MeshImport, ErrorsNameTheFile) {
     const TemporaryFolder folder;
     for (const auto& import : {+[](const std::filesystem::path& path) { return importMesh(path); },
                                +[](const std::filesystem::path& path) { return importMeshInWorker(path); }}) {
@@ -84,7 +84,7 @@ TEST(MeshImport, WrongFilesAreNamed) {
                            {tetrahedronGltf({.nodes = R"({"mesh":0,"scale":[0,1,0]})"}), "area"}});
 }
 
-TEST(FinishMesh, RefusesWhatIsNoMesh) {
+TEST(FinishMesh, RejectsInvalidMeshes) {
     TriangleMesh mesh;
     mesh.name = "raw";
     mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};

@@ -75,7 +75,7 @@ TEST(PolygonCutter, CornersOnStraightEdges) {
     }
 }
 
-TEST(PolygonCutter, ConcaveOnesFarAway) {
+TEST(PolygonCutter, ConcavePolygonsFarFromTheOrigin) {
     for (std::uint32_t seed = seedFrom(31), end = seed + 200; seed < end; ++seed) {
         // A star: radii of its corners at random, so that it does not cross itself.
         std::mt19937 random(seed);
@@ -92,7 +92,7 @@ TEST(PolygonCutter, ConcaveOnesFarAway) {
     }
 }
 
-TEST(PolygonCutter, WhatIsNoPolygonStillGetsItsTriangles) {
+TEST(PolygonCutter, DegeneratePolygonsAreTriangulated) {
     PolygonCutter cutter;
     const std::vector<glm::vec3> knot{{0, 0, 0}, {4, 4, 0}, {4, 0, 0}, {0, 4, 0}, {2, 9, 0}};
     const std::vector<glm::vec3> line{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}, {5, 0, 0}};
@@ -106,7 +106,7 @@ TEST(PolygonCutter, WhatIsNoPolygonStillGetsItsTriangles) {
     }
 }
 
-TEST(PolygonCutter, ACombOfThousandsOfTeethIsCutWhole) {
+TEST(PolygonCutter, CombWithThousandsOfTeethIsTriangulated) {
     // Its ears were looked for among all corners, for each of all corners: 8,000 took most of a minute.
     constexpr int kTeeth = 2000;
     std::vector<glm::vec3> corners;
@@ -121,7 +121,7 @@ TEST(PolygonCutter, ACombOfThousandsOfTeethIsCutWhole) {
     expectWhole(corners, "comb", 1e-6);
 }
 
-TEST(PolygonCutter, ACrossingPolygonLosesNothingInSilence) {
+TEST(PolygonCutter, SelfIntersectingPolygonLosesNoTriangles) {
     // A first try that gives up must not win over one that cuts all.
     std::mt19937 random(7);
     std::uniform_real_distribution<float> unit(-1.0F, 1.0F);

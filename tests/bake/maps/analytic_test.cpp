@@ -152,7 +152,7 @@ TEST(BakeBox, TiltedBoxAlongAnObliqueDirection) {
     checkBoxMap(map, axes);
 }
 
-TEST(BakeBox, RaysAlongEdgesTakeAFaceThatLooksAtThem) {
+TEST(BakeBox, RaysAlongEdgesHitAFrontFace) {
     // The texel centres of column 2 lie exactly on the box's edge x = 0 (box chosen so): both faces are met
     // there.
     const TriangleMesh roof =
@@ -169,7 +169,7 @@ TEST(BakeBox, RaysAlongEdgesTakeAFaceThatLooksAtThem) {
     }
 }
 
-TEST(BakeTorus, AutomaticCubeComparesByWhereItsCentreIs) {
+TEST(BakeTorus, AutomaticCompareDependsOnTheCubeCenter) {
     const TriangleMesh mesh = makeTorusMesh(1.0, 0.25, 96, 48);
     const DepthMap hole = bakeMap(mesh, "cube:size=65");
     EXPECT_EQ(hole.compare, Compare::kLess);
@@ -180,7 +180,7 @@ TEST(BakeTorus, AutomaticCubeComparesByWhereItsCentreIs) {
     EXPECT_EQ(bakeMap(mesh, "cube:size=65,center=1/0/0").compare, Compare::kGreater);
 }
 
-TEST(BakePlane, FlatMeshHasAVolumeAndFacesTheViewer) {
+TEST(BakePlane, FlatMeshFacesTheViewer) {
     for (const TriangleMesh& mesh : {makePlane(0.25F, 4), reversed(makePlane(0.25F, 4))}) {
         for (const std::string direction : {"-y", "+y"}) {
             const DepthMap map = bakeMap(mesh, "float:dir=" + direction);
@@ -201,7 +201,7 @@ TEST(BakePlane, FlatMeshHasAVolumeAndFacesTheViewer) {
     }
 }
 
-TEST(BakeWinding, InsideOutMeshesGiveTheSameMaps) {
+TEST(BakeWinding, InvertedMeshesGiveTheSameMaps) {
     const std::vector<std::string> specs = {"float:dir=+x",
                                             "fixed8:dir=1/2/3,compare=greater",
                                             "front-back:dir=-y",
@@ -233,7 +233,7 @@ TEST(BakeWinding, InsideOutMeshesGiveTheSameMaps) {
     }
 }
 
-TEST(BakeSubBox, VolumesThatCutTheObjectSaySo) {
+TEST(BakeSubBox, VolumesThatCutTheObjectAbstain) {
     const TriangleMesh mesh = makeBoxMesh({0, 0, 0}, {1, 1, 1});
 
     // Beside the object's middle, depth held: rays start in free space.
@@ -300,7 +300,7 @@ TEST(BakeScale, TinyHugeAndFarMeshesBake) {
     EXPECT_NEAR(vote(map, {1000, -2000, 500})->distance, -1.0, 2e-3);
 }
 
-TEST(BakeErrors, AreNamed) {
+TEST(BakeErrors, HaveTheRightCodes) {
     const TriangleMesh mesh = makeBoxMesh({0, 0, 0}, {1, 1, 1});
     const auto code = [&](const std::vector<MapSpec>& specs, std::uint32_t resolution) {
         BakeOptions options;
@@ -315,7 +315,7 @@ TEST(BakeErrors, AreNamed) {
     EXPECT_EQ(code({*parseMapSpec("float:box=5/5/5/6/6/6")}, 8), ErrorCode::kFailure);
 }
 
-TEST(BakeReportTest, WarnsOfWhatIsProbablyNotMeant) {
+TEST(BakeReportTest, WarnsOfProbableUserErrors) {
     const TriangleMesh mesh = makeBoxMesh({0, 0, 0}, {1, 1, 1});
     BakeOptions options;
     options.resolution = 8;

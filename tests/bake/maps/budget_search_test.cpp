@@ -15,7 +15,7 @@ BudgetSearchOptions optionsFor(double percent) {
     return options;
 }
 
-TEST(BudgetSearch, KeepsThePromiseWithLittleMoreThanItNeeds) {
+TEST(BudgetSearch, KeepsTheTargetWithFewExtraBytes) {
     constexpr double kPercent = 0.1;  // which the least budget does not keep
     const MeshQuery query = queryOf(makeTorusMesh(1.0, 0.4, 64, 32));
     BudgetSearchOptions options = optionsFor(kPercent);
@@ -40,7 +40,7 @@ TEST(BudgetSearch, KeepsThePromiseWithLittleMoreThanItNeeds) {
 }
 
 // Two boxes so far apart that the least budget's finest cell holds neither.
-TEST(BudgetSearch, TriesMoreBytesWhereFewSeeNothing) {
+TEST(BudgetSearch, TriesMoreBytesIfTheSmallestBudgetIsEmpty) {
     const TriangleMesh mesh =
         joined({makeBoxMesh({5, 5, 5}, glm::dvec3(5.0)), makeBoxMesh({1e7, 0.5, 0.5}, glm::dvec3(0.5))});
     const MeshQuery query = queryOf(mesh);
@@ -50,7 +50,7 @@ TEST(BudgetSearch, TriesMoreBytesWhereFewSeeNothing) {
     EXPECT_EQ(bakeForError(query, query, options).error().code, ErrorCode::kFailure);
 }
 
-TEST(BudgetSearch, AnEasyPromiseCostsTheLeastBudget) {
+TEST(BudgetSearch, EasyTargetNeedsTheSmallestBudget) {
     const MeshQuery query = queryOf(makeTorusMesh(1.0, 0.4, 64, 32));
     const BudgetSearchResult found = required(bakeForError(query, query, optionsFor(50.0)));
     EXPECT_EQ(found.chosen.budget, 32'000U);
@@ -62,7 +62,7 @@ TEST(BudgetSearch, AnEasyPromiseCostsTheLeastBudget) {
     EXPECT_GT(better.chosen.budget, 32'000U);
 }
 
-TEST(BudgetSearch, SaysWhatTheBestIsWhereThePromiseCannotBeKept) {
+TEST(BudgetSearch, ReportsTheBestIfTheTargetIsUnreachable) {
     const MeshQuery query = queryOf(makeTorusMesh(1.0, 0.4, 64, 32));
     BudgetSearchOptions options = optionsFor(0.0);
     options.budget_max = 50'000;

@@ -32,14 +32,14 @@ void expectSameOnThreads(const TriangleMesh& mesh, const std::vector<std::string
     }
 }
 
-TEST(BakeBunny, ThreadsDoNotChangeAByte) {
+TEST(BakeBunny, IsDeterministic) {
     expectSameOnThreads(bunny(), kAllFormats);
     expectSameOnThreads(
         makeTorusMesh(1.0, 0.4, 48, 24),
         {"front-back:dir=1/2/3,decode=plane", "cube:size=24,decode=plane", "fixed8:decode=plane"});
 }
 
-TEST(BakeTies, ThreadsDoNotChangeAByte) {
+TEST(BakeTies, AreDeterministic) {
     // Triangles' edges on texel centres, and every triangle twice, the second time turned over: ties
     // everywhere.
     TriangleMesh mesh = makePlane(0.0F, 60);
@@ -53,7 +53,7 @@ TEST(BakeTies, ThreadsDoNotChangeAByte) {
     expectSameOnThreads(mesh, specs);
 }
 
-TEST(BakeBunny, SurvivesTheContainerAndTellsItsStory) {
+TEST(BakeBunny, RoundTripsWithProvenance) {
     const Collider collider = bakeSpecs(bunny(), kAllFormats, 32);
     const Collider back = required(readContainer(required(writeContainer(collider))));
     EXPECT_TRUE(back == collider);
@@ -73,7 +73,7 @@ TEST(BakeBunny, SurvivesTheContainerAndTellsItsStory) {
     EXPECT_TRUE(bakeSpecs(bunny(), specs, 999).maps == collider.maps);
 }
 
-TEST(BakeBunny, DefaultMapsKnowInsideFromOutside) {
+TEST(BakeBunny, DefaultMapsClassifyPoints) {
     const Baked baked =
         required(bake(bunny(), {.maps = {}, .resolution = 256, .threads = 0, .progress = {}}));
     ASSERT_EQ(baked.collider.maps.size(), 4U);
@@ -85,7 +85,7 @@ TEST(BakeBunny, DefaultMapsKnowInsideFromOutside) {
 }
 
 /// The search on three maps of planes, 0.5 % of the longest side off the surface, which is a texel, and 5 % off.
-TEST(BakeBunny, TheNearestSurfaceIsTheNearestTriangle) {
+TEST(BakeBunny, NearestSurfaceIsTheNearestTriangle) {
     const MeshQuery query = queryOf(bunny());
     const Collider collider = bakeSpecs(
         query.prepared(),
@@ -115,7 +115,7 @@ TEST(BakeBunny, TheNearestSurfaceIsTheNearestTriangle) {
     }
 }
 
-TEST(BakeProgress, RunsFromNothingToOne) {
+TEST(BakeProgress, RunsFromZeroToOne) {
     for (const char* decode : {"projected", "plane"}) {
         double last = 0.0;
         std::atomic<int> within = 0;

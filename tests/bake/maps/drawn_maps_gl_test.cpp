@@ -140,7 +140,7 @@ bool isFlat(const DepthMap& map, const TexelEnd& at) {
     return std::abs(glm::dot(glm::dvec3(surfaceAt(map, at)->normal), ray)) / glm::length(ray) > 0.36;
 }
 
-TEST_P(DrawnMapsGlTest, TheyAreThoseOfOneRayATexel) {
+TEST_P(DrawnMapsGlTest, MatchMapsWithOneRayPerTexel) {
     const TriangleMesh mesh = load(GetParam());
     for (const char* text : kFormats) {
         SCOPED_TRACE(text);

@@ -11,7 +11,7 @@ namespace {
 
 class HybridGlTest : public GlTest {};
 
-TEST_P(HybridGlTest, BakedPatchesAmongOtherMapsAgreeWithTheCpu) {
+TEST_P(HybridGlTest, PatchesBesideOtherMapsMatchTheCpu) {
     const glm::dmat3 turn = test::rotation({1, 2, 3}, 40.0);
     const TriangleMesh mesh =
         test::joined({test::makeTorusMesh(1.0, 0.35, 96, 48), test::makeIcosphere({0, 0, 0.9}, 0.3, 4),

@@ -33,7 +33,7 @@ View aimedAt(const glm::dvec3& at, const glm::dvec3& d) {
 }
 
 /// Embree alone lets a few of a thousand such rays through, to the far side.
-TEST(Pinholes, RaysAimedAtVerticesAndEdgesAreMet) {
+TEST(Pinholes, RaysAtVerticesAndEdgesHit) {
     for (const glm::dvec3& center : {glm::dvec3(0.0), glm::dvec3(100.1, 50.3, -20.7)}) {
         for (const int levels : {2, 3, 4}) {
             const TriangleMesh ball = makeIcosphere(center, 1.0, levels);

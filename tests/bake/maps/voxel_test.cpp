@@ -150,7 +150,7 @@ void expectNothingDeepOutsideOfAnyView(std::uint32_t seed, std::initializer_list
     }
 }
 
-TEST(Voxels, NothingDeepIsOutside) {
+TEST(Voxels, DeepPointsAreInside) {
     for (std::uint32_t seed = seedFrom(1), end = seed + 5; seed < end; ++seed) {
         expectNothingDeepOutsideOfAnyView(seed, {Quality::kFast, Quality::kNormal});
     }
@@ -158,13 +158,13 @@ TEST(Voxels, NothingDeepIsOutside) {
 
 /// Grids of other seeds by which this was found wrong: rays that start in the solid and run through an edge into the next
 /// cell, and an edge between such rays that was taken for a silhouette.
-TEST(Voxels, NothingDeepIsOutsideWhereItOnceWas) {
+TEST(Voxels, DeepPointsAreInsideInFormerFailures) {
     for (const std::uint32_t seed : {1'762'264'770U, 5'000'003U, 9'000'002U, 9'000'005U}) {
         expectNothingDeepOutsideOfAnyView(seed, {Quality::kFast});
     }
 }
 
-TEST(Voxels, NothingDeepIsOutsideWhateverIsPreferred) {
+TEST(Voxels, DeepPointsAreInsideForEveryPreference) {
     for (std::uint32_t seed = seedFrom(101), end = seed + 6; seed < end; ++seed) {
         SCOPED_TRACE(seed);
         const VoxelGrid grid = VoxelGrid::random(seed);

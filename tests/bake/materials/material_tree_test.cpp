@@ -196,7 +196,7 @@ bool isWithinItsShare(const Collider& collider) {
            std::max(kMaterialsShare * static_cast<double>(collider.texelBytes()), double{kMaterialsBytesMin});
 }
 
-TEST(MaterialTree, ContactsAreRightInEveryFormat) {
+TEST(MaterialTree, ContactsHaveTheRightMaterialInEveryFormat) {
     const std::pair<const char*, Scene> scenes[] = {
         {"sides of a box", dice()}, {"squares", checkerboard()}, {"sides of a thin board", board()}};
     for (const auto& [what, scene] : scenes) {
@@ -213,7 +213,7 @@ TEST(MaterialTree, ContactsAreRightInEveryFormat) {
     }
 }
 
-TEST(MaterialSamples, OtherMaterialsNearAreThoseOfAllTriangles) {
+TEST(MaterialSamples, NeighborMaterialsMatchBruteForce) {
     const TriangleMesh mesh = checkerboard().mesh;
     std::vector<std::uint8_t> labels(mesh.labels.begin(), mesh.labels.end());
     const MeshQuery query = queryOf(mesh);
@@ -236,7 +236,7 @@ TEST(MaterialSamples, OtherMaterialsNearAreThoseOfAllTriangles) {
     EXPECT_LT(near, 1700);
 }
 
-TEST(MaterialTree, IsTheSameForAnyNumberOfThreadsAndSurvivesTheContainer) {
+TEST(MaterialTree, IsDeterministicAndRoundTrips) {
     const Scene scene = checkerboard();
     const Format patches = formats().back();
     const Collider collider = baked(scene.mesh, patches, 1).baked.collider;
@@ -246,7 +246,7 @@ TEST(MaterialTree, IsTheSameForAnyNumberOfThreadsAndSurvivesTheContainer) {
     }
 }
 
-TEST(MaterialTree, OfOneMaterialThereIsNone) {
+TEST(MaterialTree, SingleMaterialNeedsNoTree) {
     const Format patches = formats().back();
     TriangleMesh plain = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0));
     const auto halves = [&](const char* left, const char* right) {
@@ -275,7 +275,7 @@ TEST(MaterialTree, OfOneMaterialThereIsNone) {
     EXPECT_EQ(materialAt(single.materials, glm::vec3(5.0F), glm::vec3(0.0F)), 0U);
 }
 
-TEST(MaterialTree, TooManyNamesAndOneWithTwoResponsesAreErrors) {
+TEST(MaterialTree, RejectsTooManyNamesAndConflictingResponses) {
     TriangleMesh mesh = makePlane(0.0F, 16);
     for (int i = 0; i < 300; ++i) {
         mesh.surface_names.push_back({0, "node", "m" + std::to_string(i)});

@@ -27,7 +27,7 @@ double boxDistance(const glm::dvec3& p, const glm::dvec3& half) {
 
 // --- truth ---
 
-TEST(MeshQuery, BoxHasTheDistanceOfTheFormula) {
+TEST(MeshQuery, BoxDistancesMatchTheFormula) {
     const glm::dvec3 half(1.0, 0.5, 2.0);
     const glm::dmat3 axes = rotation({1, 1, 0}, 40.0);
     const glm::dvec3 center(3.0, -1.0, 2.0);
@@ -41,7 +41,7 @@ TEST(MeshQuery, BoxHasTheDistanceOfTheFormula) {
     }
 }
 
-TEST(MeshQuery, AHoleChangesNoSideButNearIt) {
+TEST(MeshQuery, HoleAffectsOnlyPointsNearIt) {
     TriangleMesh mesh = makeIcosphere({0, 0, 0}, 1.0, 3);
     mesh.triangles.erase(mesh.triangles.begin() + 100, mesh.triangles.begin() + 104);
     const MeshQuery query = queryOf(mesh);
@@ -54,7 +54,7 @@ TEST(MeshQuery, AHoleChangesNoSideButNearIt) {
     }
 }
 
-TEST(MeshQuery, AHintChangesNoAnswer) {
+TEST(MeshQuery, HintDoesNotChangeResults) {
     const TriangleMesh mesh = makeIcosphere({0, 0, 0}, 1.0, 3);
     const MeshQuery query = queryOf(mesh);
     std::uint32_t hint = 0;
@@ -68,7 +68,7 @@ TEST(MeshQuery, AHintChangesNoAnswer) {
     }
 }
 
-TEST(MeshQuery, RaysAndSegmentsMeetABox) {
+TEST(MeshQuery, RaysAndSegmentsHitABox) {
     const MeshQuery query = queryOf(makeBoxMesh({0, 0, 0}, {1, 1, 1}));
     EXPECT_NEAR(query.firstHit({0.1, 0.2, 5.0}, {0.0, 0.0, -2.0}).value().along, 2.0, 1e-6);
     EXPECT_FALSE(query.firstHit({0.1, 0.2, 5.0}, {0.0, 0.0, 2.0}));
@@ -120,7 +120,7 @@ class AccuracyOfASphere : public ::testing::Test {
     }
 };
 
-TEST_F(AccuracyOfASphere, APerfectFieldHasNoErrors) {
+TEST_F(AccuracyOfASphere, ExactFieldHasNoErrors) {
     const FieldAccuracy accuracy = measureField(samples(), grown(0.0));
     EXPECT_EQ(accuracy.near.total() + accuracy.uniform.total(), 0.0);
     EXPECT_EQ(accuracy.distance_p99, 0.0);
@@ -130,7 +130,7 @@ TEST_F(AccuracyOfASphere, APerfectFieldHasNoErrors) {
     EXPECT_GT(accuracy.normal_mean, 0.1);
 }
 
-TEST_F(AccuracyOfASphere, AGrownOrShrunkFieldIsWrongByTheShareOfTheFormula) {
+TEST_F(AccuracyOfASphere, ShiftedFieldHasTheExpectedErrors) {
     const double sigma = samples().options.sigma_share * samples().longest_side;
     const auto below = [&](double r) { return 100.0 * radiusBelow(r, kRadius, sigma); };
     for (const double shift : {0.5 * sigma, 2.0 * sigma, -sigma}) {
@@ -149,7 +149,7 @@ TEST_F(AccuracyOfASphere, AGrownOrShrunkFieldIsWrongByTheShareOfTheFormula) {
     EXPECT_NEAR(thick.uniform.false_outside, 100.0 * shell, kShareTolerance);
 }
 
-TEST_F(AccuracyOfASphere, WhatAFieldDoesNotSayCountsAsOutside) {
+TEST_F(AccuracyOfASphere, AbstentionsCountAsOutside) {
     const FieldAccuracy silent = measureField(samples(), [](const glm::vec3&) { return std::nullopt; });
     EXPECT_EQ(silent.unknown_percent, 100.0);
     EXPECT_EQ(silent.no_normal_percent, 100.0);
@@ -163,7 +163,7 @@ TEST_F(AccuracyOfASphere, WhatAFieldDoesNotSayCountsAsOutside) {
     EXPECT_EQ(far.near.false_outside, silent.near.false_outside);
 }
 
-TEST_F(AccuracyOfASphere, InsideANearerFaceThatDoesNotDecideIsSeen) {
+TEST_F(AccuracyOfASphere, DepthErrorsInsideAreMeasured) {
     const InsideAccuracy right = measureField(samples(), grown(0.0)).inside;
     EXPECT_EQ(right.far_face_percent, 0.0);
     EXPECT_LT(right.depth_p99, 1e-6);
@@ -189,7 +189,7 @@ TEST_F(AccuracyOfASphere, InsideANearerFaceThatDoesNotDecideIsSeen) {
 }
 
 // Of two boxes that overlap, the ends within the other one are no boundary.
-TEST(Accuracy, InsidePointsAreBesideABoundary) {
+TEST(Accuracy, OverlapsHaveNoBoundary) {
     const TriangleMesh boxes =
         joined({makeBoxMesh({-0.4, 0, 0}, {1, 1, 1}), makeBoxMesh({0.4, 0, 0}, {1, 1, 1})});
     const MeshQuery query =
@@ -202,7 +202,7 @@ TEST(Accuracy, InsidePointsAreBesideABoundary) {
     }
 }
 
-TEST_F(AccuracyOfASphere, NormalsAreMeasuredInDegrees) {
+TEST_F(AccuracyOfASphere, NormalErrorsAreInDegrees) {
     // Turned about a fixed axis by 10°, a normal n moves by 2·asin(sin 5° · sin ∠(n, axis)): 10° at most.
     const glm::mat3 turn(rotation({0, 0, 1}, 10.0));
     const FieldAccuracy accuracy = measureField(samples(), [&](const glm::vec3& p) {
@@ -213,7 +213,7 @@ TEST_F(AccuracyOfASphere, NormalsAreMeasuredInDegrees) {
     EXPECT_NEAR(accuracy.normal_mean, 10.0 * 3.14159265 / 4.0, 0.1);
 }
 
-TEST_F(AccuracyOfASphere, SurfaceThatMapsSee) {
+TEST_F(AccuracyOfASphere, VisibleSurfaceFraction) {
     const auto unseen = [&](const std::vector<std::string>& specs) {
         return measureCollider(samples(), query(), bakeSpecs(mesh(), specs, 32)).unseen_percent;
     };
@@ -229,7 +229,7 @@ TEST_F(AccuracyOfASphere, SurfaceThatMapsSee) {
 }
 
 /// Sides and normals are those that particles meet, to the bit; distances those that whoever asks for a distance gets.
-TEST_F(AccuracyOfASphere, OfAColliderMeasuresTheVotesSidesAndTheNearestDistances) {
+TEST_F(AccuracyOfASphere, ColliderUsesVotesAndNearestDistances) {
     const Collider collider = bakeSpecs(mesh(), {"front-back:dir=+x", "front-back:dir=1/2/3"}, 48);
     const FieldAccuracy whole = measureCollider(samples(), query(), collider).field;
     const FieldAccuracy votes = measureField(samples(), fieldOf(collider));
@@ -244,7 +244,7 @@ TEST_F(AccuracyOfASphere, OfAColliderMeasuresTheVotesSidesAndTheNearestDistances
     EXPECT_EQ(whole.far_percent + whole.unknown_percent, 0.0);
 }
 
-TEST(Accuracy, BuriedSurfaceIsLeftOut) {
+TEST(Accuracy, BuriedSurfaceIsExcluded) {
     // Two boxes that touch: both copies of the face between them have the inside on both sides.
     const TriangleMesh mesh = joined({makeBoxMesh({-1, 0, 0}, {1, 1, 1}), makeBoxMesh({1, 0, 0}, {1, 1, 1})});
     const MeshQuery query = queryOf(mesh);
@@ -255,7 +255,7 @@ TEST(Accuracy, BuriedSurfaceIsLeftOut) {
     EXPECT_NEAR(accuracy.buried_percent, 100.0 * 8.0 / 48.0, 1.1);
 }
 
-TEST(Accuracy, IsTheSameForAnyNumberOfThreads) {
+TEST(Accuracy, IsDeterministic) {
     const TriangleMesh mesh = makeTorusMesh(1.0, 0.3, 64, 32);
     const Collider collider = bakeSpecs(mesh, {"front-back", "cube"});
     const auto everything = [&] {
@@ -273,7 +273,7 @@ TEST(Accuracy, IsTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(onThreads(1, everything), onThreads(7, everything));
 }
 
-TEST(Accuracy, SeedsGiveOtherPointsAndPrefixesStay) {
+TEST(Accuracy, SeedsChangePointsAndPrefixesAreStable) {
     const MeshQuery query = queryOf(makeBoxMesh({0, 0, 0}, {1, 1, 1}));
     const TruthSamples first = sampleTruth(query, withSamples(100));
     AccuracyOptions options = withSamples(200);
@@ -301,7 +301,7 @@ TEST(Accuracy, SurfacePointsFollowTheArea) {
 
 // --- the distance volume ---
 
-TEST(DistanceVolume, LookupIsExactForALinearField) {
+TEST(DistanceVolume, LinearFieldIsExact) {
     Bounds box;
     box.add({-1.0F, 0.0F, 2.0F});
     box.add({3.0F, 1.3F, 4.1F});
@@ -337,7 +337,7 @@ TEST(DistanceVolume, LookupIsExactForALinearField) {
     }
 }
 
-TEST(DistanceVolume, NodesHoldTheTruth) {
+TEST(DistanceVolume, NodesEqualTheTruth) {
     // Closed, where signs are carried along rows, and open, where every node is asked.
     for (const bool open : {false, true}) {
         TriangleMesh mesh = makeTorusMesh(1.0, 0.3, 48, 24);
@@ -369,7 +369,7 @@ TEST(DistanceVolume, NodesHoldTheTruth) {
 // --- reports ---
 
 // Names and types of the fields are those of the schema; what is computed for it is tested here.
-TEST(AccuracyReport, SumsAndPercentagesAreThoseOfItsNumbers) {
+TEST(AccuracyReport, SumsAndPercentagesAreConsistent) {
     const MeshQuery query = queryOf(makeBoxMesh({0, 0, 0}, {1, 2, 0.5}));
     const TruthSamples samples = sampleTruth(query, withSamples(1000));
     const ColliderAccuracy accuracy =
@@ -386,7 +386,7 @@ TEST(AccuracyReport, SumsAndPercentagesAreThoseOfItsNumbers) {
     EXPECT_NE(accuracyText(accuracy, samples, "m").find("1000 points"), std::string::npos);
 }
 
-TEST(ByteCount, ReadsWhatPeopleWrite) {
+TEST(ByteCount, ParsesUnits) {
     const std::vector<std::pair<const char*, std::uint64_t>> counts = {
         {"0.25MB", 250'000U}, {"1 MB", 1'000'000U},     {"4mb", 4'000'000U}, {"1MiB", 1'048'576U},
         {"512kB", 512'000U},  {"2GiB", 2'147'483'648U}, {"65536", 65536U},   {"64B", 64U}};
@@ -399,7 +399,7 @@ TEST(ByteCount, ReadsWhatPeopleWrite) {
     }
 }
 
-TEST(Accuracy, NearPointsAloneAreThoseOfTheWholeTruth) {
+TEST(Accuracy, NearPointsMatchTheFullTruth) {
     const MeshQuery query = queryOf(makeIcosphere({0, 0, 0}, 1.0, 3));
     const TruthSamples all = sampleTruth(query, withSamples(3000));
     const std::vector<TruthPoint> near = sampleNear(query, withSamples(3000));

@@ -21,7 +21,7 @@ std::vector<BrickLayout> layouts() {
             {.cells = 2, .octree = true, .fitted = true}};
 }
 
-TEST(BrickVolume, PlaneIsExactButForTheCodes) {
+TEST(BrickVolume, PlaneIsExactToQuantization) {
     // A tilted cube; points round the middle of one face see only that plane.
     const glm::dmat3 axes = rotation({1, 2, 0}, 35.0);
     const MeshQuery query = queryOf(makeBoxMesh({0, 0, 0}, {1, 1, 1}, axes));
@@ -40,7 +40,7 @@ TEST(BrickVolume, PlaneIsExactButForTheCodes) {
     }
 }
 
-TEST(BrickVolume, SignsOfTwoBallsAreRightBeyondTheBendOfAVoxel) {
+TEST(BrickVolume, SignsAreExactBeyondTheInterpolationError) {
     const MeshQuery query =
         queryOf(joined({makeIcosphere({-1.5, 0, 0}, 1.0, 5), makeIcosphere({1.25, 0.2, 0}, 0.75, 5)}));
     const TruthSamples samples = sampleTruth(query, {.samples = 2000});
@@ -63,7 +63,7 @@ TEST(BrickVolume, SignsOfTwoBallsAreRightBeyondTheBendOfAVoxel) {
     }
 }
 
-TEST(BrickVolume, BytesAreThoseOfNodesAndIndex) {
+TEST(BrickVolume, BytesAreNodesAndIndex) {
     const MeshQuery query = queryOf(makeBoxMesh({0, 0, 0}, {0.5, 0.25, 0.25}));
     BrickLayout layout{.cells = 4, .flat_index = true};
     // Voxels of a 32nd: cubes of an eighth, 8x4x4 in the box, whose surface lies on the outermost faces.
@@ -76,7 +76,7 @@ TEST(BrickVolume, BytesAreThoseOfNodesAndIndex) {
     EXPECT_EQ(levels.indexBytes(), 2U * (4U + 64U));
 }
 
-TEST(BrickVolume, BudgetIsKeptAndUsedOnAnyNumberOfThreads) {
+TEST(BrickVolume, BudgetIsUsedDeterministically) {
     const MeshQuery query = queryOf(makeTorusMesh(1.0, 0.3, 96, 48));
     for (const BrickLayout& layout : layouts()) {
         for (const std::uint64_t bytes : {30'000U, 250'000U}) {

@@ -40,7 +40,7 @@ const glm::dvec3 kSlabHalf(2500.0, 5.0, 2500.0);
 const glm::dvec3 kPillarCenter(700.0, 4.6, -900.0);
 const glm::dvec3 kPillarHalf(1.0, 4.5, 1.0);
 
-TEST(PartAccuracy, APillarThatIsAbsentIsLostHoweverLittleOfTheAreaItIs) {
+TEST(PartAccuracy, MissingPillarIsLostDespiteItsSmallArea) {
     const TriangleMesh slab = makeBoxMesh(kSlabCenter, kSlabHalf);
     const TriangleMesh pillar = makeBoxMesh(kPillarCenter, kPillarHalf);
     TriangleMesh mesh = joined({slab, pillar});
@@ -98,7 +98,7 @@ PartsAccuracy measuredWithoutBoxes(double side, const std::string& unit) {
     return measured(shaped(mesh), fieldOfBoxes({slab.bounds}), fewPoints());
 }
 
-TEST(PartAccuracy, SmallLostPartsDoNotCountAndAreCounted) {
+TEST(PartAccuracy, SmallLostPartsAreCountedButIgnored) {
     for (const auto& [side, unit] : {std::pair{0.05, "m"}, {0.05, ""}, {0.19, ""}, {2.0, ""}}) {
         const PartsAccuracy found = measuredWithoutBoxes(side, unit);
         EXPECT_EQ(found.countOf(PartVerdict::kLost), 0U) << side;
@@ -118,7 +118,7 @@ TEST(PartAccuracy, SmallLostPartsDoNotCountAndAreCounted) {
     }
 }
 
-TEST(PartAccuracy, SmallLostPartsCountTogether) {
+TEST(PartAccuracy, ManySmallLostPartsMatter) {
     // 200 cubes, each 0.6 % of the diagonal of all: the loss of one is not noticed.
     std::vector<TriangleMesh> cubes;
     for (int i = 0; i < 200; ++i) {
@@ -143,7 +143,7 @@ TEST(PartAccuracy, SmallLostPartsCountTogether) {
     EXPECT_EQ(measured(shape, fieldOfBoxes(most), options).countOf(PartVerdict::kLost), 2U);
 }
 
-TEST(PartAccuracy, ARodOfALatticeCountsByItsLength) {
+TEST(PartAccuracy, LatticeRodCountsByItsLength) {
     std::vector<TriangleMesh> rods;
     std::vector<Bounds> bounds;
     for (int i = 0; i < 10; ++i) {
@@ -159,7 +159,7 @@ TEST(PartAccuracy, ARodOfALatticeCountsByItsLength) {
     EXPECT_EQ(verdictOf(0.5, found, "").grade, "poor");
 }
 
-TEST(PartAccuracy, AnExcessCountsAtTheScaleOfTheAsset) {
+TEST(PartAccuracy, ExcessCountsAtTheScaleOfTheAsset) {
     // A plate of 0.4 beside a cube of 10 is too thick: 0.01 is too little to notice, 0.1 is not.
     const TriangleMesh cube = makeBoxMesh({0, 0, 0}, glm::dvec3(5.0));
     const TriangleMesh plate = makeBoxMesh({0, 8, 0}, {0.2, 0.01, 0.2});
@@ -179,7 +179,7 @@ TEST(PartAccuracy, AnExcessCountsAtTheScaleOfTheAsset) {
     EXPECT_EQ(measured(shape, fieldOfBoxes({cube.bounds})).countOf(PartVerdict::kLost), 1U);
 }
 
-TEST(PartAccuracy, ALostPartIsConfirmedByMorePoints) {
+TEST(PartAccuracy, LostPartsAreConfirmedWithMorePoints) {
     // Boxes that are too large by half the distance of their points: about 20 % are wrong, with few points at times 25 %.
     std::vector<TriangleMesh> boxes;
     std::vector<Bounds> bounds;
@@ -196,7 +196,7 @@ TEST(PartAccuracy, ALostPartIsConfirmedByMorePoints) {
     EXPECT_EQ(found.countOf(PartVerdict::kCoarse), 40U);
 }
 
-TEST(PartAccuracy, CoarsePartsCountByTheirArea) {
+TEST(PartAccuracy, CoarsePartsCountByArea) {
     // Cubes that are too small by half the distance of their points.
     for (const double side : {10.0, 0.5}) {
         const TriangleMesh other = makeBoxMesh({0, 0, 0}, glm::dvec3(5.0));
@@ -211,7 +211,7 @@ TEST(PartAccuracy, CoarsePartsCountByTheirArea) {
     }
 }
 
-TEST(PartAccuracy, TheSmallestOfTooManyPartsAreCounted) {
+TEST(PartAccuracy, SmallestOfTooManyPartsAreOnlyCounted) {
     std::vector<TriangleMesh> boxes;
     for (int i = 0; i < 60; ++i) {
         boxes.push_back(makeBoxMesh({3.0 * i, 0.0, 0.0}, glm::dvec3(1.0)));
@@ -221,7 +221,7 @@ TEST(PartAccuracy, TheSmallestOfTooManyPartsAreCounted) {
     EXPECT_NE(verdictOf(0.0, found, "").text.find("10 parts are not measured"), std::string::npos);
 }
 
-TEST(PartAccuracy, WhatLiesInsideOtherPartsIsHidden) {
+TEST(PartAccuracy, PartsInsideOthersAreHidden) {
     const TriangleMesh outer = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0));
     const TriangleMesh sheet = moved(makePlane(0.1F, 2), [](const glm::dvec3& p) { return 0.5 * p; });
     const PartsAccuracy found = measured(shaped(joined({outer, sheet})), fieldOfBoxes({outer.bounds}));
@@ -229,7 +229,7 @@ TEST(PartAccuracy, WhatLiesInsideOtherPartsIsHidden) {
     EXPECT_EQ(found.countOf(PartVerdict::kHidden), 1U);
 }
 
-TEST(PartAccuracy, AShellIsWrongBeyondTheThicknessThatWasAskedFor) {
+TEST(PartAccuracy, ShellIsWrongBeyondItsThickness) {
     // A leaf of 0.1 beside a body of 10: a default of 0.02 is a fifth of it.
     const TriangleMesh leaf =
         moved(makePlane(0.0F, 2), [](const glm::dvec3& p) { return 0.05 * p + glm::dvec3(0.0, 8.0, 0.0); });
@@ -264,7 +264,7 @@ TEST(PartAccuracy, AShellIsWrongBeyondTheThicknessThatWasAskedFor) {
     EXPECT_EQ(measured(by_default, fieldOfBoxes({body.bounds, shell}), fine).countOf(PartVerdict::kHeld), 2U);
 }
 
-TEST(PartAccuracy, TheDefaultThicknessGoesByThePart) {
+TEST(PartAccuracy, DefaultThicknessDependsOnThePart) {
     EXPECT_DOUBLE_EQ(partThickness(1.0, 100.0), 1.0);
     EXPECT_DOUBLE_EQ(partThickness(1.0, 1000.0), 4.0);  // at least 0.4 %
     EXPECT_DOUBLE_EQ(partThickness(1.0, 0.8), 0.2);     // at most a quarter
@@ -279,7 +279,7 @@ TEST(PartAccuracy, TheDefaultThicknessGoesByThePart) {
     }
 }
 
-TEST(PartAccuracy, NodesAndMaterialsAreTheirPartsByArea) {
+TEST(PartAccuracy, NodesAndMaterialsWeightPartsByArea) {
     // Two nodes: "tower" of two boxes, of which the field forgets the smaller, and "hut".
     const TriangleMesh big = makeBoxMesh({0, 0, 0}, glm::dvec3(2.0));
     const TriangleMesh small = makeBoxMesh({10, 0, 0}, glm::dvec3(1.0));
@@ -303,7 +303,7 @@ TEST(PartAccuracy, NodesAndMaterialsAreTheirPartsByArea) {
     EXPECT_TRUE(found.groups[2].is_material);
 }
 
-TEST(PartAccuracy, IsTheSameForAnyNumberOfThreads) {
+TEST(PartAccuracy, IsDeterministic) {
     std::vector<TriangleMesh> boxes;
     for (int i = 0; i < 40; ++i) {
         boxes.push_back(makeBoxMesh({3.0 * i, 0.0, 0.0}, glm::dvec3(0.1 + 0.03 * i)));

@@ -47,7 +47,7 @@ DepthMap handMade() {
     return map;
 }
 
-TEST(PatchCells, AreCountedWhereTheyHoldHeights) {
+TEST(PatchCells, CountsCellsWithHeights) {
     DepthMap map = handMade();
     EXPECT_EQ(patchCount(map), 2U);
     // Heights may look like records.
@@ -61,7 +61,7 @@ TEST(PatchCells, AreCountedWhereTheyHoldHeights) {
     EXPECT_EQ(patchCount(map), 0U);
 }
 
-TEST(PatchCells, SpacingIsThatOfTheLeafAtAPoint) {
+TEST(PatchCells, SpacingDependsOnTheLeaf) {
     const DepthMap map = handMade();
     EXPECT_EQ(patchSpacingAt(map, {3.0F, 1.0F, 1.0F}), 1.0) << "half of a cell of 2";
     EXPECT_EQ(patchSpacingAt(map, {0.5F, 2.5F, 2.5F}), 0.25) << "a quarter of a cell of 1";

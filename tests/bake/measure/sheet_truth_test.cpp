@@ -22,7 +22,7 @@ WrongShare wrongIn(const MeshQuery& solid, const std::vector<TruthPoint>& points
     });
 }
 
-TEST(SheetTruth, ARodInsideItsShellIsFull) {
+TEST(SheetTruth, RodInsideItsShellIsSolid) {
     const TriangleMesh rod = makeBoxMesh({0, 0, 0}, {0.5, 0.02, 0.02});
     const ShapedMesh shaped = shapedBy(rod, shellOf(0.1));
     const Result<SheetTruth> truth = SheetTruth::build(PreparedMesh(rod), shaped);
@@ -41,7 +41,7 @@ TEST(SheetTruth, ARodInsideItsShellIsFull) {
     EXPECT_GT(wrongIn(queryOf(hollow), points).false_outside, 20.0);
 }
 
-TEST(SheetTruth, ASheetAndABlockAreEachAsTheyCame) {
+TEST(SheetTruth, SheetAndBlockKeepTheirKinds) {
     // The block is a solid; the shell is that of the sheet only.
     const TriangleMesh mesh = joined({makePlane(0.0F, 4), makeBoxMesh({5, 0, 0}, {1, 1, 1})});
     ShapeOptions options = shellOf(0.1);

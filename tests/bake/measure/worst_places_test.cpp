@@ -35,7 +35,7 @@ std::vector<std::string> threeViews(const std::string& size) {
     return specs;
 }
 
-TEST(WorstPlaces, AreWhereAMapWasTamperedWith) {
+TEST(WorstPlaces, AreWhereAMapIsCorrupted) {
     const TriangleMesh sphere = makeIcosphere({1, 2, 3}, 1.0, 5);
     Collider collider = bakeSpecs(sphere, threeViews("64"));
     const Measured sound = measured(sphere, collider);
@@ -78,7 +78,7 @@ TEST(WorstPlaces, AreWhereAMapWasTamperedWith) {
     EXPECT_GT(found.places[0].share_percent + found.places[1].share_percent, 30.0);
 }
 
-TEST(WorstPlaces, OfTooFewTexelsAreBelowTheTexelOnAnyNumberOfThreads) {
+TEST(WorstPlaces, CoarseMapsCauseTexelErrorsDeterministically) {
     const TriangleMesh torus = makeTorusMesh(1.0, 0.3, 128, 64);
     const Collider collider = bakeSpecs(torus, threeViews("12"));
     const Measured found = measured(torus, collider);
@@ -100,7 +100,7 @@ TEST(WorstPlaces, OfTooFewTexelsAreBelowTheTexelOnAnyNumberOfThreads) {
     }
 }
 
-TEST(WorstPlaces, OfACavityAreUnseenAndACubeInItCuresThem) {
+TEST(WorstPlaces, UnseenCavityIsFixedByACube) {
     const TriangleMesh mesh = joined({makeBoxMesh({0, 0, 0}, {1, 1, 1}), makeIcosphere({0.2, 0, 0}, 0.5, 4)});
     std::vector<std::string> specs = threeViews("32");
     const Measured found = measured(mesh, bakeSpecs(mesh, specs));
@@ -118,7 +118,7 @@ TEST(WorstPlaces, OfACavityAreUnseenAndACubeInItCuresThem) {
     EXPECT_LT(cured.unseen_percent, 0.1);
 }
 
-TEST(WorstPlaces, BehindAPlateAreBehindASilhouette) {
+TEST(WorstPlaces, PlateCausesSilhouetteErrors) {
     // A plate 0.1 thick hovers 0.02 above a block. The view from above does not see into the gap; of the view from the
     // side, a texel of 0.25 holds it.
     const TriangleMesh mesh =
@@ -133,7 +133,7 @@ TEST(WorstPlaces, BehindAPlateAreBehindASilhouette) {
     EXPECT_NEAR(double{found.places[0].position.y}, 0.01, 0.011);
 }
 
-TEST(WorstPlaces, OfAnOpenShellAreCalledSo) {
+TEST(WorstPlaces, OpenShellIsNamed) {
     // A sphere that has lost its cap: most rays still find its inside, but the view from above looks in.
     const TriangleMesh sphere =
         without(makeIcosphere({0, 0, 0}, 1.0, 4), [](const glm::dvec3& p) { return p.y > 0.8; });
@@ -144,7 +144,7 @@ TEST(WorstPlaces, OfAnOpenShellAreCalledSo) {
     EXPECT_EQ(open.places[0].map, 0);
 }
 
-TEST(Sights, AWallAlongTheLinesOfSightIsUnseen) {
+TEST(Sights, WallParallelToTheViewIsUnseen) {
     // Four of a box's six faces are parallel to the one view.
     const TriangleMesh box = makeBoxMesh({0, 0, 0}, {1, 1, 1});
     for (const std::string& decode : {std::string(kPlanes), std::string()}) {

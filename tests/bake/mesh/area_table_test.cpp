@@ -13,7 +13,7 @@
 namespace relief::test {
 namespace {
 
-TEST(AreaTable, FindsTheTriangleOfAnyShare) {
+TEST(AreaTable, FindsTrianglesByAreaFraction) {
     std::mt19937_64 random(seedFrom(1));
     for (const TriangleMesh& mesh : {makeBoxMesh({0, 0, 0}, {1, 2, 3}), makeTorusMesh(1.0, 0.3, 60, 41)}) {
         const AreaTable areas(mesh);

@@ -9,7 +9,7 @@
 namespace relief::test {
 namespace {
 
-TEST(EmbreeMesh, ThousandsLiveAtOnce) {
+TEST(EmbreeMesh, ThousandsCoexist) {
     std::vector<MeshQuery> queries;
     for (int i = 0; i < 2500; ++i) {
         MeshQuery query =

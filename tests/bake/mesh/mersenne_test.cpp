@@ -9,7 +9,7 @@
 namespace relief {
 namespace {
 
-TEST(Mersenne64, GivesTheLibrarysNumbers) {
+TEST(Mersenne64, MatchesTheStandardLibrary) {
     for (const std::uint64_t seed : {std::uint64_t{0}, std::uint64_t{1}, std::uint64_t{5489},
                                      std::uint64_t{0x9e3779b97f4a7c15U}, ~std::uint64_t{0}}) {
         Mersenne64 ours(seed);

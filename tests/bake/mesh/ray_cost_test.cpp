@@ -10,7 +10,7 @@
 namespace relief::test {
 namespace {
 
-TEST(RayCost, OfABoxIsTwoOfItsFacesEachTwice) {
+TEST(RayCost, BoxCountsTwoFacesTwice) {
     // Each face is the box of both of its triangles, and a line crosses two faces.
     EXPECT_NEAR(boxesOnLine(makeBoxMesh({1, 2, 3}, {1, 2, 3})), 4.0, 1e-6);
     const TriangleMesh fine_ball = makeIcosphere({0, 0, 0}, 1.0, 5);
@@ -18,7 +18,7 @@ TEST(RayCost, OfABoxIsTwoOfItsFacesEachTwice) {
     EXPECT_EQ(affordableRays(fine_ball), 1.0);
 }
 
-TEST(RayCost, OfAFanIsMostOfItsTriangles) {
+TEST(RayCost, FanCountsMostTriangles) {
     constexpr unsigned kBlades = 2000;
     std::vector<glm::vec3> positions = {{0, 1, 0}};
     std::vector<glm::uvec3> triangles;

@@ -16,7 +16,7 @@ SurfacePart part(const glm::vec3& low, const glm::vec3& high, double area) {
     return made;
 }
 
-TEST(SurfaceParts, AStrayIsFarAndSmall) {
+TEST(SurfaceParts, OutliersAreFarAndSmall) {
     const SurfacePart body = part(glm::vec3(-5.0F), glm::vec3(5.0F), 600.0);
     const SurfacePart knob = part(glm::vec3(5.0F), glm::vec3(6.0F), 0.1);
     const SurfacePart stray = part(glm::vec3(1e6F, 0.0F, 0.0F), glm::vec3(1e6F, 1.0F, 1.0F), 0.5);
@@ -33,7 +33,7 @@ TEST(SurfaceParts, AStrayIsFarAndSmall) {
     EXPECT_TRUE(straysOf({body, part(glm::vec3(12.0F), glm::vec3(13.0F), 0.1)}).parts.empty());
 }
 
-TEST(SurfaceParts, LabelsCutPieces) {
+TEST(SurfaceParts, LabelsSplitPieces) {
     TriangleMesh mesh = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0));
     mesh.surface_names = {{3, "box", "wood"}, {3, "box", "glass"}};
     mesh.labels.assign(12, 0);

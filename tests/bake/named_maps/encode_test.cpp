@@ -10,7 +10,7 @@
 namespace relief::test {
 namespace {
 
-TEST(Encode, WritesWhatEncodeTexelWrites) {
+TEST(Encode, MatchesEncodeTexel) {
     const TriangleMesh mesh = makeIcosphere({0.1, 0.2, 0.3}, 0.7, 3);
     const RayScene scene = required(RayScene::build(mesh));
     for (const std::string text :

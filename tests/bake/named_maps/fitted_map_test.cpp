@@ -23,7 +23,7 @@ WrongShare wrongNear(const TriangleMesh& mesh, const Collider& collider) {
 /// No sampled point of the surface lies in front of the plane. Footprints whose rays run side by side and all meet a surface
 /// are searched in another way than those of which one runs askew, if by far less than matters, or misses: the first two find
 /// planes that are as good.
-TEST(PlaneFit, NoSampledSurfacePointLiesInFrontOfThePlaneWhicheverWayIsSearched) {
+TEST(PlaneFit, NoSampledPointIsInFrontOfThePlane) {
     std::mt19937 random(6);
     std::uniform_real_distribution<double> unit(-1.0, 1.0);
     PlaneFitOptions options{.reach = 0.05};
@@ -90,7 +90,7 @@ TEST(PlaneFit, FootprintWithoutSurfaceIsEmpty) {
     EXPECT_FALSE(fitSupportingPlane(std::vector<FootprintRay>(4, ray), nullptr, {}, ray, ray.origin, {}));
 }
 
-TEST(FittedMap, ATiltedFaceIsFoundToAQuantumEverywhere) {
+TEST(FittedMap, TiltedFaceIsExactToAQuantum) {
     // One face of a turned box, seen obliquely: away from the edges the plane is the face itself, but for the
     // normal's index (at most 0.65°, over half a texel) and the depth's quantum, both on the free side.
     const glm::dmat3 axes = rotation({0, 1, 0}, 25.0);
@@ -116,7 +116,7 @@ TEST(FittedMap, ATiltedFaceIsFoundToAQuantumEverywhere) {
 
 /// A box whose walls run through texels, not along their edges, seen along three of its edges: the map's rays never meet the
 /// walls. No point of the box is outside, and no point a texel away from it is inside.
-TEST(FittedMap, WallsSeenEdgeOnLoseNothingOfTheSolid) {
+TEST(FittedMap, WallsSeenEdgeOnLoseNoSolid) {
     const TriangleMesh mesh = makeBoxMesh({0, 0, 0}, {1.0, 0.7, 0.4}, glm::dmat3(1.0));
     const Collider collider = bakeSpecs(
         mesh, {"front-back:dir=-z,size=23x19,depth=unorm16,decode=plane,box=-1.2/-1.05/-0.4/1.3/1.15/0.4"});
@@ -139,7 +139,7 @@ TEST(FittedMap, WallsSeenEdgeOnLoseNothingOfTheSolid) {
 }
 
 /// Several maps are fitted, or traced, at the same time: each as it would be alone.
-TEST(FittedMap, MapsBakedTogetherAreAsAlone) {
+TEST(FittedMap, MapsBakedTogetherMatchSeparateBakes) {
     const TriangleMesh mesh = makeTorusMesh(1.0, 0.4, 48, 24);
     const std::vector<std::string> specs = {"front-back:dir=-z,size=40x52,depth=unorm16,decode=plane",
                                             "front-back:dir=1/2/3,size=61x33,depth=unorm16,decode=plane",
@@ -167,7 +167,7 @@ TEST(FittedMap, MapsBakedTogetherAreAsAlone) {
     }
 }
 
-TEST(FittedMap, SupportingPlanesHardlyEverCallAnInsidePointOutside) {
+TEST(FittedMap, SupportingPlanesRarelyLosePoints) {
     const TriangleMesh mesh = makeTorusMesh(1.0, 0.4, 64, 32);
     std::vector<MapSpec> specs;
     for (const char* const text :

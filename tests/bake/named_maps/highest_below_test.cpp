@@ -73,7 +73,7 @@ void expectHighest(const Points& points) {
     EXPECT_NEAR(heightBelow(points, slope.x, slope.y), highestOfAll(points), 1e-7 * extent);
 }
 
-TEST(HighestBelow, IsTheBestOfAllPlanesThroughThreePoints) {
+TEST(HighestBelow, IsTheBestPlaneThroughThreePoints) {
     std::mt19937_64 random(test::seedFrom(17));
     std::uniform_real_distribution<double> number(-1.0, 1.0);
     for (int round = 0; round < 200; ++round) {
@@ -88,7 +88,7 @@ TEST(HighestBelow, IsTheBestOfAllPlanesThroughThreePoints) {
     }
 }
 
-TEST(HighestBelow, LiesInAFlatSurfaceAndTouchesACurvedOne) {
+TEST(HighestBelow, MatchesFlatAndTouchesCurvedSurfaces) {
     const std::optional<glm::dvec2> flat =
         highestBelow(grid(4, [](int i, int j) { return 3.0 + 0.5 * i - 2.0 * j; }));
     EXPECT_LT(glm::distance(flat.value(), glm::dvec2(0.5, -2.0)), 1e-9);
@@ -98,7 +98,7 @@ TEST(HighestBelow, LiesInAFlatSurfaceAndTouchesACurvedOne) {
     EXPECT_LT(glm::length(hill.value()), 1e-9);
 }
 
-TEST(HighestBelow, PointsWithoutAreaSpanNoPlane) {
+TEST(HighestBelow, CollinearPointsSpanNoPlane) {
     EXPECT_FALSE(highestBelow({}));
     EXPECT_FALSE(highestBelow(Points{{0, 0, 1}}));
     EXPECT_FALSE(highestBelow(Points{{-1, 0, 1}, {1, 0, 2}}));

@@ -84,7 +84,7 @@ void addCovered(const std::array<Corner, 3>& t, std::int64_t x, std::int64_t y, 
     }
 }
 
-TEST(ScanConverter, MeetsWhatWholeNumbersSay) {
+TEST(ScanConverter, MatchesIntegerCoverage) {
     std::mt19937_64 random(seedFrom(3));
     std::uint64_t compared = 0;
     for (int round = 0; round < 60; ++round) {
@@ -145,7 +145,7 @@ TEST(ScanConverter, MeetsWhatWholeNumbersSay) {
     EXPECT_GT(compared, 10'000U);
 }
 
-TEST(ScanConverter, MeetsWhatRaysMeet) {
+TEST(ScanConverter, MatchesRays) {
     for (const TriangleMesh& mesh : {makeTorusMesh(1.0, 0.4, 90, 50), makeIcosphere({0.3, -0.2, 5.0}, 2.0, 4),
                                      makeBoxMesh({1, 2, 3}, {0.5, 2.0, 0.01}, rotation({1, 2, 3}, 40.0))}) {
         const RayScene scene = required(RayScene::build(mesh));
@@ -178,7 +178,7 @@ TEST(ScanConverter, MeetsWhatRaysMeet) {
     }
 }
 
-TEST(ScanConverter, OfSurfacesInOnePlaneTheOneThatFacesTheRayCounts) {
+TEST(ScanConverter, FrontFaceWinsInCoplanarSurfaces) {
     // Two squares back to back, in both orders.
     for (const bool turned : {false, true}) {
         TriangleMesh mesh = makePlane(0.0F, 1);
@@ -209,7 +209,7 @@ TEST(ScanConverter, OfSurfacesInOnePlaneTheOneThatFacesTheRayCounts) {
 
 /// Two of four columns that stand about an edge, diagonally: a ray that runs through the edge leaves the one solid and
 /// enters the other there, or passes between the two.
-TEST(ScanConverter, ThroughAnEdgeOfTwoSolidsARayStaysWhereItStarted) {
+TEST(ScanConverter, RayThroughSharedEdgeKeepsItsSide) {
     for (const bool starts_inside : {true, false}) {
         VoxelGrid grid({2, 2, 1});
         grid.set({0, 0, 0}, starts_inside);

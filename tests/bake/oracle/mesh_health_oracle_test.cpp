@@ -13,7 +13,7 @@ namespace {
 
 namespace pmp = CGAL::Polygon_mesh_processing;
 
-TEST(MeshHealthOracle, CountsAreCgals) {
+TEST(MeshHealthOracle, CountsMatchCgal) {
     const TemporaryFolder folder;
     const std::string unpack =
         "tar -xzf /usr/share/doc/libcgal-dev/data.tar.gz -C '" + folder.path().string() + "' data/meshes";

@@ -95,7 +95,7 @@ const std::vector<std::vector<std::string>> kSets = {
     {"float:dir=+z", "float:dir=+z,compare=greater"},
 };
 
-TEST(Oracle, ConvexSolidsAreWrongOnlyWithinTheBound) {
+TEST(Oracle, ConvexSolidsAreWithinTheBound) {
     for (const TriangleMesh& mesh :
          {makeIcosphere({0.3, -0.2, 0.1}, 0.8, 4),
           makeBoxMesh({0.1, 0.2, 0.3}, {1, 0.6, 0.4}, rotation({1, 2, 3}, 40.0))}) {
@@ -119,7 +119,7 @@ TEST(Oracle, ConvexSolidsAreWrongOnlyWithinTheBound) {
     EXPECT_LE(tally.farthest, boundOf(cube));
 }
 
-TEST(Oracle, ATorusIsNeverPenetratedBeyondTheBound) {
+TEST(Oracle, TorusPenetrationIsWithinTheBound) {
     const TriangleMesh mesh = makeTorusMesh(1.0, 0.35, 90, 45);
     std::vector<std::vector<std::string>> sets = kSets;
     sets.push_back({"cube"});                                                    // LESS, in the hole
@@ -133,7 +133,7 @@ TEST(Oracle, ATorusIsNeverPenetratedBeyondTheBound) {
     }
 }
 
-TEST(Oracle, SubBoxesNeverCallTheSolidFree) {
+TEST(Oracle, SubBoxesNeverLoseTheSolid) {
     // Volumes that cut the torus, whose rays may start inside it.
     const TriangleMesh mesh = makeTorusMesh(1.0, 0.35, 90, 45);
     const SurfaceMesh surface = toCgal(mesh);
@@ -168,7 +168,7 @@ TEST(Oracle, SubBoxesNeverCallTheSolidFree) {
 
 // The truth that accuracy is measured against: side by exact predicates, distance by another tree. Half of the points are
 // anywhere about the box, half within 1 % of its longest side of a vertex.
-TEST(Oracle, TruthIsCgals) {
+TEST(Oracle, TruthMatchesCgal) {
     const TriangleMesh bunny = required(importMesh("/usr/share/glmark2/models/bunny.obj"));
     for (const TriangleMesh& mesh :
          {bunny, makeBoxMesh({1000.0, -2000.0, 500.0}, {1.0, 2.0, 0.5}, rotation({1, 2, 3}, 33.0))}) {

@@ -88,14 +88,14 @@ void expectTheNearerFace(const Plate& plate, double beside = 0.0) {
 
 class PlateTest : public testing::TestWithParam<int> {};
 
-TEST_P(PlateTest, TheNearerFaceDecides) {
+TEST_P(PlateTest, NearerFaceDecides) {
     for (const std::uint64_t bytes : {64'000U, 256'000U}) {
         SCOPED_TRACE(bytes);
         expectTheNearerFace(Plate(GetParam(), bytes));
     }
 }
 
-TEST_P(PlateTest, PointsBesideAFaceHaveItsSideAndItsNormal) {
+TEST_P(PlateTest, PointsBesideAFaceHaveItsSideAndNormal) {
     const Plate plate(GetParam(), 512'000);
     std::mt19937 random(9);
     double turned = 0.0;
@@ -115,7 +115,7 @@ TEST_P(PlateTest, PointsBesideAFaceHaveItsSideAndItsNormal) {
 INSTANTIATE_TEST_SUITE_P(Degrees, PlateTest, testing::Values(0, 20, 35, 50, 60));
 
 // Octants beside a face had the coarse normal of the split cell above them, off by up to 1.6 degrees.
-TEST(DepthPlanes, FlatFacesHaveTheirNormalOnBothSides) {
+TEST(DepthPlanes, FlatFacesHaveExactNormalsOnBothSides) {
     const glm::dquat turn = glm::angleAxis(0.7, glm::normalize(glm::dvec3(1.0, 2.0, 3.0)));
     const glm::dvec3 half(5.0, 1.5, 5.0);
     const DepthMap map =
@@ -139,11 +139,11 @@ TEST(DepthPlanes, FlatFacesHaveTheirNormalOnBothSides) {
     EXPECT_LT(turned, 1.0);
 }
 
-TEST(DepthPlanes, LargeBudgetsAreExactToo) {
+TEST(DepthPlanes, LargeBudgetsAreExact) {
     expectTheNearerFace(Plate(30.0, 1'000'000));
 }
 
-TEST(DepthPlanes, TheWindingDoesNotMatter) {
+TEST(DepthPlanes, WindingDoesNotMatter) {
     TriangleMesh mesh = Plate::boxFromTo(-Plate::kHalf, Plate::kHalf, 30.0);
     for (std::size_t i = 0; i < mesh.triangles.size(); i += 3) {
         std::swap(mesh.triangles[i].y, mesh.triangles[i].z);
@@ -153,14 +153,14 @@ TEST(DepthPlanes, TheWindingDoesNotMatter) {
 
 // The ends of two boxes lie within the plate that they make up, and are no faces of it. Beside them all samples of a cell are
 // dropped, and it has no depth planes.
-TEST(DepthPlanes, FacesWithinAnotherBodyAreNoBoundary) {
+TEST(DepthPlanes, FacesInsideOtherSolidsAreIgnored) {
     const TriangleMesh two =
         joined({Plate::boxFromTo(-Plate::kHalf, 0.5, 30.0), Plate::boxFromTo(-0.5, Plate::kHalf, 30.0)});
     const std::vector<std::uint32_t> by_winding(two.triangles.size(), 0);
     expectTheNearerFace(Plate(30.0, 128'000, PreparedMesh::unionOf(two, by_winding)), 1.0);
 }
 
-TEST(MeanPlane, OfNothingGoesThroughTheMiddle) {
+TEST(MeanPlane, EmptySetGivesTheMiddle) {
     const CellPlane plane = meanPlane(std::vector<ClippedTriangle>(2));
     EXPECT_EQ(plane.offset, 0.0);
     EXPECT_EQ(glm::length(plane.normal), 1.0);

@@ -102,7 +102,7 @@ double wrongVolume(const MeshQuery& query, const DepthMap& map, int points) {
     return size.x * size.y * size.z * wrong / points;
 }
 
-TEST(PatchPlanner, ItsCurveHasTheErrorsOfTheTreesThatItBakes) {
+TEST(PatchPlanner, CurveMatchesTheErrorsOfBakedTrees) {
     const MeshQuery query = queryOf(makeTorusMesh(1.0, 0.35, 48, 32));
     const ErrorCurve curve = planErrors(query, {.bytes = 20'000});
     ASSERT_GE(curve.size(), 3U);
@@ -120,7 +120,7 @@ TEST(PatchPlanner, ItsCurveHasTheErrorsOfTheTreesThatItBakes) {
     EXPECT_TRUE(onThreads(1, [&] { return planErrors(query, {.bytes = 20'000}); }) == curve);
 }
 
-TEST(CellColumns, AgreeWithRaysThroughTheMesh) {
+TEST(CellColumns, MatchRaysThroughTheMesh) {
     expectColumnsAgree(queryOf(makeTorusMesh(1.0, 0.4, 48, 24)), 0);
     // Even numbers, in whose planes the cells' faces would lie.
     expectColumnsAgree(queryOf(makeBoxMesh({0, 0, 0}, {1, 0.5, 0.25})), 0);
@@ -130,7 +130,7 @@ TEST(CellColumns, AgreeWithRaysThroughTheMesh) {
     expectColumnsAgree(queryOf(required(balls).mesh), 0);
 }
 
-TEST(CellColumns, ClippedTrianglesAddUpToTheirArea) {
+TEST(CellColumns, ClippedTrianglesKeepTheirArea) {
     MersenneRandom random(3);
     for (int i = 0; i < 500; ++i) {
         // Of the cubes of a grid of 3³, which hold all of it.
@@ -151,7 +151,7 @@ TEST(CellColumns, ClippedTrianglesAddUpToTheirArea) {
     }
 }
 
-TEST(PatchPlanner, FacesOfABoxAreExactButForTheCodes) {
+TEST(PatchPlanner, BoxFacesAreExactToQuantization) {
     const glm::dmat3 axes = rotation({1, 2, 0}, 35.0);
     const MeshQuery query = queryOf(makeBoxMesh({0, 0, 0}, {1, 1, 1}, axes));
     const DepthMap map = checked(query, 64'000);
@@ -168,7 +168,7 @@ TEST(PatchPlanner, FacesOfABoxAreExactButForTheCodes) {
     }
 }
 
-TEST(PatchPlanner, FlatShapesTakeTheBytesThatTheyNeed) {
+TEST(PatchPlanner, FlatShapesUseOnlyTheBytesTheyNeed) {
     // Beside a large box a small one, which is judged by its own size.
     std::vector<TriangleMesh> parts = {makeBoxMesh({0, 0, 0}, {1, 1, 1}),
                                        makeBoxMesh({1.5, 0, 0}, {0.01, 0.01, 0.01})};
@@ -203,7 +203,7 @@ TriangleMesh divided(const TriangleMesh& mesh) {
     return fine;
 }
 
-TEST(PatchPlanner, DividedFacesTakeNoMoreBytesThanWhole) {
+TEST(PatchPlanner, SubdividedFacesCostNoExtraBytes) {
     const TriangleMesh box = makeBoxMesh({0, 0, 0}, {1, 1, 1});
     const DepthMap whole = checked(queryOf(box), 2'000'000);
     const MeshQuery query = queryOf(divided(divided(box)));
@@ -214,7 +214,7 @@ TEST(PatchPlanner, DividedFacesTakeNoMoreBytesThanWhole) {
 }
 
 // As exporters write meshes, with six decimals: normals of its 49,152 triangles are up to 2e-4 apart.
-TEST(FlatFaces, ARoundedFaceIsOne) {
+TEST(FlatFaces, RoundedCoordinatesStayFlat) {
     TriangleMesh box = makeBoxMesh({0, 0, 0}, glm::dvec3(0.5), rotation({1, 2, 3}, 40.0));
     for (int i = 0; i < 6; ++i) {
         box = divided(box);
@@ -227,7 +227,7 @@ TEST(FlatFaces, ARoundedFaceIsOne) {
     }
 }
 
-TEST(PatchPlanner, ThinWallsAndNarrowGapsAreWhole) {
+TEST(PatchPlanner, ThinWallsAndNarrowGapsArePreserved) {
     // Both sides of a wall lie in one cell, and so thin a wall has too little volume to be worth a cell of its own size.
     const glm::dmat3 axes = rotation({1, 2, 0}, 35.0);
     for (const double half : {0.01, 0.001}) {
@@ -252,7 +252,7 @@ TEST(PatchPlanner, ThinWallsAndNarrowGapsAreWhole) {
     }
 }
 
-TEST(PatchPlanner, BallsErrorsFallWithTheBytes) {
+TEST(PatchPlanner, BallsErrorsFallWithBytes) {
     const MeshQuery query = queryOf(makeIcosphere({0, 0, 0}, 1.0, 5));
     double before = 100.0;
     for (const std::uint64_t bytes : {4'000ULL, 16'000ULL, 64'000ULL, 256'000ULL}) {
@@ -272,7 +272,7 @@ DepthMap byTexel(const MeshQuery& query, double texel) {
     return std::move(tree.map);
 }
 
-TEST(PatchTexel, ABallIsNowhereOffByMoreThanTheTexelAllows) {
+TEST(PatchTexel, BallErrorsAreBelowTheTexel) {
     // Of its triangles themselves, which are up to 3e-5 within the ball.
     const MeshQuery query = queryOf(makeIcosphere({0.1, 0.2, 0.3}, 1.0, 7));
     double before = 1.0;
@@ -296,7 +296,7 @@ TEST(PatchTexel, ABallIsNowhereOffByMoreThanTheTexelAllows) {
     }
 }
 
-TEST(PatchTexel, AThinHandleOfALargePlateIsThere) {
+TEST(PatchTexel, ThinHandleOfALargePlateIsPreserved) {
     // A bar of two texels, on two legs, on a plate a hundred times as long as the bar: its volume is 5e-6 of the plate's.
     constexpr double kTexel = 0.01;
     struct Box {
@@ -339,7 +339,7 @@ TEST(PatchTexel, AThinHandleOfALargePlateIsThere) {
     EXPECT_LT(map.texels.size(), byTexel(plain, kTexel).texels.size() + 55'000);
 }
 
-TEST(PatchTexel, WithinABudgetIsAsFineAsThatAllows) {
+TEST(PatchTexel, BudgetLimitsTheTexel) {
     const MeshQuery query = queryOf(makeIcosphere({0, 0, 0}, 1.0, 5));
     PatchOptions options{.bytes = 20'000, .texel = 0.001, .coarsen = true};
     const PatchTree tree = required(bakePatches(query, options));
@@ -367,7 +367,7 @@ TEST(PatchTexel, WithinABudgetIsAsFineAsThatAllows) {
     EXPECT_LE(byTexel(query, 100.0).texels.size(), 256U) << "one cell";
 }
 
-TEST(PatchPlanner, InsidesThatNoViewSeesAreThere) {
+TEST(PatchPlanner, UnseenInteriorsArePreserved) {
     // A ball in a hollow ball: no ray from outside meets the inner surfaces.
     const MeshQuery query =
         queryOf(joined({makeIcosphere({0, 0, 0}, 1.0, 4), reversed(makeIcosphere({0, 0, 0}, 0.8, 4)),
@@ -375,7 +375,7 @@ TEST(PatchPlanner, InsidesThatNoViewSeesAreThere) {
     EXPECT_LT(wrongPercent(query, checked(query, 250'000), 40'000), 0.4);
 }
 
-TEST(PatchPlanner, PartsBetweenTheLinesAreFound) {
+TEST(PatchPlanner, SmallPartsBetweenLinesAreFound) {
     // Of a thousandth of the longest side, where the lines of the largest cells are more than that apart.
     const MeshQuery query =
         queryOf(joined({makeIcosphere({0, 0, 0}, 1.0, 4), makeIcosphere({40, 0.3, 0.1}, 0.02, 2)}));
@@ -385,13 +385,13 @@ TEST(PatchPlanner, PartsBetweenTheLinesAreFound) {
     EXPECT_LT(vote(map, {0.5F, 0.5F, 0.5F})->distance, 0.0F);
 }
 
-TEST(PatchPlanner, BytesAreKeptDownToTheLeast) {
+TEST(PatchPlanner, SmallestBudgetIsKept) {
     const DepthMap map = checked(queryOf(makeTorusMesh(1.0, 0.4, 48, 24)), kPatchBytesMin);
     EXPECT_LT(vote(map, {1, 0, 0})->distance, 0.0F);
     EXPECT_GT(vote(map, {0, 0, 1.3F})->distance, 0.0F);
 }
 
-TEST(PatchPlanner, SameOnAnyNumberOfThreads) {
+TEST(PatchPlanner, IsDeterministic) {
     const MeshQuery query = queryOf(makeTorusMesh(1.0, 0.4, 48, 24));
     const auto made = [&] {
         return std::vector<DepthMap>{bakePatches(query, {.bytes = 60'000})->map, byTexel(query, 0.01)};

@@ -103,7 +103,7 @@ std::size_t expectSameField(const Tree& tree, const std::vector<glm::vec3>& poin
     return same;
 }
 
-TEST(PatchTiles, AllRootsAreTheTreeItself) {
+TEST(PatchTiles, OneTileEqualsTheTree) {
     const TriangleMesh plates = joined({makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0, 0.01, 0.7)),
                                         makeIcosphere(glm::dvec3(0.3, 0.9, 0.1), 0.4, 4)});
     for (const PatchOptions& options :
@@ -113,7 +113,7 @@ TEST(PatchTiles, AllRootsAreTheTreeItself) {
     }
 }
 
-TEST(PatchTiles, HillsAreTheWholeTreesAtSeamsToo) {
+TEST(PatchTiles, HillsMatchTheWholeTreeAtSeams) {
     const TriangleMesh mesh = makeHills(200);
     const Tree tree = cut(mesh, {.bytes = 400'000}, {.bytes = 60'000});
     ASSERT_GE(tree.tiles.size(), 8U);
@@ -132,7 +132,7 @@ TEST(PatchTiles, HillsAreTheWholeTreesAtSeamsToo) {
     EXPECT_LT(wrong, 500);
 }
 
-TEST(PatchTiles, ASphereInEightIsRoundAtSeamsToo) {
+TEST(PatchTiles, SphereInEightTilesMatchesTheClosedForm) {
     const TriangleMesh mesh = makeIcosphere(glm::dvec3(3.0, -2.0, 1.0), 50.0, 6);
     for (const PatchOptions& options :
          {PatchOptions{.bytes = 200'000},
@@ -163,7 +163,7 @@ TEST(PatchTiles, ASphereInEightIsRoundAtSeamsToo) {
     expectSameField(tree, pointsOf(tree, mesh.bounds, 20'000));
 }
 
-TEST(PatchTiles, KeepToTheirLimits) {
+TEST(PatchTiles, KeepTheirLimits) {
     const DepthMap whole = bakePatches(queryOf(makeHills(60)), {.bytes = 200'000})->map;
     EXPECT_EQ(cutIntoTiles(whole, {.bytes = 200'000}).size(), 1U);
     EXPECT_EQ(cutIntoTiles(whole, {.bytes = 20'000, .most = 4}).size(), 4U);
@@ -178,7 +178,7 @@ TEST(PatchTiles, KeepToTheirLimits) {
     EXPECT_LE(total, 225'000U);
 }
 
-TEST(PatchTiles, RootsAreSmallByTexelToo) {
+TEST(PatchTiles, TexelModeHasSmallRoots) {
     const TriangleMesh mesh = makeHills(60);
     const PatchOptions plain{.bytes = kPatchBytesMax, .texel = 0.5};
     PatchOptions small = plain;

@@ -41,7 +41,7 @@ std::string wordsOf(const std::string& options) {
     return line.substr(std::string("relief bake m -o o").size());
 }
 
-TEST(BakeRequest, EveryFieldReadsTheWordsThatItIsWrittenAs) {
+TEST(BakeRequest, EveryFieldRoundTrips) {
     BakeRequest request;
     for (const std::string field :
          {"map=cube:size=16,compare=less", "decode=projected", "depth=half", "paper=true", "budget=1.5MB",
@@ -67,7 +67,7 @@ TEST(BakeRequest, EveryFieldReadsTheWordsThatItIsWrittenAs) {
     }
 }
 
-TEST(BakeRequest, WrongValuesNameTheOptionAndTheCure) {
+TEST(BakeRequest, ErrorsNameTheOptionAndTheFix) {
     for (const auto& [name, word, begin] :
          {std::tuple{"budget", "much", "--budget is 'much' but must be a number of bytes"},
           std::tuple{"max_error", "-1", "--max-error is '-1' but must be a percentage, such as 1.5"},
@@ -84,7 +84,7 @@ TEST(BakeRequest, WrongValuesNameTheOptionAndTheCure) {
     }
 }
 
-TEST(BakeRequest, LengthsMayHaveAUnitBehindThem) {
+TEST(BakeRequest, LengthsAcceptUnits) {
     for (const auto& [word, metres] :
          {std::pair("1cm", 0.01F), {"0.01", 0.01F}, {"2.5 mm", 0.0025F}, {"3m", 3.0F}, {"0.5km", 500.0F}}) {
         BakeRequest request;
@@ -98,7 +98,7 @@ TEST(BakeRequest, LengthsMayHaveAUnitBehindThem) {
     }
 }
 
-TEST(BakeRequest, RulesAcrossFieldsAreOneFunction) {
+TEST(BakeRequest, CheckRejectsConflictingFields) {
     const auto fault = [](const std::vector<std::pair<std::string, std::string>>& words) {
         BakeRequest request;
         for (const auto& [name, word] : words) {
@@ -123,7 +123,7 @@ TEST(BakeRequest, RulesAcrossFieldsAreOneFunction) {
     EXPECT_TRUE(fault({{"clips", "walk.glb"}}).starts_with("--clips has no effect without --animated"));
 }
 
-TEST(RecordedBake, ReadsWhatBakeWrites) {
+TEST(RecordedBake, ReadsRecordsOfBake) {
     const RecordedBake bake = recorded(
         "--map front-back:dir=+z,size=95x90,depth=unorm16,decode=plane,box=tight "
         "--map cube:size=6,compare=less,decode=plane,box=0/0/0/1/1/1 --quality best --prefer inside "
@@ -146,7 +146,7 @@ TEST(RecordedBake, ReadsWhatBakeWrites) {
     EXPECT_EQ(wordsOf("--quality normal"), "");
 }
 
-TEST(RecordedBake, IsOneCommandToAShell) {
+TEST(RecordedBake, IsOneShellCommand) {
     for (const char* options :
          {"--unit $(reboot)", "--prefer ;reboot", "`reboot` x", "--unit mm;reboot", "--up '+z",
           "--map cube:size=6|reboot", "--unit \"mm\"", "x > file", "--unit a\tb\\", "--unit ~/x",
@@ -167,7 +167,7 @@ TEST(RecordedBake, IsOneCommandToAShell) {
 }
 
 // In a container and in its text.
-TEST(RecordedBake, NamesSurviveTheRecord) {
+TEST(RecordedBake, NamesRoundTrip) {
     std::string all;
     for (char c = ' '; c < '\x7f'; ++c) {
         all += c;
@@ -197,7 +197,7 @@ TEST(RecordedBake, NamesSurviveTheRecord) {
     EXPECT_TRUE(back.provenance.optionsText().ends_with(" --as %41=terrain"));
 }
 
-TEST(RecordedBake, KnowsIfVoidsAreFull) {
+TEST(RecordedBake, RecordsWhetherVoidsAreFilled) {
     const auto checkedVoids = [](std::optional<VoidsAs> voids, bool forget) {
         BakeRequest request;
         request.budget = 20'000;
@@ -218,7 +218,7 @@ TEST(RecordedBake, KnowsIfVoidsAreFull) {
     EXPECT_EQ(checkedVoids({}, true), 0U);  // as older versions baked it
 }
 
-TEST(RecordedBake, MakesTheSolidThatWasBaked) {
+TEST(RecordedBake, ReproducesTheBakedSolid) {
     TriangleMesh box = makeBoxMesh({0, 0, 0}, {1, 1, 1});
     box.triangles.pop_back();
     const auto solid = [&](const char* options) { return makeSolid(recorded(options).request, box); };
@@ -233,7 +233,7 @@ TEST(RecordedBake, MakesTheSolidThatWasBaked) {
     EXPECT_FALSE(repairedSolid(recorded("--repair wrap=0.001").request, box));
 }
 
-TEST(Director, BakesTheRestPoseOfAMeshThatMoves) {
+TEST(Director, BakesTheRestPoseOfAnAnimatedMesh) {
     // A cube whose left half is wound inwards, on a node that moves.
     const std::string document = R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],)"
                                  R"("nodes":[{"name":"box","mesh":0,"translation":[0,0,5]}],)"
@@ -306,7 +306,7 @@ TEST(Director, BakesAMeshInMemory) {
     EXPECT_FALSE(bake(request, {}, makeBoxMesh({0, 0, 0}, {1, 1, 1})));
 }
 
-TEST(Director, WarnsWhereTheGradeIsNotGood) {
+TEST(Director, WarnsIfTheGradeIsNotGood) {
     // A lattice of four by four rods.
     std::vector<TriangleMesh> rods;
     for (int i = 0; i < 4; ++i) {
@@ -327,7 +327,7 @@ TEST(Director, WarnsWhereTheGradeIsNotGood) {
     }
 }
 
-TEST(Director, AdvisesNothingButTheOriginWhereFloatsAreCoarse) {
+TEST(Director, AdvisesOnlyMovingTheOriginIfFloatsAreTooCoarse) {
     const TriangleMesh mesh = moved(makeIcosphere({0, 0, 0}, 1.0, 3),
                                     [](const glm::dvec3& p) { return p + glm::dvec3(4e5, 0.0, 8e5); });
     BakeRequest request;
@@ -347,7 +347,7 @@ TEST(Director, AdvisesNothingButTheOriginWhereFloatsAreCoarse) {
     EXPECT_FALSE(coarseFloatsWarning(makeIcosphere({0, 0, 0}, 1.0, 1)));
 }
 
-TEST(ShellWord, IsOneWordToAShell) {
+TEST(ShellWord, IsOneShellWord) {
     EXPECT_EQ(shellWord("a/b-1.obj"), "a/b-1.obj");
     EXPECT_EQ(shellWord("my mesh.obj"), "'my mesh.obj'");
     EXPECT_EQ(shellWord("it's.obj"), "'it'\\''s.obj'");

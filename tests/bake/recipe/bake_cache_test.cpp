@@ -49,7 +49,7 @@ class BakeCache : public testing::Test {
     BakeCacheEntry entry_;
 };
 
-TEST_F(BakeCache, NoLinkIsFollowed) {
+TEST_F(BakeCache, LinksAreNotFollowed) {
     const fs::path elsewhere = folder_ / "elsewhere";
     fs::create_directory(elsewhere);
     for (const bool dangling : {false, true}) {
@@ -69,7 +69,7 @@ TEST_F(BakeCache, NoLinkIsFollowed) {
     }
 }
 
-TEST_F(BakeCache, EveryChangeIsSeen) {
+TEST_F(BakeCache, EveryChangeIsDetected) {
     EXPECT_EQ(why(), "up to date");
     fs::last_write_time(folder_ / "m.obj", fs::file_time_type::clock::now() + std::chrono::hours(1));
     EXPECT_EQ(why(), "up to date") << "times are not looked at";
@@ -99,14 +99,14 @@ TEST_F(BakeCache, EveryChangeIsSeen) {
     EXPECT_EQ(why(), "the mesh is a different file");
 }
 
-TEST_F(BakeCache, APipeIsNoInput) {
+TEST_F(BakeCache, PipesAreNotInputs) {
     fs::remove(folder_ / "m.bin");
     ASSERT_EQ(::mkfifo((folder_ / "m.bin").c_str(), 0600), 0);
     EXPECT_EQ(why(), "'m.bin' changed") << "and nobody waits for its writer";
     EXPECT_FALSE(hashOfFile("/dev/zero"));
 }
 
-TEST_F(BakeCache, AWorldIsUpToDateWithAllItsContainers) {
+TEST_F(BakeCache, WorldIsUpToDateOnlyWithAllContainers) {
     fs::create_directory(folder_ / "w");
     for (const char* file : {"w/world.json", "w/a.relief", "w/b.relief"}) {
         put(file, file);
@@ -129,7 +129,7 @@ TEST_F(BakeCache, AWorldIsUpToDateWithAllItsContainers) {
     EXPECT_EQ(*loadBakeCache(folder_), (BakeCacheEntries{{job_.output, entry_}}));
 }
 
-TEST_F(BakeCache, AFolderIsTheNamesInIt) {
+TEST_F(BakeCache, FolderHashCoversFileNames) {
     fs::create_directory(folder_ / "parts");
     put("parts/a.obj", "a");
     const auto now = [&] { return hashOfInput(folder_ / "parts"); };
@@ -150,7 +150,7 @@ TEST_F(BakeCache, AFolderIsTheNamesInIt) {
     EXPECT_FALSE(hashOfInput(folder_ / "gone"));
 }
 
-TEST_F(BakeCache, ReadsWhatItWrites) {
+TEST_F(BakeCache, RoundTrips) {
     EXPECT_TRUE(loadBakeCache(folder_)->empty());
     ASSERT_TRUE(updateBakeCache(folder_, {{"m.relief", entry_}}));
     put("n.relief", "n");
@@ -162,7 +162,7 @@ TEST_F(BakeCache, ReadsWhatItWrites) {
         << "both runs' entries, without the output that is gone";
 }
 
-TEST_F(BakeCache, ManyWritersLoseNothing) {
+TEST_F(BakeCache, ConcurrentWritersLoseNothing) {
     std::vector<std::jthread> writers;
     for (int w = 0; w < 8; ++w) {
         writers.emplace_back([this, w] {
@@ -177,7 +177,7 @@ TEST_F(BakeCache, ManyWritersLoseNothing) {
     EXPECT_EQ(required(loadBakeCache(folder_)).size(), 64U);
 }
 
-TEST_F(BakeCache, WhatIsNoCacheIsRefused) {
+TEST_F(BakeCache, InvalidCachesAreRejected) {
     const std::string good = bakeCacheText({{"m.relief", entry_}});
     ASSERT_TRUE(parseBakeCache(good));
     const auto replaced = [&](const std::string& from, const std::string& to) {

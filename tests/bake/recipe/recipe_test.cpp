@@ -56,7 +56,7 @@ TEST(Recipe, MergesDefaultsKeyByKey) {
 }
 
 /// Recipes, and each of their assets: whether it is a world, and its arguments.
-TEST(Recipe, DefaultsThatDoNotGoWithAnAssetAreNoneOfIt) {
+TEST(Recipe, DefaultsThatConflictWithAnAssetAreDropped) {
     const std::string defaults = "[defaults]\noutput = '{stem}.relief'\n";
     const std::vector<std::pair<std::string, std::vector<std::pair<bool, Arguments>>>> recipes = {
         // Otherwise an asset could not have patches beside defaults that name maps, nor the other way round.
@@ -89,7 +89,7 @@ TEST(Recipe, DefaultsThatDoNotGoWithAnAssetAreNoneOfIt) {
     }
 }
 
-TEST(Recipe, SaysWhatIsWrongAndWhere) {
+TEST(Recipe, ErrorsNameTheCauseAndTheLine) {
     struct Case {
         std::string text;
         const char* says;
@@ -177,7 +177,7 @@ class RecipeJobsTest : public testing::Test {
     fs::path folder_ = temporary_.path() / "in";
 };
 
-TEST_F(RecipeJobsTest, FindsFilesInOrderAndNamesTheirOutputs) {
+TEST_F(RecipeJobsTest, FindsFilesInOrderAndNamesOutputs) {
     const RecipeJobs found = required(
         jobs("[defaults]\noutput = 'baked/{dir}/{stem}.relief'\n"
              "[[asset]]\nmesh = ['hill.off', '**/*.obj']\nexclude = '**/b.*'\n"
@@ -196,7 +196,7 @@ TEST_F(RecipeJobsTest, FindsFilesInOrderAndNamesTheirOutputs) {
     EXPECT_EQ(required(elsewhere).jobs[0].output_path, folder_ / "out/hill.relief");
 }
 
-TEST_F(RecipeJobsTest, APatternThatMatchesNothingIsAError) {
+TEST_F(RecipeJobsTest, PatternWithoutMatchesIsAnError) {
     fails("[[asset]]\nmesh = 'rock/*.obj'\noutput = '{stem}.relief'\n", "'rock/*.obj' matches no file");
     fails("[[asset]]\nmesh = 'rocks'\noutput = '{stem}.relief'\n", "'rocks' matches no file");
     const auto found =
@@ -204,7 +204,7 @@ TEST_F(RecipeJobsTest, APatternThatMatchesNothingIsAError) {
     EXPECT_TRUE(found.jobs.empty());
 }
 
-TEST_F(RecipeJobsTest, AWorldHasItsFolderForItself) {
+TEST_F(RecipeJobsTest, WorldOwnsItsFolder) {
     const RecipeJobs found =
         required(jobs("[[asset]]\nmesh = 'ro*/'\noutput = 'w/{stem}/world.json'\n"
                       "[[asset]]\nmesh = 'hill.off'\noutput = 'w/hill.relief'\n"));
@@ -225,7 +225,7 @@ TEST_F(RecipeJobsTest, AWorldHasItsFolderForItself) {
     EXPECT_TRUE(jobs(level + "[[asset]]\nmesh = 'hill.off'\noutput = 'wx/world.json'\n"));
 }
 
-TEST_F(RecipeJobsTest, OutputsCollideWithNothing) {
+TEST_F(RecipeJobsTest, OutputCollisionsAreErrors) {
     const std::string rocks = "[[asset]]\nmesh = '**/a.obj'\n";
     fails(rocks + "output = '{stem}.relief'\n",
           "'rocks/a.obj' and the bake of 'rocks/deep/a.obj' would both write 'a.relief'");
@@ -246,7 +246,7 @@ TEST_F(RecipeJobsTest, OutputsCollideWithNothing) {
     }
 }
 
-TEST_F(RecipeJobsTest, NothingOutsideOfTheFoldersIsReached) {
+TEST_F(RecipeJobsTest, PathsOutsideTheFoldersAreRejected) {
     const auto mesh = [](const std::string& name) {
         return "[[asset]]\nmesh = '" + name + "'\noutput = '{stem}.relief'\n";
     };
@@ -274,7 +274,7 @@ TEST_F(RecipeJobsTest, NothingOutsideOfTheFoldersIsReached) {
           "clips '../p.glb' leads out of the recipe's folder");
 }
 
-TEST_F(RecipeJobsTest, FilesOfOtherKindsAreNotReplaced) {
+TEST_F(RecipeJobsTest, ForeignFilesAreNotReplaced) {
     RecipeRun run;
     run.recipe = folder_ / "r.toml";
     run.output_folder = folder_;
@@ -308,7 +308,7 @@ TEST_F(RecipeJobsTest, FilesOfOtherKindsAreNotReplaced) {
         << "the last one was made by a bake, and is damaged";
 }
 
-TEST(RecipeShards, EveryOutputIsInExactlyOne) {
+TEST(RecipeShards, EveryOutputIsInExactlyOneShard) {
     for (const std::uint64_t count : {1, 2, 7, 64}) {
         std::vector<int> sizes(count, 0);
         for (int i = 0; i < 1000; ++i) {

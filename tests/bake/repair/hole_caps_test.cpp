@@ -68,7 +68,7 @@ void expectKept(const TriangleMesh& mesh) {
     EXPECT_EQ(same.positions, mesh.positions);
 }
 
-TEST(OddEdges, OpenEdgesRunAsTheirTriangle) {
+TEST(OddEdges, OpenEdgesFollowTheirTriangle) {
     const TriangleMesh box = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0));
     EXPECT_TRUE(oddEdges(edgesOf(box)).empty());
     TriangleMesh open = box;
@@ -91,7 +91,7 @@ TEST(OddEdges, EqualPositionsAreOneVertex) {
     EXPECT_TRUE(oddEdges(edgesOf(ball)).empty());
 }
 
-TEST(HoleCaps, BallWithACutTopIsASolid) {
+TEST(HoleCaps, BallWithoutItsTopBecomesSolid) {
     const TriangleMesh mesh = makeCutBall(0.8);
     expectClosed(mesh, 1);
     const TriangleMesh closed = closedBy(mesh);
@@ -102,7 +102,7 @@ TEST(HoleCaps, BallWithACutTopIsASolid) {
     EXPECT_FALSE(query.inside({0.0F, 0.9F, 0.0F}));
 }
 
-TEST(HoleCaps, ThreeEdgesAreClosedByOneTriangle) {
+TEST(HoleCaps, TriangularHolesGetOneTriangle) {
     // Two triangles of an icosahedron that share only one vertex: two holes.
     TriangleMesh mesh = makeIcosphere(glm::dvec3(0.0), 1.0, 0);
     std::erase_if(mesh.triangles,
@@ -111,7 +111,7 @@ TEST(HoleCaps, ThreeEdgesAreClosedByOneTriangle) {
     EXPECT_EQ(closedBy(mesh).cap_triangles, 2U);
 }
 
-TEST(HoleCaps, HolesThatMeetInTwoVerticesKeepTheWinding) {
+TEST(HoleCaps, HolesSharingTwoVerticesKeepTheWinding) {
     // Round both ends of an edge only the edge's own two triangles are left, whose tips then belong to both
     // holes: a walk may go on from there in either direction.
     const TriangleMesh ball = makeIcosphere(glm::dvec3(0.0), 1.0, 4);
@@ -130,7 +130,7 @@ TEST(HoleCaps, HolesThatMeetInTwoVerticesKeepTheWinding) {
     }
 }
 
-TEST(HoleCaps, CentroidInLineWithEdges) {
+TEST(HoleCaps, CentroidMayBeCollinearWithEdges) {
     // A shaft whose section is two rectangles side by side, one farther up: point-symmetric, and two edges
     // lie in line with the centre.
     const glm::vec2 section[] = {{-2, -1}, {0, -1}, {0, -3}, {2, -3}, {2, 1}, {0, 1}, {0, 3}, {-2, 3}};
@@ -154,7 +154,7 @@ TEST(HoleCaps, CentroidInLineWithEdges) {
     EXPECT_LT(glm::length(apex - glm::vec3(0.0F, 20.0F, 0.0F)), 1e-3F);
 }
 
-TEST(HoleCaps, EdgeAgainstTwoShorterOnes) {
+TEST(HoleCaps, ClosesTJunctions) {
     // A box one of whose triangles has a vertex more in the middle of an edge, where its neighbour has none:
     // a hole without any area.
     TriangleMesh mesh = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0));
@@ -168,12 +168,12 @@ TEST(HoleCaps, EdgeAgainstTwoShorterOnes) {
     EXPECT_NEAR(volume(closedBy(mesh)), 8.0, 1e-5);
 }
 
-TEST(HoleCaps, ClosedMeshesStay) {
+TEST(HoleCaps, ClosedMeshesAreUnchanged) {
     expectKept(makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0), rotation({1, 2, 3}, 25)));
     expectKept(makeTorusMesh(1.0, 0.3, 24, 12));
 }
 
-TEST(HoleCaps, SheetsTerrainsAndBowlsStay) {
+TEST(HoleCaps, SheetsTerrainsAndBowlsStayOpen) {
     // Turned any way: the box is no longer flat, and of the seven directions of MeshQuery::inside always more
     // go to one side.
     for (const glm::dvec3& axis : {glm::dvec3(1, 0, 0), glm::dvec3(0, 0, 1), glm::dvec3(1, 2, 3)}) {
@@ -193,7 +193,7 @@ TEST(HoleCaps, SheetsTerrainsAndBowlsStay) {
     }
 }
 
-TEST(HoleCaps, PatchesWhoseSeamsDoNotMeetStay) {
+TEST(HoleCaps, DisconnectedTrianglesAreNotCapped) {
     // Every triangle of a ball is drawn in a little: caps would be lids upon the triangles themselves.
     const TriangleMesh ball = makeIcosphere(glm::dvec3(0.0), 1.0, 3);
     std::vector<glm::vec3> positions;
@@ -211,7 +211,7 @@ TEST(HoleCaps, PatchesWhoseSeamsDoNotMeetStay) {
     expectKept(mesh);
 }
 
-TEST(HoleCaps, EnclosureOfKnownShapes) {
+TEST(HoleCaps, EnclosureMatchesClosedForms) {
     const Enclosure ball = measureEnclosure(queryOf(makeIcosphere(glm::dvec3(0.0), 1.0, 4)));
     EXPECT_EQ(ball.one_sided, 1.0);
     EXPECT_NEAR(ball.agreement, 1.0, 1e-3);
@@ -225,7 +225,7 @@ TEST(HoleCaps, EnclosureOfKnownShapes) {
     EXPECT_NEAR(half.agreement, 0.8, 0.015);
 }
 
-TEST(HoleCaps, TheBakeIsOfTheSolidAndNamesTheSource) {
+TEST(HoleCaps, BakeUsesTheSolidAndNamesTheSource) {
     const TriangleMesh mesh = makeCutBall(0.8);
     const std::vector<TruthPoint> near = sampleNear(queryOf(mesh), {.samples = 20'000});
     const auto falseOutside = [&](const TriangleMesh& baked) {

@@ -51,7 +51,7 @@ TriangleMesh makeMoebiusStrip(unsigned around, unsigned across) {
     return finished(positions, triangles);
 }
 
-TEST(MeshHealth, ClosedSolidsHaveNoFault) {
+TEST(MeshHealth, ClosedSolidsHaveNoFaults) {
     for (const TriangleMesh& mesh :
          {unitBox({1, 2, 3}), makeIcosphere({0, 0, 0}, 1.0, 3), makeTorusMesh(1, 0.3, 20, 9)}) {
         const MeshHealth health = inspectMesh(mesh);
@@ -123,7 +123,7 @@ Collider bakedOutwards(const TriangleMesh& mesh) {
                      48);
 }
 
-TEST(Winding, GoodMeshesStay) {
+TEST(Winding, ValidMeshesAreUnchanged) {
     for (const TriangleMesh& mesh :
          {unitBox({1, 2, 3}), reversed(unitBox({0, 0, 0})), makePlane(0, 5),
           joined({unitBox({0, 0, 0}), unitBox({3, 0, 0})}),
@@ -134,7 +134,7 @@ TEST(Winding, GoodMeshesStay) {
     }
 }
 
-TEST(Winding, ASheetKeepsTheWindingOfMostOfItsTriangles) {
+TEST(Winding, SheetKeepsItsMajorityWinding) {
     const TriangleMesh sheet = makePlane(0, 5);
     TriangleMesh mixed = sheet;
     for (const std::size_t triangle : {3U, 20U, 41U}) {
@@ -145,7 +145,7 @@ TEST(Winding, ASheetKeepsTheWindingOfMostOfItsTriangles) {
     EXPECT_EQ(winding.mesh->triangles, sheet.triangles);
 }
 
-TEST(Winding, FlippedTrianglesComeBack) {
+TEST(Winding, FlippedTrianglesAreRestored) {
     const TriangleMesh bunny = required(importMesh("/usr/share/glmark2/models/bunny.obj"));
     const TriangleMesh hollow =
         joined({makeIcosphere({0, 0, 0}, 1, 3), reversed(makeIcosphere({0, 0, 0}, 0.5, 3))});
@@ -165,7 +165,7 @@ TEST(Winding, FlippedTrianglesComeBack) {
 }
 
 /// A hollow whose wall was thinner than the step that rays started with, 1e-4 of the longest side, was filled.
-TEST(Winding, AHollowWithAThinWallStaysAHollow) {
+TEST(Winding, ThinWalledHollowStaysHollow) {
     for (const double wall : {1e-3, 1e-4, 1e-5, 1e-6}) {
         SCOPED_TRACE(wall);
         const TriangleMesh outer = makeBoxMesh({0, 0, 0}, {1, 1, 1});
@@ -179,7 +179,7 @@ TEST(Winding, AHollowWithAThinWallStaysAHollow) {
 }
 
 /// One line tells of all that it crosses: the rays of each would take the square of their number.
-TEST(Winding, OfThousandsOfSurfacesWithinEachOther) {
+TEST(Winding, HandlesThousandsOfNestedSurfaces) {
     constexpr int kShells = 2000;
     std::vector<TriangleMesh> shells;
     for (int i = 0; i < kShells; ++i) {
@@ -194,7 +194,7 @@ TEST(Winding, OfThousandsOfSurfacesWithinEachOther) {
 }
 
 /// Where copies lie in one place every edge has thousands of triangles, each a patch of its own.
-TEST(Winding, OfThousandsOfCopiesStaysOutwards) {
+TEST(Winding, ThousandsOfCopiesStayOutward) {
     const TriangleMesh box = makeBoxMesh({0, 0, 0}, {1, 1, 1});
     std::vector<glm::uvec3> triangles;
     for (int i = 0; i < 2001; ++i) {
@@ -214,7 +214,7 @@ TEST(Winding, OneSidedStripsBakeTheSameField) {
     }
 }
 
-TEST(Winding, WhereSolidsOverlapIsInside) {
+TEST(Winding, OverlapOfSolidsIsInside) {
     const TriangleMesh crossing = joined({unitBox({0, 0, 0}), unitBox({0.4, 0.3, 0.2})});
     const TriangleMesh hollow = joined({makeBoxMesh({0, 0, 0}, {2, 2, 2}), reversed(unitBox({0, 0, 0}))});
     const TriangleMesh island = joined({hollow, makeBoxMesh({0, 0, 0}, {0.2, 0.2, 0.2})});
@@ -237,7 +237,7 @@ TEST(Winding, WhereSolidsOverlapIsInside) {
 
 // --- repair ---
 
-TEST(MeshRepair, AWrapIsASolidThatHoldsTheMesh) {
+TEST(MeshRepair, WrapIsASolidAroundTheMesh) {
     TriangleMesh open = makeIcosphere({5, 0, 0}, 2.0, 3);
     open.triangles.resize(open.triangles.size() - 2);
     const TriangleMesh soup = joined({withRandomFlips(open, 3), unitBox({6.5, 0.5, 0.1})});

@@ -8,7 +8,7 @@
 namespace relief {
 namespace {
 
-TEST(PointsCsv, ReadsWhatPeopleWrite) {
+TEST(PointsCsv, ReadsCommonVariants) {
     const std::vector<glm::vec3> points = required(parsePoints(
         "\xef\xbb\xbf# a comment\r\nx,y,z\r\n1,2,3\r\n\n  -1.5 ,\t+2e-3, .5 \n# more\n0,0,-0", "in.csv"));
     ASSERT_EQ(points.size(), 3U);
@@ -18,7 +18,7 @@ TEST(PointsCsv, ReadsWhatPeopleWrite) {
     EXPECT_TRUE(parsePoints("x,y,z\n", "in.csv")->empty());
 }
 
-TEST(PointsCsv, NamesTheBadLine) {
+TEST(PointsCsv, ErrorsNameTheLine) {
     struct Case {
         const char* text;
         const char* where;
@@ -36,7 +36,7 @@ TEST(PointsCsv, NamesTheBadLine) {
     }
 }
 
-TEST(PointsCsv, WritesExactlyAndSaysWhatIsNotKnown) {
+TEST(PointsCsv, WritesExactValuesAndMarksUnknowns) {
     const std::vector<glm::vec3> points = {{0.1F, -2, 3}, {1e20F, 0, 0}, {7, 8, 9}};
     const std::vector<FieldSample> samples = {{-0.25F, {0, 1, 0}, 2}, {kFarOutside, glm::vec3(0), 0}, {}};
     EXPECT_EQ(formatSamples(points, samples),

@@ -21,7 +21,7 @@ AssetResult baked(const std::string& name, double seconds, std::vector<std::stri
     return asset;
 }
 
-TEST(RecipeReport, AWarningOfSeveralAssetsIsToldOnce) {
+TEST(RecipeReport, SharedWarningIsReportedOnce) {
     std::vector<AssetResult> assets{baked("a", 1, {"a.obj: it is skinned", "a.obj: it is open"}),
                                     baked("b", 1)};
     for (const char* name : {"c", "d", "e"}) {
@@ -33,7 +33,7 @@ TEST(RecipeReport, AWarningOfSeveralAssetsIsToldOnce) {
     EXPECT_TRUE(warningLines({}).empty());
 }
 
-TEST(RecipeReport, AForgottenUnitIsToldOnce) {
+TEST(RecipeReport, MissingUnitIsReportedOnce) {
     const auto told = [](const std::string& name, float side) {
         return baked(name, 1,
                      {name + ".obj: " + *forgottenUnit({glm::vec3(0.0F), glm::vec3(side)}),
@@ -47,7 +47,7 @@ TEST(RecipeReport, AForgottenUnitIsToldOnce) {
     EXPECT_EQ(warningLines({told("a", 1800.0F)})[0], "a.relief: " + unit);
 }
 
-TEST(RecipeReport, WarningsOfALevelAreToldOnceWhateverTheirNumbers) {
+TEST(RecipeReport, LevelWarningsWithDifferentNumbersAreReportedOnce) {
     const std::vector<std::string> chair = {"chair: 5.1 % wrong with 4.1 kB"};
     const std::vector<std::string> lamp = {"lamp: 12 % wrong with 5 kB", "lamp: open"};
     const std::vector<OwnWarnings> all = {{"chair", "chair", chair}, {"lamp", "lamp", lamp}};
@@ -57,7 +57,7 @@ TEST(RecipeReport, WarningsOfALevelAreToldOnceWhateverTheirNumbers) {
     EXPECT_EQ(warningLines(all, "meshes", false).size(), 3U);
 }
 
-TEST(RecipeReport, OnlyAnOlderLogIsEmptied) {
+TEST(RecipeReport, OnlyAnOlderLogIsTruncated) {
     const test::TemporaryFolder folder;
     const std::filesystem::path file = folder.path() / "events";
     const auto opens = [&](const std::string& text) {

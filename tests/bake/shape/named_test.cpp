@@ -36,7 +36,7 @@ TriangleMesh makeTwoBoxes() {
     return mesh;
 }
 
-TEST(NamedShape, EachPartIsWhatItsNameSays) {
+TEST(NamedShape, NamesClassifyParts) {
     const glm::vec3 tub(0.0F);
     const glm::vec3 block(4.0F, 0.0F, 0.0F);
     const ShapedMesh found = shaped(makeTwoBoxes(), {});
@@ -55,7 +55,7 @@ TEST(NamedShape, EachPartIsWhatItsNameSays) {
     EXPECT_EQ(asWords(rest.report), (std::vector<std::string>{"shell", "tub=auto"}));
 }
 
-TEST(NamedShape, AWallIsCutOutOfTheSurfaceThatItSharesEdgesWith) {
+TEST(NamedShape, NamedWallIsCutFromItsSurface) {
     // Glass: free space on both sides, and so within the box.
     const ShapedMesh glass = shaped(makeBoxWithLid(), {{"lid", ShapeAs::kShell}});
     expectKinds(glass.report, 0, 0, 2, 0);
@@ -76,7 +76,7 @@ TEST(NamedShape, AWallIsCutOutOfTheSurfaceThatItSharesEdgesWith) {
     }
 }
 
-TEST(NamedShape, AClosedSurfaceOfWhichNothingIsAWallStaysWhole) {
+TEST(NamedShape, ClosedSurfaceWithoutWallStaysWhole) {
     const ShapedMesh plain = shaped(makeBoxWithLid(), {});
     for (const Named& named : {Named{{"lid", ShapeAs::kSolid}}, Named{{"lid", ShapeAs::kTerrain}},
                                Named{{"lid", ShapeAs::kSolid}, {"box", ShapeAs::kSolid}},
@@ -88,7 +88,7 @@ TEST(NamedShape, AClosedSurfaceOfWhichNothingIsAWallStaysWhole) {
     }
 }
 
-TEST(NamedShape, OpenPartsOfTwoKindsPartAtTheirCommonEdges) {
+TEST(NamedShape, OpenPartsOfTwoKindsSplitAtSharedEdges) {
     // A floor of two halves: ground, and a wall that lies flat. Neither is closed.
     TriangleMesh floor = makePlane(0.0F, 8);
     for (const glm::uvec3& t : floor.triangles) {
@@ -103,7 +103,7 @@ TEST(NamedShape, OpenPartsOfTwoKindsPartAtTheirCommonEdges) {
     EXPECT_EQ(shape.mesh->sourceTriangles(), floor.triangles.size());
 }
 
-TEST(NamedShape, WhatStandsInAShellIsJudgedAsIfTheShellWereNotThere) {
+TEST(NamedShape, ShellsDoNotAffectEnclosedParts) {
     // A ball with a hole, in the dark of a closed box.
     const TriangleMesh box = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(2.0));
     TriangleMesh ball = makeIcosphere(glm::dvec3(0.0), 1.0, 2);
@@ -117,7 +117,7 @@ TEST(NamedShape, WhatStandsInAShellIsJudgedAsIfTheShellWereNotThere) {
     EXPECT_FALSE(inside(shape, {1.5F, 0.1F, 0.2F}));
 }
 
-TEST(NamedShape, MarksOfNobodyAreNoNames) {
+TEST(NamedShape, UnknownMarksAreIgnored) {
     const ShapedMesh plain = shaped(makeBoxWithLid(), {});
     TriangleMesh hostile = makeBoxWithLid();
     hostile.marks.assign(hostile.triangles.size(), 200);
@@ -128,7 +128,7 @@ TEST(NamedShape, MarksOfNobodyAreNoNames) {
     EXPECT_EQ(shaped(hostile, {{"lid", ShapeAs::kShell}}).mesh->triangles, plain.mesh->triangles);
 }
 
-TEST(FinishMesh, MarksStayWithTheirTriangles) {
+TEST(FinishMesh, MarksFollowTriangles) {
     TriangleMesh mesh;
     mesh.name = "m";
     mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {2, 0, 0}};
@@ -141,7 +141,7 @@ TEST(FinishMesh, MarksStayWithTheirTriangles) {
     EXPECT_TRUE(finishMesh(mesh)->marks.empty());
 }
 
-TEST(ShapeOptions, AreReadFromTheCommandLine) {
+TEST(ShapeOptions, ParseFromTheCommandLine) {
     const ShapeOptions options = required(parseShapeOptions(
         {"a=b=solid", "shell", " glass top =terrain", "solid=auto", "caf\xc3\xa9\x01=shell"}));
     EXPECT_EQ(options.as, ShapeAs::kShell);

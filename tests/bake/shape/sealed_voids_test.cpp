@@ -47,7 +47,7 @@ bool isFull(const TriangleMesh& mesh, const ShapeOptions& options = {}) {
     return full;
 }
 
-TEST(SealedVoids, AreInsideAndEndNoLine) {
+TEST(SealedVoids, AreInsideAndEndNoRay) {
     const glm::dmat3 turn = rotation(glm::dvec3(0.3, 1.0, 0.2), 33.0);
     const ShapedMesh shape = shaped(turned(makeRooms(), turn));
     EXPECT_EQ(shape.report.sheets, 6U);
@@ -83,7 +83,7 @@ TEST(SealedVoids, AreInsideAndEndNoLine) {
     }
 }
 
-TEST(SealedVoid, IsBakedFull) {
+TEST(SealedVoid, IsFilled) {
     const MeshQuery query = queryOf(shaped(makeRooms()).mesh);
     const DepthMap map = bakePatches(query, {.bytes = 200'000})->map;
     for (const glm::vec3& p : pointsIn(makeBoxMesh(glm::dvec3(0.0), glm::dvec3(0.4)).bounds, 20'000)) {
@@ -96,14 +96,14 @@ TEST(SealedVoid, IsBakedFull) {
     EXPECT_LT(wrong, 60);
 }
 
-TEST(SealedVoid, HasNoWindowAndStaysHollowOnRequest) {
+TEST(SealedVoid, HasNoWindowAndCanStayHollow) {
     EXPECT_TRUE(isFull(makeRooms()));
     EXPECT_FALSE(isFull(makeRooms(0.08)));
     EXPECT_FALSE(isFull(makeRooms(), {.voids = VoidsAs::kHollow}));
     EXPECT_FALSE(isFull(makeRooms(), {.as = ShapeAs::kShell}));
 }
 
-TEST(SealedVoid, IsNoHollowOfASolid) {
+TEST(SealedVoid, ExcludesHollowsOfSolids) {
     const TriangleMesh hollow = joined({makeBoxMesh(glm::dvec3(0.0), glm::dvec3(0.4)),
                                         reversed(makeBoxMesh(glm::dvec3(0.0), glm::dvec3(0.3)))});
     EXPECT_FALSE(isFull(joined({hollow, makePanel(1, 1.2)})));

@@ -151,7 +151,7 @@ bool isStopped(const Collider& collider, const glm::dvec3& from, const glm::dvec
     return false;
 }
 
-TEST(Shape, ASolidStaysAsItIs) {
+TEST(Shape, SolidIsUnchanged) {
     const TriangleMesh ball = makeIcosphere(glm::dvec3(0.0), 1.0, 3);
     const ShapedMesh shape = shaped(ball);
     expectKinds(shape.report, 1, 0, 0, 0);
@@ -166,7 +166,7 @@ TEST(Shape, ASolidStaysAsItIs) {
 }
 
 // A vessel's mouth faces up, and a bell, a shade or a box turned over shows all of its inside.
-TEST(Shape, ABodyOpenBelowIsASolidAndAVesselIsNot) {
+TEST(Shape, BodyOpenBelowIsSolidButVesselIsNot) {
     const TriangleMesh toadstool = makeToadstool();
     const ShapedMesh shape = shaped(toadstool);
     expectKinds(shape.report, 0, 1, 0, 0);
@@ -203,7 +203,7 @@ TEST(Shape, ABodyOpenBelowIsASolidAndAVesselIsNot) {
 }
 
 /// Mugs, bowls, lampshades and pipes of two open shells, whose rims are not joined; radii and heights.
-TEST(Shape, ShellsWithFacingRimsAreAWall) {
+TEST(Shape, ShellsWithFacingRimsFormAWall) {
     struct Wall {
         TriangleMesh outer;
         TriangleMesh inner;
@@ -259,7 +259,7 @@ TEST(Shape, ShellsWithFacingRimsAreAWall) {
 }
 
 /// Vessels with a narrow mouth, a flared, thick, square or eccentric rim, or a missing triangle; radii and heights.
-TEST(Shape, ShellsWithUnlikeRimsAreAWall) {
+TEST(Shape, ShellsWithUnlikeRimsFormAWall) {
     struct Wall {
         TriangleMesh outer;
         TriangleMesh inner;
@@ -311,7 +311,7 @@ TEST(Shape, ShellsWithUnlikeRimsAreAWall) {
 }
 
 /// An inner shell that ends far below the rim of the outer one leaves the vessel full, which is reported.
-TEST(Shape, AVesselWhoseShellsAreNotJoinedIsReported) {
+TEST(Shape, VesselWithSeparateShellsIsReported) {
     const auto turn = [](const std::vector<glm::dvec2>& profile) { return makeTurned(profile, 16); };
     const TriangleMesh mug = turn({{0.0, 0.0}, {0.5, 0.0}, {0.5, 1.2}});
     const TriangleMesh jug = turn({{0.0, 0.0}, {0.5, 0.0}, {0.5, 0.8}, {0.15, 1.2}});
@@ -339,7 +339,7 @@ TEST(Shape, AVesselWhoseShellsAreNotJoinedIsReported) {
 }
 
 /// A body in its clothes has the shells of a vessel; only their winding may differ.
-TEST(Shape, AWallThatMayBeABodyInItsClothesIsReported) {
+TEST(Shape, WallThatMayBeAClothedBodyIsReported) {
     const auto turn = [](const std::vector<glm::dvec2>& profile) { return makeTurned(profile, 24); };
     const TriangleMesh torso = turn({{0.3, 0.0}, {0.34, 0.5}, {0.3, 0.9}, {0.12, 1.0}});
     const TriangleMesh jacket = turn({{0.36, -0.05}, {0.4, 0.5}, {0.36, 0.92}, {0.16, 1.0}});
@@ -368,7 +368,7 @@ TEST(Shape, AWallThatMayBeABodyInItsClothesIsReported) {
     EXPECT_TRUE(queryOf(solid.mesh).inside({0.0F, 0.5F, 0.0F}));
 }
 
-TEST(Shape, AShellIsAllThatIsNearItsSheetWhateverItsWinding) {
+TEST(Shape, ShellContainsAllPointsNearItsSheet) {
     TriangleMesh mixed = makeOpenBox();
     for (std::size_t i = 0; i < mixed.triangles.size(); i += 2) {
         std::swap(mixed.triangles[i].y, mixed.triangles[i].z);
@@ -380,7 +380,7 @@ TEST(Shape, AShellIsAllThatIsNearItsSheetWhateverItsWinding) {
 
 /// Rods thinner than their shell, a straw, a pin on a block, a pit in one, a thin bar between two ends, and a thin flange about
 /// a hollow body.
-TEST(Shape, AShellThickerThanItsPartHasNoHollowCore) {
+TEST(Shape, ShellThickerThanItsPartIsNotHollow) {
     const TriangleMesh rod = makeBoxMesh(glm::dvec3(0.0), {0.5, 0.02, 0.02});
     const std::vector<glm::dvec2> bar = {{0.0, -0.5}, {0.3, -0.4}, {0.3, -0.3}, {0.02, -0.2},
                                          {0.02, 0.2}, {0.3, 0.3},  {0.3, 0.4},  {0.0, 0.5}};
@@ -406,7 +406,7 @@ TEST(Shape, AShellThickerThanItsPartHasNoHollowCore) {
 
 /// A gable, a needle, a blade, a wedge, two cones and a tapered rod, in a shell of 0.1: at most a twentieth of the points
 /// within 0.04 are outside.
-TEST(Shape, AShellOfASharpWedgeIsAsThickAsAsked) {
+TEST(Shape, ShellOfASharpWedgeHasFullThickness) {
     const std::vector<glm::uvec3> wedge = {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3},
                                            {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
     const auto prism = [&](const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, float length) {
@@ -433,7 +433,7 @@ TEST(Shape, AShellOfASharpWedgeIsAsThickAsAsked) {
     }
 }
 
-TEST(Shape, ASheetWithTwoSidesIsOneSheet) {
+TEST(Shape, TwoSidedSheetIsOneSheet) {
     const TriangleMesh plane = makePlane(0.0F, 4);
     const ShapedMesh shape = shaped(joined({plane, reversed(plane)}));
     expectKinds(shape.report, 0, 0, 1, 0);
@@ -446,7 +446,7 @@ TEST(Shape, ASheetWithTwoSidesIsOneSheet) {
 }
 
 // The gap between near copies is thinner than any wall: it is no hollow, and a warning says so.
-TEST(Shape, CopiesOfASolidAndNearOnesAreOneSolid) {
+TEST(Shape, CopiesOfASolidAreOneSolid) {
     const TriangleMesh ball = makeIcosphere(glm::dvec3(0.0), 1.0, 3);
     const TriangleMesh half = finished(
         ball.positions, {ball.triangles.begin(), ball.triangles.begin() + ball.triangles.size() / 2});
@@ -484,7 +484,7 @@ TEST(Shape, CopiesOfASolidAndNearOnesAreOneSolid) {
     }
 }
 
-TEST(Shape, WhatIsNoNearCopyStays) {
+TEST(Shape, DistinctPartsAreNotMerged) {
     const TriangleMesh ball = makeIcosphere(glm::dvec3(0.0), 1.0, 3);
     for (const TriangleMesh& other : {scaled(ball, 0.999), scaled(ball, 1.0, {1e-3, 0.0, 0.0}),
                                       makeIcosphere(glm::dvec3(0.0), 1.0, 2), scaled(ball, 0.5)}) {
@@ -503,7 +503,7 @@ TEST(Shape, WhatIsNoNearCopyStays) {
     EXPECT_EQ(shaped(joined(many)).report.near_copies, 0U);
 }
 
-TEST(Shape, CopiesOfSolidsOfCubesAreTheseSolids) {
+TEST(Shape, CopiesOfVoxelSolidsDoNotChangeThem) {
     for (std::uint32_t seed = seedFrom(301), end = seed + 60; seed < end; ++seed) {
         SCOPED_TRACE(seed);
         const VoxelGrid grid = VoxelGrid::random(seed);
@@ -538,7 +538,7 @@ TEST(Shape, CopiesOfSolidsOfCubesAreTheseSolids) {
     }
 }
 
-TEST(Shape, PanelsThatDoNotMeetEncloseTogether) {
+TEST(Shape, SeparatePanelsEncloseASolid) {
     // The faces of a cube, each a little smaller than it should be.
     std::vector<TriangleMesh> panels;
     for (int axis = 0; axis < 3; ++axis) {
@@ -570,7 +570,7 @@ TEST(Shape, PartsAreAUnion) {
     EXPECT_FALSE(query.inside({1.9F, 0.03F, 0.1F}));
 }
 
-TEST(Shape, AHeightFieldIsTheGroundBelowIt) {
+TEST(Shape, HeightFieldIsSolidBelow) {
     const TriangleMesh terrain = makeHeights(hills);
     for (const TriangleMesh& mesh : {terrain, reversed(terrain)}) {
         const ShapedMesh shape = shaped(mesh);
@@ -588,7 +588,7 @@ TEST(Shape, AHeightFieldIsTheGroundBelowIt) {
     }
 }
 
-TEST(Shape, ASmallOrSlantedSheetIsNoTerrain) {
+TEST(Shape, SmallOrSlantedSheetIsNotTerrain) {
     // An overhang, and a sheet whose outline is a disc.
     const TriangleMesh overhang = makeHeights([](double x, double) { return x < 0.0 ? 0.0 : 0.3; });
     const TriangleMesh folded =
@@ -599,7 +599,7 @@ TEST(Shape, ASmallOrSlantedSheetIsNoTerrain) {
     expectKinds(shaped(disc).report, 0, 0, 1, 0);
 }
 
-TEST(Shape, AsOverrulesWhatRaysSee) {
+TEST(Shape, AsOverridesRays) {
     // A room: the walls of a closed box.
     const ShapedMesh room = shaped(makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0)), ShapeAs::kShell);
     expectKinds(room.report, 0, 0, 1, 0);
@@ -612,7 +612,7 @@ TEST(Shape, AsOverrulesWhatRaysSee) {
 }
 
 /// A sheet, a thin box and a single triangle, across each axis.
-TEST(Shape, FlatMeshesAreBakedFaceOn) {
+TEST(Shape, FlatMeshesAreViewedFaceOn) {
     const TriangleMesh triangle = finished({{-1, 0, -1}, {1, 0, -0.8F}, {0.2F, 0, 1}}, {{0, 1, 2}});
     for (int axis = 0; axis < 3; ++axis) {
         const auto facing = [&](const glm::dvec3& p) {
@@ -631,7 +631,7 @@ TEST(Shape, FlatMeshesAreBakedFaceOn) {
 }
 
 /// What takes at least two steps through a shell does not get through it, from either side.
-TEST(Shape, NothingSlowerThanAHalfOfItsThicknessPassesAShell) {
+TEST(Shape, StepsBelowHalfAThicknessNeverPassAShell) {
     constexpr int kParticles = 80'000;
     constexpr double kSpeed = kThickness / 2.0;
     struct Target {

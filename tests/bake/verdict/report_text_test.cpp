@@ -13,14 +13,14 @@ Bounds box(float x, float y, float z) {
     return {{0.0F, 0.0F, 0.0F}, {x, y, z}};
 }
 
-TEST(SizeReport, TheBoxHasItsUnit) {
+TEST(SizeReport, BoxHasItsUnit) {
     EXPECT_EQ(boxText({{-1, -2, -3}, {1, 2, 3.04999F}}, "m"),
               "2 x 4 x 6.05 m, from (-1, -2, -3) to (1, 2, 3.05)");
     EXPECT_EQ(boxText(box(1800, 0, 0.001F), ""),
               "1800 x 0 x 0.001 object units, from (0, 0, 0) to (1800, 0, 0.001)");
 }
 
-TEST(SizeReport, AForgottenUnitIsNamedWithWhatItWouldMake) {
+TEST(SizeReport, MissingUnitIsSuggestedWithTheResultingSizes) {
     EXPECT_FALSE(forgottenUnit(box(99, 99, 99)));
     EXPECT_FALSE(forgottenUnit(Bounds()));
     const auto person = forgottenUnit(box(50, 180, 30));
@@ -30,7 +30,7 @@ TEST(SizeReport, AForgottenUnitIsNamedWithWhatItWouldMake) {
         << *person;
 }
 
-TEST(PartCure, OfMapsIsTheirSizeAndNoBudget) {
+TEST(PartCure, NamedMapsNeedResolutionNotBudget) {
     Collider collider;
     collider.maps = {test::emptyMap(test::centeredFrame({0, 0, 0}, glm::dmat3(1.0), {4, 4, 4}),
                                     MapFormat::kFloat32, Compare::kLess, 64, 64)};

@@ -8,7 +8,7 @@
 namespace relief {
 namespace {
 
-TEST(MapSpec, PatchesHaveBytesAndNothingElse) {
+TEST(MapSpec, PatchesHaveOnlyBytes) {
     const MapSpec spec = required(parseMapSpec("patches:bytes=250kB", kPaperDefaults));
     EXPECT_EQ(spec.format, MapFormat::kPatches);
     EXPECT_EQ(spec.bytes, 250'000U);
@@ -52,7 +52,7 @@ TEST(MapSpecParser, ReadsEveryKey) {
     EXPECT_EQ(parseMapSpec("front-back:up=1/2/-0.5,dir=+x")->up, glm::vec3(1, 2, -0.5F));
 }
 
-TEST(MapSpecParser, TextsThatDoNotSayItTakeTheDefaults) {
+TEST(MapSpecParser, MissingKeysUseTheDefaults) {
     for (const char* format : {"float", "fixed8", "front-back", "cube"}) {
         EXPECT_EQ(parseMapSpec(format)->decode, Decode::kPlane) << format;
         EXPECT_EQ(parseMapSpec(format, kPaperDefaults)->decode, Decode::kProjected) << format;
@@ -66,7 +66,7 @@ TEST(MapSpecParser, TextsThatDoNotSayItTakeTheDefaults) {
               *parseMapSpec("front-back:depth=unorm16,decode=plane", kPaperDefaults));
 }
 
-TEST(MapSpecParser, TextAndSpecAreOne) {
+TEST(MapSpecParser, SpecsRoundTripThroughText) {
     for (const std::string text :
          {"float:dir=+x,size=512x512,compare=less,decode=projected,box=tight",
           "fixed8:dir=1/2/0.25,size=3x16384,compare=greater,decode=plane,box=0/0/0/1/1/1",
@@ -86,7 +86,7 @@ TEST(MapSpecParser, TextAndSpecAreOne) {
               toString(*parseMapSpec("float:compare=less,dir=-z,size=8x8")));
 }
 
-TEST(MapSpecParser, RefusesWithTheCure) {
+TEST(MapSpecParser, ErrorsNameTheFix) {
     struct Case {
         const char* text;
         ErrorCode code;

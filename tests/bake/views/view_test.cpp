@@ -14,7 +14,7 @@ View viewOf(const TriangleMesh& mesh, const std::string& text) {
     return required(makeView(required(completeSpec(*parseMapSpec(text), mesh, 32)), mesh));
 }
 
-TEST(ViewFrame, AxesAreThoseOfThePicture) {
+TEST(ViewFrame, AxesMatchTheImage) {
     const TriangleMesh mesh = makeBoxMesh({1, 2, 3}, {1, 2, 4});
     struct Case {
         const char* direction;
@@ -36,7 +36,7 @@ TEST(ViewFrame, AxesAreThoseOfThePicture) {
     }
 }
 
-TEST(ViewFrame, UpTurnsTheImage) {
+TEST(ViewFrame, UpRotatesTheImage) {
     // A box turned by 30° about z, seen along its own second axis with its third upwards: the frame is the
     // box's, and its tight rectangle the box's side. `up` has a part along dir, which must not count.
     const glm::dmat3 axes = rotation({0, 0, 1}, 30.0) * rotation({1, 0, 0}, 20.0);
@@ -93,7 +93,7 @@ TEST(ViewFrame, TransformAndRaysAgree) {
     }
 }
 
-TEST(ViewBox, IsTightInItsOwnFrame) {
+TEST(ViewBox, IsTightInTheViewFrame) {
     // Along a cube's diagonal: the hexagon is 2·√2 wide but 2·√(8/3) high, and the depth is 2·√3. The mesh's
     // axis-aligned box is the cube itself; a sphere shows that vertices count, not the box round them.
     const View cube = viewOf(makeBoxMesh({0, 0, 0}, {1, 1, 1}), "float:dir=1/1/1,size=102x52");
@@ -106,7 +106,7 @@ TEST(ViewBox, IsTightInItsOwnFrame) {
     EXPECT_TRUE(sphere.encloses);
 }
 
-TEST(ViewBox, EverySurfaceLiesStrictlyInside) {
+TEST(ViewBox, ContainsEverySurfaceStrictly) {
     for (const TriangleMesh& mesh :
          {makeIcosphere({7, 0, 0}, 0.1, 2), makePlane(3.0F, 2), makeTorusMesh(1, 0.1, 20, 9)}) {
         for (const std::string text : {"float:dir=-x", "float:dir=-y", "float:dir=-3/2/1", "cube"}) {

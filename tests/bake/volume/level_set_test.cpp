@@ -52,7 +52,7 @@ double fromSphere(const openvdb::Vec3d& p) {
 }
 
 // Distances, volume and area of a sphere have closed forms.
-TEST(LevelSet, OfASphere) {
+TEST(LevelSet, MatchesASphere) {
     const auto bytes = levelSetOf(sphere(), kVoxels);
     ASSERT_TRUE(bytes.has_value()) << bytes.error().message;
     const auto grid = gridOf(*bytes);
@@ -99,7 +99,7 @@ TEST(LevelSet, OfASphere) {
     EXPECT_NEAR(openvdb::tools::levelSetArea(*grid), 4.0 * std::numbers::pi * std::pow(kRadius, 2), 0.05);
 }
 
-TEST(LevelSet, TheSameBytesInEveryRun) {
+TEST(LevelSet, IsDeterministic) {
     const Collider& collider = sphere();
     const auto bytes = levelSetOf(collider, kVoxels);
     ASSERT_TRUE(bytes.has_value());
@@ -142,7 +142,7 @@ Surface surfaceOf(const std::vector<std::byte>& bytes) {
     return surface;
 }
 
-TEST(SurfaceMesh, OfASphereIsClosedAndLooksOutwards) {
+TEST(SurfaceMesh, SphereIsClosedAndFacesOutward) {
     const auto bytes = meshOf(sphere(), kVoxels);
     ASSERT_TRUE(bytes.has_value()) << bytes.error().message;
     const Surface surface = surfaceOf(*bytes);
@@ -175,7 +175,7 @@ TEST(SurfaceMesh, OfASphereIsClosedAndLooksOutwards) {
     EXPECT_LT(worst, 0.1 * kVoxel);
 }
 
-TEST(LevelSet, ASheetThinnerThanAVoxelIsRefused) {
+TEST(LevelSet, SheetThinnerThanAVoxelIsRejected) {
     const PreparedMesh mesh(test::makeBoxMesh({0.0, 0.002, 0.0}, {1.0, 1e-4, 1.0}));
     const Collider sheet = test::bakeSpecs(mesh, {"front-back:dir=+y"}, 32);
     EXPECT_FALSE(levelSetOf(sheet, 16));
@@ -183,7 +183,7 @@ TEST(LevelSet, ASheetThinnerThanAVoxelIsRefused) {
 }
 
 // A thick box, and a plate that no voxel's centre lies in: the box alone remains, and the rest is told of.
-TEST(LevelSet, SaysThatAThinPartIsMissing) {
+TEST(LevelSet, WarnsOfMissingThinParts) {
     const Collider collider = test::bakeSpecs(
         test::joined({test::makeBoxMesh({0.0, -0.25, 0.0}, {0.2, 0.25, 0.2}),
                       test::makeBoxMesh({0.0, 0.26, 0.0}, {0.5, 5e-3, 0.5})}),
@@ -198,7 +198,7 @@ TEST(LevelSet, SaysThatAThinPartIsMissing) {
 }
 
 // The bounds are those of the mesh; what is inside may go deeper, as ground does.
-TEST(LevelSet, HoldsAllThatIsInside) {
+TEST(LevelSet, CoversAllInsidePoints) {
     Collider collider = sphere();
     collider.bounds.max.y = static_cast<float>(kCenter.y);  // voxels stay the same: x and z are as long
     const auto grid = gridOf(*levelSetOf(collider, kVoxels));
@@ -206,7 +206,7 @@ TEST(LevelSet, HoldsAllThatIsInside) {
                 0.01);
 }
 
-TEST(LevelSet, AnInsideWithoutEndIsRefused) {
+TEST(LevelSet, UnboundedInsideIsRejected) {
     const PreparedMesh mesh(test::makeBoxMesh({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}));
     Collider collider = test::bakeSpecs(mesh, {"float:dir=1/1/1,compare=less"}, 32);
     collider.maps[0].encloses = false;
@@ -215,7 +215,7 @@ TEST(LevelSet, AnInsideWithoutEndIsRefused) {
     EXPECT_EQ(levelSetOf(collider, 16).error().code, ErrorCode::kInvalidInput);
 }
 
-TEST(LevelSet, TooFarForItsVoxelsIsRefused) {
+TEST(LevelSet, CoordinatesTooLargeForVoxelsAreRejected) {
     Collider collider = sphere();
     collider.bounds.min.x += 1e8F;
     collider.bounds.max.x = collider.bounds.min.x;

@@ -74,7 +74,7 @@ Shared byErrors(std::uint64_t budget, const std::vector<Errors>& meshes, std::ve
     return shared;
 }
 
-TEST(BudgetShares, StepsAreEighthsOfAnOctave) {
+TEST(BudgetShares, StepsAreAnEighthOfAnOctave) {
     for (const std::uint64_t bytes : {1ULL, 2ULL, 3ULL, 4096ULL, 5000ULL, 1'000'000ULL, 1ULL << 40}) {
         const std::uint64_t step = roundDownToEighth(bytes);
         EXPECT_LE(step, bytes);
@@ -93,7 +93,7 @@ TEST(BudgetShares, HalfIsByAreaAndHalfIsEven) {
     EXPECT_EQ(byArea(1 << 20, {0.0, 0.0}), (std::vector<std::uint64_t>(2, 1 << 18))) << "no area at all";
 }
 
-TEST(BudgetShares, SmallPartsOfALargeLevelKeepTheirHalf) {
+TEST(BudgetShares, SmallPartsOfALargeLevelKeepTheEvenHalf) {
     std::vector<double> weights(51, 8.0);
     weights[0] = 1e6;
     const std::vector<std::uint64_t> bytes = byArea(16'000'000, weights);
@@ -107,7 +107,7 @@ TEST(BudgetShares, SmallPartsOfALargeLevelKeepTheirHalf) {
     EXPECT_EQ(after, bytes);
 }
 
-TEST(BudgetShares, ByErrorsEachByteMendsAsMuch) {
+TEST(BudgetShares, ErrorCurvesEqualizeTheGainPerByte) {
     // Of the least w·c·b^-p in sum, with one power, shares are as (w·c)^(1 / (1 + p)).
     const std::vector<double> errors = {1.0, 2.0, 4.0, 1.0};
     const std::vector<double> weights = {1.0, 1.0, 1.0, 8.0};
@@ -130,7 +130,7 @@ TEST(BudgetShares, ByErrorsEachByteMendsAsMuch) {
     }
 }
 
-TEST(BudgetShares, OfAMeshWithoutErrorsTheOthersGetWhatItLeaves) {
+TEST(BudgetShares, BytesLeftByExactMeshesGoToOthers) {
     // A box is exact with 3000 bytes.
     const Errors box = [](double bytes) { return bytes < 3000.0 ? 1.0 : 0.0; };
     const Errors rock = powerLaw(1.0, 0.73);
@@ -141,7 +141,7 @@ TEST(BudgetShares, OfAMeshWithoutErrorsTheOthersGetWhatItLeaves) {
     EXPECT_LE(sumOf(bytes), 800'000U);
 }
 
-TEST(BudgetShares, NoMeshIsLost) {
+TEST(BudgetShares, EveryMeshGetsAShare) {
     const std::vector<std::uint64_t> bytes =
         byErrors(8'000'000, {powerLaw(1e9, 0.7), powerLaw(1e-9, 0.7), powerLaw(1.0, 0.7)}).bytes;
     EXPECT_GE(bytes[1], roundDownToEighth(8'000'000 / 3 / 8));
@@ -149,7 +149,7 @@ TEST(BudgetShares, NoMeshIsLost) {
     EXPECT_GE(byErrors(2 * 2 * kShareMin, {powerLaw(1e9, 0.7), powerLaw(1.0, 0.7)}).bytes[1], kShareMin);
 }
 
-TEST(BudgetShares, WhatGetsFarMoreIsPlannedAgain) {
+TEST(BudgetShares, LargeIncreasesAreReplanned) {
     // From 50 kB on, more bytes mend next to nothing, which a plan of an eighth of an even share does not see.
     const Errors knee = [](double bytes) {
         return 1e3 * std::pow(std::min(bytes, 5e4), -0.7) - 1e-9 * bytes;
@@ -168,7 +168,7 @@ TEST(BudgetShares, WhatGetsFarMoreIsPlannedAgain) {
     EXPECT_LT(planned, 4'000'000U / 2);
 }
 
-TEST(BudgetShares, AMeshThatCannotBePlannedHasAnEvenShare) {
+TEST(BudgetShares, UnplannableMeshGetsAnEvenShare) {
     const std::vector<std::uint64_t> bytes =
         byErrors(1 << 20, {powerLaw(1.0, 0.7), {}, powerLaw(100.0, 0.7), powerLaw(1.0, 0.7)}).bytes;
     EXPECT_EQ(bytes[1], 1U << 18U);
@@ -176,7 +176,7 @@ TEST(BudgetShares, AMeshThatCannotBePlannedHasAnEvenShare) {
     EXPECT_GT(bytes[2], bytes[0]);
 }
 
-TEST(BudgetShares, TooFewBytesAreRefusedWithTheLeastThatWouldDo) {
+TEST(BudgetShares, TooFewBytesAreRejectedWithTheMinimum) {
     std::vector<BudgetShare> shares(100);
     const Result<void> shared = shareByArea(819'199, shares);
     ASSERT_FALSE(shared);

@@ -16,7 +16,7 @@ bool contains(const Bounds& outer, const Bounds& inner) {
            glm::all(glm::greaterThanEqual(outer.max, inner.max));
 }
 
-TEST(CoarseCollider, IsTheSameShapeInASixteenthOfTheBytesAndAroundTheBox) {
+TEST(CoarseCollider, IsTheSameShapeInASixteenthOfTheBytes) {
     MersenneRandom random(seedFrom(41));
     for (const double radius : {0.5, 30.0}) {
         const glm::dvec3 center(3.0 * random.uniform(), 20.0, -7.0);
@@ -53,7 +53,7 @@ TEST(CoarseCollider, IsTheSameShapeInASixteenthOfTheBytesAndAroundTheBox) {
     }
 }
 
-TEST(CoarseCollider, SmallOnesAndOtherMapsHaveNone) {
+TEST(CoarseCollider, SmallCollidersAndNamedMapsHaveNone) {
     const TriangleMesh mesh = makeIcosphere({0.0, 0.0, 0.0}, 1.0, 3);
     BakeRequest request;
     request.budget = 60'000;

@@ -14,14 +14,14 @@ namespace fs = std::filesystem;
 
 const ErrorCurves kCurves = {{"a", {{1024.0, 0.1}, {3000.0, 1e-17}}}, {"b", {{4096.0, 0.0}}}};
 
-TEST(ErrorCurves, ComeBackAsTheyWere) {
+TEST(ErrorCurves, RoundTrip) {
     const TemporaryFolder folder;
     EXPECT_TRUE(loadErrorCurves(folder.path())->empty());
     ASSERT_TRUE(saveErrorCurves(folder.path(), kCurves));
     EXPECT_TRUE(*loadErrorCurves(folder.path()) == kCurves);
 }
 
-TEST(ErrorCurves, OtherContentsAreRefused) {
+TEST(ErrorCurves, InvalidFilesAreRejected) {
     const auto text = [](const char* curve) {
         return std::string(R"({"format":"relief-curves","version":1,"curves":{"a":)") + curve + "}}";
     };
@@ -37,7 +37,7 @@ TEST(ErrorCurves, OtherContentsAreRefused) {
     }
 }
 
-TEST(ErrorCurves, ALinkIsNotFollowed) {
+TEST(ErrorCurves, LinksAreNotFollowed) {
     const TemporaryFolder folder;
     const fs::path elsewhere = folder.write("elsewhere.json", errorCurvesText(kCurves));
     fs::create_directory(folder.path() / "w");

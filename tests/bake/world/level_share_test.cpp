@@ -59,7 +59,7 @@ class LevelShares : public LevelBakes {
     }
 };
 
-TEST_F(LevelShares, ABumpyBallGetsMoreThanABoxOfItsAreaWithAnyNumberOfThreads) {
+TEST_F(LevelShares, BumpyBallGetsMoreThanABoxOfEqualArea) {
     const WorldBakeResult result = bake("w");
     std::map<std::string, std::uint64_t> shares = sharesOf(result);
     EXPECT_GT(shares["ball"], 2 * shares["box"]);
@@ -72,14 +72,14 @@ TEST_F(LevelShares, ABumpyBallGetsMoreThanABoxOfItsAreaWithAnyNumberOfThreads) {
     EXPECT_TRUE(filesOf("w") == filesOf("one"));
 }
 
-TEST_F(LevelShares, NamesMayLookLikePathsAndBeLong) {
+TEST_F(LevelShares, NamesCanBeLongOrLookLikePaths) {
     write({{"props/" + std::string(300, 'x'), makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0))},
            {"ball", makeIcosphere({5.0, 0.0, 0.0}, 1.0, 2)}});
     request_.bake.budget = 20'000;
     EXPECT_EQ(sharesOf(bake("w")).size(), 2U);
 }
 
-TEST_F(LevelShares, ASecondRunPlansAndBakesOnlyWhatChanged) {
+TEST_F(LevelShares, SecondRunPlansAndBakesOnlyChanges) {
     std::map<std::string, std::uint64_t> shares = sharesOf(bake("w"));
     const Files files = filesOf("w");
     EXPECT_EQ(bake("w").countOf(WorldColliderState::kUpToDate), 4U);

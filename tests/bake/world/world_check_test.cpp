@@ -10,7 +10,7 @@ namespace {
 
 using WorldCheck = LevelBakes;
 
-TEST_F(WorldCheck, AdvisesNoBudgetWhereFloatsAreCoarse) {
+TEST_F(WorldCheck, AdvisesNoBudgetIfFloatsAreTooCoarse) {
     std::string far = "o far\n";
     const TriangleMesh torus = makeTorusMesh(0.5, 0.15, 24, 12);
     for (const glm::vec3& p : torus.positions) {
@@ -35,7 +35,7 @@ TEST_F(WorldCheck, AdvisesNoBudgetWhereFloatsAreCoarse) {
     }
 }
 
-TEST_F(WorldCheck, NamesMeshesThatLoseThinParts) {
+TEST_F(WorldCheck, NamesMeshesWithLostThinParts) {
     // 20 posts of 0.5 m on a slab of 20 m, which most points near the mesh are far from.
     const auto accuracyOf = [&](double half, std::uint64_t budget) {
         std::vector<TriangleMesh> house = {makeBoxMesh({0, 0, 0}, {10, 0.25, 10})};

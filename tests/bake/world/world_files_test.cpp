@@ -85,7 +85,7 @@ World placed(const std::vector<Node>& nodes) {
     return world;
 }
 
-TEST_F(WrittenByHand, ResponsesOfMaterialsStayByName) {
+TEST_F(WrittenByHand, MaterialResponsesAreKeptByName) {
     EXPECT_TRUE(bake("w").world.materials.empty());
     const std::vector<MaterialResponse> given{{"stone", 0.25F, {}, {}}, {"oak", {}, 0.5F, 1.0F}};
     edit([&](World& world) { world.materials = given; });
@@ -104,7 +104,7 @@ TEST_F(WrittenByHand, ResponsesOfMaterialsStayByName) {
     EXPECT_TRUE(bake("w").warnings.empty());
 }
 
-TEST_F(WrittenByHand, BodiesKeepTheirResponsesByNode) {
+TEST_F(WrittenByHand, BodyResponsesAreKeptByNode) {
     fs::create_directories(worldFile().parent_path());
     const auto replace = [&](World& world) {
         return required(replaceWorld(worldFile().parent_path(), world, {}, "level")).warnings;
@@ -143,7 +143,7 @@ TEST_F(WrittenByHand, BodiesKeepTheirResponsesByNode) {
 }
 
 // Each list of nodes is baked over the first, whose frictions were written by hand.
-TEST_F(WrittenByHand, ResponsesGoWithTheBodyThatIsMeant) {
+TEST_F(WrittenByHand, ResponsesFollowTheMatchingBody) {
     fs::create_directories(worldFile().parent_path());
     const std::vector<Node> before = {
         {"gate", 0, 1}, {"gate", 5, 1}, {"gate", 9, 1}, {"door", 2, 3}, {"", 4, 2}};
@@ -205,7 +205,7 @@ TEST_F(WrittenByHand, ResponsesGoWithTheBodyThatIsMeant) {
     }
 }
 
-TEST_F(WrittenByHand, AFileThatCannotBeReadIsReplacedWithAWarning) {
+TEST_F(WrittenByHand, UnreadableFileIsReplacedWithAWarning) {
     static_cast<void>(bake("w"));
     const std::vector<std::byte> first = bytes();
     std::vector<std::byte> damaged = first;

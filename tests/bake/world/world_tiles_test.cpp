@@ -82,7 +82,7 @@ class WorldTiles : public LevelBakes {
     }
 };
 
-TEST_F(WorldTiles, HillsAreInTheirPlaceWithTheirMaterialsAndWithinTheirBytes) {
+TEST_F(WorldTiles, HillsKeepPlaceMaterialsAndBudget) {
     writeLevel(1.0, 200, true);
     const WorldBakeResult result = bake("w");
     const WorldField fine = load("w");
@@ -148,7 +148,7 @@ TEST_F(WorldTiles, HillsAreInTheirPlaceWithTheirMaterialsAndWithinTheirBytes) {
     }
 }
 
-TEST_F(WorldTiles, TilesAreOneMeshToChecksAndMoves) {
+TEST_F(WorldTiles, ChecksAndMovesTreatTilesAsOneMesh) {
     static_cast<void>(bake("w"));
     const WorldField field = load("w");
     const WorldAccuracy accuracy = check(field, 20'000);
@@ -196,7 +196,7 @@ TEST_F(WorldTiles, TilesAreOneMeshToChecksAndMoves) {
     EXPECT_GT(torn_apart, 2000);
 }
 
-TEST_F(WorldTiles, OnlyWhatHasChangedIsBakedToTheSameBytesWithAnyNumberOfThreads) {
+TEST_F(WorldTiles, OnlyChangesAreBakedDeterministically) {
     request_.bake.quality = Quality::kFast;
     request_.bake.no_check = true;
     const std::size_t all = bake("w").colliders.size();
@@ -240,7 +240,7 @@ TEST_F(WorldTiles, OnlyWhatHasChangedIsBakedToTheSameBytesWithAnyNumberOfThreads
     EXPECT_EQ(filesOf("w").size(), again.colliders.size() + static_cast<std::size_t>(coarse) + 1);
 }
 
-TEST(TilesMost, KeepsAWorldWithinItsLimits) {
+TEST(TilesMost, KeepsWorldsWithinTheLimits) {
     EXPECT_EQ(tilesMost(1, 1), 64U);
     EXPECT_EQ(tilesMost(64, 64), 64U);
     EXPECT_EQ(tilesMost(65, 65), 32U);
