@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Height maps baked into tiles: seams against the exact surface, and drops that fall on them.
+// Height maps baked into tiles, compared with the exact surface, in particular at seams.
 #include "bake/ground/ground_bake.h"
 
 #include <map>
@@ -33,7 +33,7 @@ class GroundBakes : public RawHeights {
     GroundResult tiles_;
 };
 
-/// Along x or z, or both: `away` from one of the seams of tiles of 64 squares, at any place along it.
+/// A point within `away` squares of a seam between tiles of 64 squares, along x, z or both.
 glm::dvec2 nearSeam(std::mt19937& random, double away, std::uint32_t seams) {
     std::uniform_real_distribution<double> share(0.0, 1.0);
     glm::dvec2 at(share(random), share(random));
@@ -54,7 +54,7 @@ TEST_F(GroundBakes, SeamsAreWithinTheBound) {
             "width=256,tile=64,offset=-300.5/12/41,spacing=" + std::to_string(spacing);
         const WorldField field = bakeWorld(settings);
         EXPECT_EQ(field.world().bodies.size(), 16U);
-        // Floats of a few hundred metres.
+        // The second term covers float rounding at a few hundred metres.
         const double bound = tiles_.errorMax() + 2e-4;
         std::mt19937 random(seedFrom(31));
         std::uniform_real_distribution<double> share(-1.0, 1.0);
@@ -82,7 +82,7 @@ TEST_F(GroundBakes, SeamsAreWithinTheBound) {
     }
 }
 
-/// The coarse tiles are the ground of every fourth sample, seams among it, and each in the box of the tile it stands for.
+/// Coarse tiles match the ground of every fourth sample, including the seams. Each has the box of its fine tile.
 TEST_F(GroundBakes, CoarseTilesMatchEveryFourthSample) {
     const HeightGrid grid = writeHills(64 * 12 - 5, 64 * 8 + 3);
     HeightGrid fewer{(grid.columns + 2) / 4 + 1, (grid.rows + 2) / 4 + 1, {}};
@@ -109,7 +109,7 @@ TEST_F(GroundBakes, CoarseTilesMatchEveryFourthSample) {
     std::uniform_real_distribution<double> share(0.0, 1.0);
     int below = 0;
     for (int i = 0; i < 100'000; ++i) {
-        // Of the first two rows of tiles, whole coarse squares alone.
+        // Only whole coarse squares, in the first two rows of tiles.
         const double x = i % 2 == 0 ? 760.0 * share(random) : 256.0 + 0.02 * share(random) - 0.01;
         const double z = i % 4 < 2 ? 512.0 * share(random) : 256.0 + 0.02 * share(random) - 0.01;
         const double surface = *surfaceAt(fewer, x / 4.0, z / 4.0);
@@ -170,7 +170,7 @@ void expectHas(const std::string& text, std::string_view words) {
     EXPECT_NE(text.find(words), std::string::npos) << text;
 }
 
-/// Settings that are not those of the file are named, as far as they can be known.
+/// A warning suggests the right settings if the samples reveal them.
 TEST_F(GroundBakes, WrongSampleFormatsGetAdvice) {
     const auto warned = [&](const std::string& settings) {
         std::string all;
@@ -184,7 +184,7 @@ TEST_F(GroundBakes, WrongSampleFormatsGetAdvice) {
     EXPECT_NE(warned("low=-20,high=44,order=big")
                   .find("h.raw: its samples look like those of another format; try --heights order=little\n"),
               std::string::npos);
-    // Also if they cannot be baked so.
+    // Errors contain the same advice.
     const auto tooFar = [&](const std::string& settings) {
         const Result<GroundResult> far =
             tryBake("h.raw", parseHeightsSpec("spacing=0.01," + settings).value(), {});
@@ -205,7 +205,7 @@ TEST_F(GroundBakes, WrongSampleFormatsGetAdvice) {
     expectHas(hole, "h.raw: its lowest sample, 0, lies");
     expectHas(hole, " far below all others; if it stands for no data, give --heights hole=0\n");
     EXPECT_EQ(warned("low=-20,high=44,hole=0"), "");
-    // -1 of int16, or a hole of uint16, beside heights of 0 to 2.
+    // -1 as int16, or a hole as uint16, beside heights of 0 to 2.
     const auto sample = [](double value) { return kLow + value * (kHigh - kLow) / 65535.0; };
     write("h.raw", 17, 17,
           [&](double x, double z) { return sample(x == 9 && z == 4 ? 65535.0 : std::round(x / 8.0)); });
@@ -220,7 +220,7 @@ TEST_F(GroundBakes, WrongSampleFormatsGetAdvice) {
     write("h.raw", 17, 17, [&](double x, double) { return sample(32768.0 + 1000.0 * (x - 8.0)); });
     EXPECT_EQ(tooFar(right).find("order"), std::string::npos);
     expectHas(tooFar("type=int16"), "type");
-    // Right as they are, or heights up to 200 m in the other order.
+    // Ambiguous: correct as given, or heights up to 200 m in the other byte order.
     write("h.raw", 17, 17, [&](double x, double z) { return sample(256.0 * std::round(6.0 * (x + z))); });
     EXPECT_NE(warned("spacing=100,low=0,high=100")
                   .find("try --heights order=big, unless they are 8 bits times 256\n"),
@@ -242,7 +242,7 @@ TEST_F(GroundBakes, WrongSampleFormatsGetAdvice) {
               "no data, save them as one value and give it as --heights hole\n");
 }
 
-/// A square along whose diagonal the ground rises by 66° has no bound, though each of its sides rises by 58°.
+/// A square that rises by 66° along its diagonal has no bound, although each of its sides rises by 58°.
 TEST_F(GroundBakes, SteepSquaresAreCountedAndHaveNoBound) {
     const auto report = [&](double slope, double kink) {
         write("slope.raw", 9, 9, [&](double x, double z) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ground measured against its height map: what is off by a known length, and what is lost, must be found.
+// Ground measured against its height map: known offsets and missing tiles must be found.
 #include "bake/ground/ground_check.h"
 
 #include "tests/bake/ground/height_grids.h"
@@ -10,7 +10,7 @@ namespace {
 
 class GroundChecks : public RawHeights {
   protected:
-    /// A collider, or with tiles a world.
+    /// A collider, or a world if `tiles` is true.
     [[nodiscard]] WorldField baked(const char* name, const HeightsSpec& heights, bool tiles = false) const {
         const GroundResult result = bake(name, heights, tiles ? world() : std::filesystem::path());
         if (tiles) {
@@ -43,7 +43,7 @@ TEST_F(GroundChecks, PlaneIsWithinTheBakeError) {
     EXPECT_EQ(result.holes, 0U);
     EXPECT_EQ(result.near.points, 20'000U);
     EXPECT_EQ(result.near.missing, 0U);
-    EXPECT_LT(result.near.most, 0.01);  // half a step of a leaf, whose range is 1.5
+    EXPECT_LT(result.near.most, 0.01);  // half a quantization step of a leaf with a range of 1.5
     EXPECT_LT(result.near.wrong.total(), 0.5);
     EXPECT_LT(result.anywhere.total(), 0.1);
     EXPECT_FALSE(result.seams);
@@ -66,7 +66,7 @@ TEST_F(GroundChecks, ShiftIsMeasured) {
     EXPECT_LT(right.near.wrong.total(), 0.5);
     EXPECT_LT(right.seams->wrong.total(), 0.5);
     EXPECT_EQ(right.near.missing + right.seams->missing, 0U);
-    // Of two lengths y the points between the surfaces are wrong: 0.2 of 2.
+    // Points are within ±1 of the surface. Those between the two surfaces are wrong: 0.2 of 2.
     const GroundAccuracy lower = check("hills.raw", "tile=64,offset=0/-0.2/0", field);
     EXPECT_NEAR(lower.near.mean, 0.2 + right.near.mean, 1e-4);
     EXPECT_NEAR(lower.seams->mean, 0.2 + right.seams->mean, 1e-4);
@@ -77,7 +77,7 @@ TEST_F(GroundChecks, ShiftIsMeasured) {
         ASSERT_TRUE(place.error);
         EXPECT_LE(std::abs(*place.error), std::max(right.near.most, right.seams->most) + 1e-6);
     }
-    // Beyond reach there is no surface, which is no error of 0.
+    // Points without a surface in range count as missing, not as an error of 0.
     const GroundAccuracy far = check("hills.raw", "tile=64,offset=0/5/0", field);
     EXPECT_EQ(far.near.missing, far.near.points);
     EXPECT_FALSE(far.worst.front().error);
@@ -95,7 +95,7 @@ TEST_F(GroundChecks, HolesAreOutside) {
     EXPECT_LT(right.near.wrong.total(), 0.5);
     EXPECT_LT(right.anywhere.total(), 0.2);
     EXPECT_EQ(right.near.missing, 0U);
-    // Ground where the map has holes is inside by error anywhere, and holes where it has ground are missing.
+    // Filled holes are wrong inside points. Holes where the map has ground are missing points.
     write("whole.raw", 100, 100, hills);
     const WorldField filled = baked("whole.raw", spec(""));
     const GroundAccuracy more = check("holed.raw", "hole=0", filled);
@@ -115,7 +115,7 @@ TEST_F(GroundChecks, LostTileIsMissing) {
     loaded.world.bodies.erase(loaded.world.bodies.begin() + 5);
     const WorldField field(std::move(loaded));
     const GroundAccuracy result = check("hills.raw", "tile=64", field);
-    // Its neighbours reach four squares into it.
+    // The neighbouring tiles overlap it by four squares.
     EXPECT_NEAR(100.0 * double(result.near.missing) / double(result.near.points),
                 100.0 * 56 * 56 / (199 * 199), 0.3);
     EXPECT_FALSE(result.worst.back().error);

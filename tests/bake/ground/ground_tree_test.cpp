@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Trees of patches from heights against closed forms and the exact bilinear surface.
+// Trees of patches baked from heights, compared with closed forms and the exact bilinear surface.
 #include "bake/ground/ground_tree.h"
 
 #include <functional>
@@ -25,14 +25,14 @@ Ground checked(const HeightGrid& grid, const GroundPlace& place = {}) {
     return std::move(*ground);
 }
 
-/// Rounding of places in floats.
+/// Float rounding of coordinates.
 double roundingOf(const Ground& ground) {
     return 4e-7 * double{ground.bounds.longestSide()} +
            1e-7 * std::max(std::abs(double{ground.bounds.min.y}), std::abs(double{ground.bounds.max.y}));
 }
 
-/// Points about the surface, most of them within a few bounds of it, are on the right side but for the bound.
-/// \return how many are wrong, and beyond the bound.
+/// Samples points near the surface, most of them within a few bounds.
+/// \return the number of points on the wrong side by more than the bound
 int wrongPoints(const HeightGrid& grid, const GroundPlace& place, const Ground& ground, int points,
                 const std::function<bool(double x, double height, double z)>& beyond = {}) {
     std::mt19937 random(seedFrom(11));
@@ -42,11 +42,11 @@ int wrongPoints(const HeightGrid& grid, const GroundPlace& place, const Ground& 
     for (int i = 0; i < points; ++i) {
         const glm::vec3 p(place.origin + glm::dvec3(place.spacing * share(random) * (grid.columns - 1), 0.0,
                                                     place.spacing * share(random) * (grid.rows - 1)));
-        // The place that the float has.
+        // Coordinates after rounding to float.
         const double x = (double{p.x} - place.origin.x) / place.spacing;
         const double z = (double{p.z} - place.origin.z) / place.spacing;
         const std::optional<double> surface = surfaceAt(grid, x, z);
-        // No deeper than there is ground.
+        // Not deeper than the ground.
         const double width = i % 3 == 0 ? 0.05 * double{ground.bounds.longestSide()} : 3.0 * bound;
         const double away = width * (2.0 * share(random) - 1.0);
         const float y =
@@ -78,10 +78,10 @@ TEST(GroundTree, SlopesHaveExactNormalsAndDepths) {
     for (int i = 0; i < 20'000; ++i) {
         const double x = 64.0 * share(random);
         const double z = 48.0 * share(random);
-        const double depth = 3.9 * share(random);  // a leaf's side
+        const double depth = 3.9 * share(random);  // up to the side of a leaf
         const glm::vec3 p(glm::dvec3(x, 0.5 * x - 0.25 * z + 3.0 - depth, z));
         const Vote vote = *relief::vote(ground.map, p);
-        // Two heights of a square may be wrong by as much, either way.
+        // Two heights of a square can have opposite errors.
         EXPECT_NEAR(vote.distance, -depth * normal.y, (1.0 + 2.0 * depth) * ground.error_max + 1e-4) << i;
         EXPECT_GT(glm::dot(glm::dvec3(vote.normal), normal), 0.9999) << i;
     }
@@ -116,7 +116,7 @@ TEST(GroundTree, FlatGroundIsExact) {
     }
 }
 
-/// Heights of all leaves by what they hold, and not by points that may miss the worst.
+/// Tests the stored heights of all leaves: random points could miss the worst one.
 TEST(GroundTree, BoundIsHalfAStepOfTheSteepestLeaf) {
     const HeightGrid grid = gridOf(129, 129, hills);
     const Ground ground = checked(grid);
@@ -131,7 +131,7 @@ TEST(GroundTree, BoundIsHalfAStepOfTheSteepestLeaf) {
                     const float height = grid.at(x + i, z + j);
                     low = std::min(low, height);
                     high = std::max(high, height);
-                    // From inside the leaf, whose edges neighbours have too.
+                    // Stay inside the leaf: neighbours share its edges.
                     const glm::vec3 p(std::clamp(float(x + i), float(x) + 1e-3F, float(x) + 3.999F),
                                       height - 0.5F,
                                       std::clamp(float(z + j), float(z) + 1e-3F, float(z) + 3.999F));
@@ -164,13 +164,13 @@ TEST(GroundTree, SquaresAtHolesAreEmpty) {
     EXPECT_EQ(ground.squares, squares);
     EXPECT_LT(squares, 89U * 74U - 300U);
     EXPECT_EQ(wrongPoints(grid, {}, ground, 200'000), 0);
-    // All the way down.
+    // Holes extend down through the ground.
     const Ground cut = checked(gridOf(9, 9, [](double x, double) { return x == 4.0 ? double{kHole} : 5.0; }));
     EXPECT_EQ(cut.squares, 48U);
     EXPECT_GE(vote(cut.map, {4.5F, 4.9F, 2.5F})->distance, 0.0F);
     EXPECT_GE(vote(cut.map, {3.5F, 4.7F, 2.5F})->distance, 0.0F);
     EXPECT_LT(vote(cut.map, {5.5F, 4.9F, 2.5F})->distance, 0.0F);
-    // Without any square there is nothing.
+    // A map without a complete square has no ground.
     const Ground none = required(
         bakeGround(gridOf(5, 5, [](double x, double) { return x == 2.0 ? 1.0 : double{kHole}; }), {}));
     EXPECT_EQ(none.squares, 0U);
@@ -186,7 +186,7 @@ TEST(GroundTree, SteepSquaresHaveSmallSidewaysErrors) {
     EXPECT_GT(ground.steep, 100U);
     const double bound = ground.error_max + roundingOf(ground);
     const int wrong = wrongPoints(cliffs, {}, ground, 200'000, [&](double x, double height, double z) {
-        // Right, if the exact surface passes the point nearby.
+        // Not an error if the exact surface passes the point nearby.
         for (int i = 0; i <= 200; ++i) {
             const double turn = 0.0314159 * i;
             for (const double far : {0.02, 0.05, 0.1, 0.15, 0.2, kAside}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Height maps in closed form, and the exact surface of any.
+// Height maps in closed form, and the exact surface of any height map.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@
 
 namespace relief::test {
 
-/// \param height  of (column, row).
+/// \param height  function of (column, row)
 template <class Height>
 HeightGrid gridOf(std::uint32_t columns, std::uint32_t rows, const Height& height) {
     HeightGrid grid{columns, rows, {}};
@@ -31,19 +31,20 @@ HeightGrid gridOf(std::uint32_t columns, std::uint32_t rows, const Height& heigh
     return grid;
 }
 
-/// Hills of some tens of squares, up to 1.2 steep.
+/// Hills tens of squares long, with slopes up to 1.2.
 inline double hills(double x, double z) {
     return 8.0 * std::sin(x / 11.0) + 5.0 * std::cos(z / 7.0) + 0.7 * std::sin(x / 2.3 + z / 3.1);
 }
 
-/// Of samples of 16 bits.
+/// Heights of the lowest and the highest 16-bit sample.
 constexpr double kLow = -20.0;
 constexpr double kHigh = 44.0;
 
-/// A folder with height maps of 16 bits as raw samples.
+/// A folder of 16-bit raw height maps.
 class RawHeights : public testing::Test {
   protected:
-    /// \param height  of (column, row); NaN: a hole, sample 0. \return the heights that the samples stand for.
+    /// \param height  function of (column, row); NaN marks a hole, written as sample 0. \return the heights after
+    /// quantization
     template <class Height>
     HeightGrid write(const char* name, std::uint32_t columns, std::uint32_t rows,
                      const Height& height) const {
@@ -69,7 +70,7 @@ class RawHeights : public testing::Test {
         options.folder = into;
         return bakeGroundOf(map, options);
     }
-    /// \param into  empty: one container.
+    /// \param into  folder of a world; if empty, bakes one container
     [[nodiscard]] GroundResult bake(const char* name, const HeightsSpec& heights,
                                     const std::filesystem::path& into = {}) const {
         return required(tryBake(name, heights, into));
@@ -87,7 +88,7 @@ class RawHeights : public testing::Test {
 
 constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
 
-/// The bilinear surface. \param x, z  squares from the first sample. \return nullopt beyond the grid and above holes.
+/// The bilinear surface. \param x, z  in squares from the first sample. \return nullopt outside the grid and at holes
 inline std::optional<double> surfaceAt(const HeightGrid& grid, double x, double z) {
     if (!(x >= 0.0 && z >= 0.0 && x <= grid.columns - 1 && z <= grid.rows - 1)) {
         return std::nullopt;

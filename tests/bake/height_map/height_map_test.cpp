@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Settings of height maps, and their files, sound and hostile.
+// Settings of height maps, and valid and hostile image files.
 #include "bake/height_map/height_map.h"
 
 #include <OpenEXR/ImfChannelList.h>
@@ -37,7 +37,7 @@ void expectError(const Error& error, const std::string& words, ErrorCode code) {
     EXPECT_EQ(error.message.find('\n'), std::string::npos) << error.message;
 }
 
-/// An EXR of two images of 2x2 heights.
+/// An EXR file with two images of 2x2 heights.
 void writeParts(const fs::path& path) {
     std::vector<Imf::Header> headers(2, Imf::Header(2, 2));
     for (std::size_t i = 0; i < headers.size(); ++i) {
@@ -77,7 +77,7 @@ class HeightMaps : public testing::Test {
         return folder_ / name;
     }
 
-    /// The PNG with a chunk of this type and these 16-bit numbers behind its header.
+    /// Inserts a chunk of 16-bit numbers after the header of a PNG.
     static fs::path addChunk(const fs::path& png, const char* type, std::initializer_list<unsigned> numbers) {
         std::vector<unsigned char> chunk;
         const auto append = [&](std::uint32_t value, unsigned bytes) {
@@ -100,7 +100,6 @@ class HeightMaps : public testing::Test {
         return png;
     }
 
-    /// The error of reading all rows.
     template <class Rows>
     static Error errorOfRows(Rows& rows) {
         std::vector<float> row(rows.columns());
@@ -112,7 +111,7 @@ class HeightMaps : public testing::Test {
         return {ErrorCode::kFailure, "it was read"};
     }
 
-    /// Errors of opening a file, or of reading its rows.
+    /// The error of opening a file or reading its rows.
     static Error errorOf(const fs::path& path, const char* settings) {
         Result<HeightMap> map = HeightMap::open(path, parseHeightsSpec(settings).value());
         return map ? errorOfRows(*map) : map.error();
@@ -123,13 +122,13 @@ class HeightMaps : public testing::Test {
         expectError(errorOf(path, settings), words, code);
     }
 
-    /// The error of decoding it in this process.
+    /// The error of decoding in this process.
     static Error decodeError(std::span<const std::byte> bytes) {
         Result<std::unique_ptr<SampleRows>> rows = openImageRows(bytes);
         return rows ? errorOfRows(**rows) : rows.error();
     }
 
-    /// \param hole  what stands for a NaN.
+    /// \param hole  replaces NaN
     static std::vector<float> heightsOf(const fs::path& path, const char* settings,
                                         float hole = std::numeric_limits<float>::quiet_NaN()) {
         HeightMap map = required(HeightMap::open(path, parseHeightsSpec(settings).value()));
@@ -265,13 +264,13 @@ TEST_F(HeightMaps, RawSamplesHaveATypeAndAByteOrder) {
     refuses(png, "type=int16", "type applies only to raw samples", ErrorCode::kUsage);
     refuses(png, "low=0,high=1,order=big", "order applies only to raw samples", ErrorCode::kUsage);
 
-    // As SRTM has it, with or without the width; what is given comes first.
+    // SRTM defaults, with or without the width. Explicit settings override them.
     const fs::path hgt = write("N00E000.HGT", {0x00, 0x07, 0xff, 0xf1, 0x80, 0x00, 0x01, 0x00});
     for (const char* const settings : {"spacing=30", "spacing=30,width=2"}) {
         EXPECT_EQ(heightsOf(hgt, settings, 9.0F), (std::vector<float>{7.0F, -15.0F, 9.0F, 256.0F}));
     }
     EXPECT_EQ(heightsOf(hgt, "order=little,hole=1")[0], 1792.0F);
-    // An image is one under any name.
+    // Images are recognised under any name.
     const fs::path image = writePng("image.hgt", PNG_FORMAT_GRAY, 2, 2, std::vector<std::byte>(4));
     EXPECT_EQ(heightsOf(image, "spacing=1,low=7,high=100"), std::vector<float>(4, 7.0F));
     refuses(image, "low=0,high=1,order=big", "order applies only to raw samples", ErrorCode::kUsage);
@@ -281,7 +280,7 @@ TEST_F(HeightMaps, RawSamplesHaveATypeAndAByteOrder) {
     EXPECT_EQ(toString(implied), "spacing=30,hole=-32768,type=int16,order=big");
 }
 
-/// Ground of 65² samples about 40 m high, which the sea cuts, written in every format and read as each.
+/// 65² samples of ground about 40 m high, partly below sea level, written in every raw format and read as each.
 TEST_F(HeightMaps, LikelierRawFormatIsSuggested) {
     std::vector<double> ground;
     for (int i = 0; i < 65 * 65; ++i) {
@@ -324,7 +323,7 @@ TEST_F(HeightMaps, LikelierRawFormatIsSuggested) {
         EXPECT_EQ(found(floats, "uint16", order), "type=float32");
         EXPECT_EQ(found(floats, "int16", other), "type=float32,order=" + order);
     }
-    // Right as they are: heights without a sign up to the largest, walls of two levels, and 8 bits that were spread.
+    // No suggestion: unsigned heights up to the maximum, walls of two levels, and expanded 8-bit values.
     const std::vector<double> hills = ground;
     for (double& height : ground) {
         height = 6.0 * height + 33000.0;
@@ -333,7 +332,7 @@ TEST_F(HeightMaps, LikelierRawFormatIsSuggested) {
     EXPECT_EQ(found({std::as_bytes(std::span(samples)).begin(), std::as_bytes(std::span(samples)).end()},
                     "uint16", "little"),
               "");
-    // 8 bits times 256 may as well be bytes in the other order.
+    // 8-bit values times 256 could also be in the other byte order.
     for (const auto& [step, format] : std::initializer_list<std::pair<unsigned, const char*>>{
              {65535U, ""}, {257U, ""}, {64U, ""}, {256U, "order=big"}}) {
         for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -348,7 +347,7 @@ TEST_F(HeightMaps, LikelierRawFormatIsSuggested) {
     }
     refuses(write("f.raw", bytesOf("float32", "big")), "type=float32",
             "beyond 1e9; give --heights order=big");
-    // Two whole numbers from 0 to 200 are a float below 1e-35.
+    // Two integers from 0 to 200 form a float below 1e-35.
     samples.clear();
     for (int i = 0; i < 66 * 64; ++i) {
         samples.push_back(static_cast<std::uint16_t>(
@@ -361,7 +360,7 @@ TEST_F(HeightMaps, LikelierRawFormatIsSuggested) {
               "type=uint16");
 }
 
-/// Bytes in the wrong order scale heights by 256 if all lie within 256 m, and signs in the wrong type make pillars of 65 km.
+/// The wrong byte order scales heights below 256 m by 256. The wrong signedness makes pillars of 65 km.
 TEST_F(HeightMaps, LikelierFormatOfLowlandIsSuggested) {
     const auto found = [&](double low, double high, const std::string& settings, int lone = 0) {
         std::vector<std::uint16_t> samples;
@@ -491,7 +490,7 @@ TEST_F(HeightMaps, WrongSizesAndFormatsAreRejected) {
     refuses(fine, "low=0,high=1,hole=256", "from 0 to 255", ErrorCode::kUsage);
 }
 
-/// The first word behind a name in /proc/PID/status.
+/// The first word after `name` in /proc/PID/status.
 std::string statusOf(const std::string& pid, const std::string& name) {
     std::ifstream file("/proc/" + pid + "/status");
     std::string word;
@@ -507,7 +506,7 @@ TEST_F(HeightMaps, ImagesAreDecodedInASandbox) {
         std::ifstream("/proc/self/task/" + std::to_string(::getpid()) + "/children") >> list;
         return list;
     };
-    constexpr std::uint32_t kSide = 1024;  // more rows than a pipe holds
+    constexpr std::uint32_t kSide = 1024;  // more rows than a pipe buffers
     std::vector<std::byte> pixels(2 * kSide * kSide);
     for (std::size_t i = 0; i < pixels.size(); ++i) {
         pixels[i] = static_cast<std::byte>(i >> 11U);
@@ -537,7 +536,7 @@ TEST_F(HeightMaps, ImagesAreDecodedInASandbox) {
     expectError(none.error(), "a.png': the importer's limits must be", ErrorCode::kUsage);
 }
 
-/// A file of which every part may be missing or changed; and one that claims 10⁹ samples.
+/// Damaged files, and one that claims 10⁹ samples.
 TEST_F(HeightMaps, DamagedImagesAreRejectedInOneLine) {
     std::vector<std::byte> pixels(2 * 40 * 40);
     for (std::size_t i = 0; i < pixels.size(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images that Relief wrote, read by OpenEXR's own reader.
+// Images written by Relief, read with the OpenEXR library.
 #pragma once
 
 #include <ImathMatrix.h>
@@ -40,7 +40,7 @@ class ExrFile {
     [[nodiscard]] std::string text(const char* name) const {
         return header().typedAttribute<Imf::StringAttribute>(name).value();
     }
-    /// The place of a point in pixels from the upper left corner, and its distance from the camera's plane.
+    /// Pixel coordinates of a point from the upper left corner, and its distance from the camera plane.
     [[nodiscard]] glm::vec3 project(const glm::vec3& p) const {
         const Imath::V3f world(p.x, p.y, p.z);
         Imath::V3f ndc;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exported maps, read back by OpenEXR's own reader.
+// Exported maps, read with the OpenEXR library.
 #include "bake/images/exr.h"
 
 #include <cmath>
@@ -45,7 +45,7 @@ TEST(ExrExport, ContainsTheMapAndItsCamera) {
                     }
                     ++hits;
                     ASSERT_EQ(ny[pixel], texel.front->normal.y);
-                    // The surface point of this texel, by the definition of the map …
+                    // The surface point of this texel, by the definition of the map,
                     glm::dvec3 in_map;
                     const double s = (x + 0.5) / map.width;
                     const double t = (y + 0.5) / map.height;
@@ -63,7 +63,7 @@ TEST(ExrExport, ContainsTheMapAndItsCamera) {
                         const double square = row.x * row.x + row.y * row.y + row.z * row.z;
                         p += (in_map[k] - row.w) / square * glm::dvec3(row);
                     }
-                    // … projects onto its own pixel, and lies as far from the camera as Z says.
+                    // projects onto its own pixel, at distance Z from the camera.
                     const Imath::V3f world(static_cast<float>(p.x), static_cast<float>(p.y),
                                            static_cast<float>(p.z));
                     const glm::vec3 at = file.project(glm::vec3(p));

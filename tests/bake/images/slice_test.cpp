@@ -33,7 +33,7 @@ TEST(Slice, ContainsTheFieldAtItsPoints) {
             }
         }
         EXPECT_GT(inside, 100);
-        // The area holds the bounds, and is centred on them.
+        // The area contains the bounds and is centred on them.
         const glm::vec3 first = slice.point(0, 0);
         const glm::vec3 last = slice.point(slice.width - 1, slice.height - 1);
         for (const int i : {slice.right, slice.up}) {
@@ -45,7 +45,7 @@ TEST(Slice, ContainsTheFieldAtItsPoints) {
     EXPECT_EQ(evaluateSlice(collider, {.axis = 2, .at = {}, .size = 16})->at, 0.0F);
 }
 
-// Read back by OpenEXR's own reader; the camera in the header finds the pixel of each point.
+// Reads the image with the OpenEXR library. The camera in the header maps each point to its pixel.
 TEST(Slice, WritesDistancesAsExr) {
     Collider collider = sampleCollider();
     for (int axis = 0; axis < 3; ++axis) {
@@ -77,7 +77,7 @@ TEST(Slice, WritesDistancesAsExr) {
         EXPECT_GT(far, 50);
         EXPECT_EQ(none, 0);
     }
-    collider.maps = {collider.maps[1]};  // of one half
+    collider.maps = {collider.maps[1]};  // covers only one half
     const Slice slice = required(evaluateSlice(collider, {.axis = 2, .at = {}, .size = 20}));
     EXPECT_TRUE(std::isnan(ExrFile(distanceImage(slice, collider)).channel("distance").front()));
 }
@@ -89,7 +89,7 @@ TEST(Slice, RejectsInvalidSizes) {
 }
 
 TEST(SliceFigure, DrawsAnyField) {
-    // Nothing but far outside; nothing but abstention; names of any length; huge and tiny coordinates.
+    // Only far outside, only abstentions, names of any length, huge and tiny coordinates.
     Collider collider = sampleCollider();
     EXPECT_TRUE(drawSlice(*evaluateSlice(collider, {.axis = 0, .at = 1e6F, .size = 20}),
                           {std::string(5000, 'n'), "m"}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of errors: the plane that shows a surface, and the colours that show a verdict.
+// Slices at wrong points: the plane through a surface, and the colours of verdicts.
 #include "bake/images/verdict_slice.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ TEST(Errors, EveryVerdictHasAColorAndPicturesAreDeterministic) {
     std::vector<std::vector<std::byte>> pictures{outside};
     for (const SideVerdict verdict :
          {SideVerdict::kInside, SideVerdict::kFalseInside, SideVerdict::kFalseOutside}) {
-        for (std::size_t i = 0; i < 25; ++i) {  // the edge of what is inside is the contour
+        for (std::size_t i = 0; i < 25; ++i) {  // the outline of the inside is the contour
             slice.verdicts[(50 + i / 5) * slice.size + 50 + i % 5] = verdict;
         }
         const std::vector<std::byte> drawn = picture();

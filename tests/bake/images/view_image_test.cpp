@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Views of patches, read back by OpenEXR's own reader: of shapes in closed form, and of a mesh from opposite sides.
+// Views of patches, read with the OpenEXR library: closed-form shapes, and a mesh from opposite sides.
 #include "bake/images/view_image.h"
 
 #include <cmath>
@@ -15,7 +15,7 @@
 namespace relief::test {
 namespace {
 
-/// A view, and the point in object space of each of its pixels on the near face of the bounds.
+/// A view, and the object-space point of each pixel on the near face of the bounds.
 struct View {
     View(const Collider& collider, int view, std::uint32_t size)
         : file(required(viewImage(collider, view, size))),
@@ -35,7 +35,7 @@ struct View {
             for (std::uint32_t x = 0; x < grid.width; ++x) {
                 const glm::vec3 p = grid.point(x, y, near);
                 const std::size_t pixel = grid.pixel(x, y);
-                // The camera in the header agrees.
+                // The camera in the header must agree.
                 const glm::vec3 seen = file.project(p);
                 ASSERT_NEAR(seen.x, static_cast<float>(pixel % grid.width) + 0.5F, 1e-3);
                 ASSERT_NEAR(seen.y, static_cast<float>(pixel / grid.width) + 0.5F, 1e-3);
@@ -85,7 +85,7 @@ TEST(ViewImage, ShowsABox) {
     EXPECT_EQ(viewImageName(3), "view_-y.exr");
 }
 
-// Every surface of the field is off by less than a texel, and so along the ray by less than a texel over the cosine.
+// The field has errors below a texel, so errors along the ray are below a texel over the cosine.
 TEST(ViewImage, ShowsABall) {
     const glm::dvec3 center(0.2, 0.1, -0.3);
     constexpr double kRadius = 0.9;
@@ -119,7 +119,7 @@ TEST(ViewImage, ShowsABall) {
     }
 }
 
-// Both ends lie on the surface of the field, and nothing before or behind them is inside. Threads change nothing.
+// Both ends lie on the surface of the field, and all points outside them are outside. Results do not depend on threads.
 TEST(ViewImage, ShowsTheFieldFromOppositeSides) {
     const TriangleMesh bunny = required(importMesh("/usr/share/glmark2/models/bunny.obj"));
     for (const std::vector<std::string>& specs :
@@ -182,7 +182,7 @@ TEST(ViewImage, ShowsTinyAndHugeColliders) {
     }
 }
 
-// A ridge along y at x = 0.5, as high as the cell, in one patch: beside it the surface is a flat floor at z = 0.
+// One patch with a ridge along y at x = 0.5, as high as the cell, on a flat floor at z = 0.
 TEST(ViewImage, ShowsARidgeWithinAPatch) {
     PatchHeights heights;
     heights.side = 5;
@@ -194,7 +194,7 @@ TEST(ViewImage, ShowsARidgeWithinAPatch) {
     ridge.maps = {patchesOf({{1, 1, 1}, 0}, {PatchRecord::patch({0, 2, 0}, false, heights, 2),
                                              heights.texel(0), heights.texel(1), heights.texel(2)})};
     ridge.maps[0].encloses = ridge.maps[0].empty_is_outside = true;
-    // Bounds of a point limit neither the field nor the steps of a ray, half of which pass the tree.
+    // Point-sized bounds limit neither the field nor the ray steps. Half of the rays miss the tree.
     for (const glm::vec3& size : {glm::vec3(1.0F), glm::vec3(0.0F)}) {
         ridge.bounds = {glm::vec3(0.0F), size};
         const View image(ridge, 0, size.x > 0.0F ? 32 : 2);

@@ -127,7 +127,7 @@ GltfScribe bendingBar() {
         {{"primitives",
           Json::array({{{"attributes", {{"POSITION", position}, {"JOINTS_0", joint}, {"WEIGHTS_0", weight}}},
                         {"indices", index}}})}});
-    // The mesh's own node is elsewhere, which must not matter.
+    // The transform of the mesh's own node must not matter.
     out.json["nodes"] = {{{"mesh", 0}, {"skin", 0}, {"translation", {7, 8, 9}}},
                          {{"name", "upper"}, {"translation", {0, 1, 0}}},
                          {{"name", "lower"}, {"children", {1}}}};
@@ -144,7 +144,7 @@ GltfScribe bendingBar() {
 GltfScribe robot() {
     GltfScribe out;
     const std::size_t mesh = out.box({0, 0, 0}, {1, 2, 3});
-    // Children come before their parents.
+    // Children precede their parents.
     out.json["nodes"] = {
         {{"name", "hand"}, {"mesh", mesh}, {"translation", {0, 2, 0}}, {"scale", {-1, 1, 1}}},
         {{"name", "arm"}, {"mesh", mesh}, {"translation", {1, 2, 0}}, {"children", {0}}},

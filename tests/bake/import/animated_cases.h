@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small glTF files that move, made of numbers.
+// Small animated glTF files in closed form.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace relief::test {
 
-/// A GLB with one scene, to be filled.
+/// Builds a GLB with one scene.
 class GltfScribe {
   public:
     GltfScribe();
@@ -19,12 +19,12 @@ class GltfScribe {
     /// \return the accessor. \param type  "SCALAR", "VEC3", …
     std::size_t floats(const char* type, const std::vector<float>& values);
     std::size_t bytes(const char* type, const std::vector<int>& values, bool normalized = false);
-    /// Of 16 bits, from −1 to 1.
+    /// Normalized 16-bit integers; values from −1 to 1.
     std::size_t shares(const char* type, const std::vector<double>& values);
     std::size_t indices(const std::vector<int>& values);
-    /// A mesh of one primitive: a box from `low` to `high`, each corner once.
+    /// A mesh with one primitive: a box from `low` to `high` with 8 vertices.
     std::size_t box(const glm::vec3& low, const glm::vec3& high);
-    /// An animation of one channel. \return its index.
+    /// An animation with one channel. \return its index
     std::size_t animate(std::size_t node, const char* path, std::size_t times, std::size_t values,
                         const char* curve = "LINEAR", const char* name = nullptr);
 
@@ -37,17 +37,17 @@ class GltfScribe {
     std::string buffer_;
 };
 
-/// Corner i of a box: its bits choose between low and high, x first.
+/// Corner i of a box. Bits 0, 1 and 2 select low or high along x, y and z.
 [[nodiscard]] glm::vec3 boxCorner(const glm::vec3& low, const glm::vec3& high, int i);
 
-/// A bar of 2 along y, and 1 wide, of two joints: the upper half bends to the left by 90 degrees within a second. Vertices at
-/// the middle are moved by both alike.
+/// A bar, 2 long along y and 1 wide, with two joints. The upper half bends left by 90 degrees in one second. Both
+/// joints move the middle vertices equally.
 [[nodiscard]] GltfScribe bendingBar();
 
-/// Three boxes: a base that moves along x, an arm on it that turns about z, and one that is mirrored.
+/// Three boxes: a base that moves along x, an arm on it that rotates about z, and a mirrored hand.
 [[nodiscard]] GltfScribe robot();
 
-/// A cube with two targets: 0 stretches it along x, 1 has no positions; node weights 0.5 and 0.
+/// A cube with two morph targets: 0 stretches it along x, 1 has no positions. The node's weights are 0.5 and 0.
 [[nodiscard]] GltfScribe morphingCube();
 
 }  // namespace relief::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Animated meshes of glTF files: their poses against closed forms and another reader, and what is refused.
+// Animated glTF files: poses compared with closed forms and a second reader, and rejected files.
 #include "bake/import/animated_import.h"
 
 #include <cmath>
@@ -47,7 +47,7 @@ void expectNear(const glm::vec3& a, const glm::dvec3& b, double tolerance) {
         << a.x << " " << a.y << " " << a.z << " instead of " << b.x << " " << b.y << " " << b.z;
 }
 
-/// Six times the enclosed volume; negative where triangles look inwards.
+/// Six times the enclosed volume; negative if triangles face inwards.
 double volumeOf(const AnimatedMesh& mesh, const std::vector<glm::vec3>& positions, std::size_t first,
                 std::size_t count) {
     double sum = 0.0;
@@ -61,14 +61,14 @@ double volumeOf(const AnimatedMesh& mesh, const std::vector<glm::vec3>& position
 
 using Change = std::function<void(GltfScribe&)>;
 
-/// Puts JSON there. \param at  a JSON pointer.
+/// Sets a JSON value. \param at  a JSON pointer
 Change set(const std::string& at, const Json& value) {
     return [=](GltfScribe& scribe) { scribe.json[Json::json_pointer(at)] = value; };
 }
 Change erased(const std::string& at, const char* name) {
     return [=](GltfScribe& scribe) { scribe.json[Json::json_pointer(at)].erase(name); };
 }
-/// Puts the number of a new accessor there.
+/// Sets the index of a new accessor.
 Change floats(const std::string& at, const char* type, const std::vector<float>& values) {
     return [=](GltfScribe& scribe) { scribe.json[Json::json_pointer(at)] = scribe.floats(type, values); };
 }
@@ -91,7 +91,7 @@ TEST(AnimatedImport, KeepsAnimatedParts) {
     EXPECT_EQ(bar.joints.size(), 2U);
     EXPECT_EQ(bar.influences.size(), 4U + 8U + 4U) << "weights of 0 are dropped";
     EXPECT_GT(volumeOf(bar, posed(bar, restPose(bar)), 0, bar.triangles.size()), 0.0);
-    // A quarter turn of the bar's upper half, in steps of 16 bits.
+    // The upper half makes a quarter turn, quantized to 16 bits.
     const std::vector<glm::vec3> bent = at(bar, "bend", 2.0);
     for (std::size_t i = 0; i < bent.size(); ++i) {
         const glm::dvec3 p(bar.positions[i]);
@@ -101,7 +101,7 @@ TEST(AnimatedImport, KeepsAnimatedParts) {
     const AnimatedImport import = loaded(robot());
     const AnimatedMesh& mesh = import.mesh;
     ASSERT_EQ(mesh.positions.size(), 24U);
-    // base, arm, hand: parents before their children, below the frame
+    // base, arm, hand: parents precede children, below the frame
     ASSERT_EQ(mesh.nodes.size(), 4U);
     EXPECT_EQ(mesh.nodes[1].name, "base");
     EXPECT_EQ(mesh.nodes[2].parent, 1);
@@ -117,7 +117,7 @@ TEST(AnimatedImport, KeepsAnimatedParts) {
     EXPECT_EQ(cube.deltas.size(), 4U) << "those that are 0 are dropped";
 }
 
-// One name is one material, whichever of the file has it; what has none is "", and where none has a name, nothing is kept.
+// Materials with equal names are one material. A missing name is "". Nothing is kept if no material has a name.
 TEST(AnimatedImport, KeepsMaterialNames) {
     GltfScribe scribe = robot();
     EXPECT_TRUE(loaded(scribe).mesh.materials.empty());
@@ -178,7 +178,7 @@ TEST(AnimatedImport, InstancesAndJointsOutsideTheSceneAreAnimated) {
     expectNear(posed(unbound, restPose(unbound))[8], {-0.5, 3, -0.5}, 1e-6);
 }
 
-// --- against the book ---
+// --- compared with the reference reader ---
 
 void compareWithTheBook(const GltfCase& file, std::size_t clips) {
     const TemporaryFolder folder;
@@ -203,7 +203,7 @@ void compareWithTheBook(const GltfCase& file, std::size_t clips) {
                 low = glm::min(low, corner);
                 high = glm::max(high, corner);
             }
-            // Mirrored parts are turned over.
+            // Mirrored parts have the opposite winding.
             worst =
                 std::max({worst, off(t.x, 0),
                           std::min(std::max(off(t.y, 1), off(t.z, 2)), std::max(off(t.y, 2), off(t.z, 1)))});
@@ -232,7 +232,7 @@ TEST(AnimatedImport, PosesMatchTheReferenceReader) {
         const auto number = static_cast<float>(i);
         spins.insert(spins.end(), {0.3F - 0.1F * number, 0.2F, 0.5F - 0.04F * number, 0.8F});
     }
-    // Values of cubic rotations need be near unit length.
+    // Values of cubic rotations must be near unit length.
     for (const std::size_t key : {4U, 16U, 28U}) {
         const float square = std::inner_product(&spins[key], &spins[key] + 4, &spins[key], 0.0F);
         std::for_each(&spins[key], &spins[key] + 4, [square](float& x) { x /= std::sqrt(square); });
@@ -244,7 +244,7 @@ TEST(AnimatedImport, PosesMatchTheReferenceReader) {
     swings.animate(0, "scale", times, swings.floats("VEC3", {1, 1, 1, 2, 1, 0.5F, 1, 3, 1}), "LINEAR",
                    "grow");
     compareWithTheBook(swings.file(), 5);
-    // Published models.
+    // Sample models.
     const fs::path models = "/usr/share/assimp/models/glTF2/glTF-Sample-Models";
     const auto bytes = [](const fs::path& path) {
         std::ifstream file(path, std::ios::binary);
@@ -257,7 +257,7 @@ TEST(AnimatedImport, PosesMatchTheReferenceReader) {
     compareWithTheBook(model, 1);
 }
 
-// --- names and clips of other files ---
+// --- names, and clips of other files ---
 
 TEST(AnimatedImport, ClipsOfOtherFilesAnimateNodesByName) {
     const TemporaryFolder folder;
@@ -265,7 +265,7 @@ TEST(AnimatedImport, ClipsOfOtherFilesAnimateNodesByName) {
     still.json.erase("animations");
     GltfScribe moves = robot();
     moves.json.erase("meshes");
-    // Other numbers, other places in the tree, one more node.
+    // Different node indices, a different hierarchy, and one more node.
     moves.json["nodes"] = {{{"name", "elsewhere"}}, {{"name", "base"}}, {{"name", "arm"}}};
     moves.json["scenes"][0]["nodes"] = {0, 1, 2};
     moves.json["animations"][0]["channels"][0]["target"]["node"] = 1;
@@ -305,7 +305,7 @@ TEST(AnimatedImport, ClipNamesAreUnique) {
     EXPECT_TRUE(warns(import.rest, "another clip has the name 'clip 0'; this one is renamed to 'clip 0 2'"));
 }
 
-// --- right and wrong ---
+// --- valid and invalid files ---
 
 TEST(AnimatedImport, EmptyChannelsAreDropped) {
     GltfScribe scribe = robot();

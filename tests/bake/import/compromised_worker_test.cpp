@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A worker that a hostile file has taken over: a process with the worker's own descriptors that enters the worker's
-// sandbox and then tries, by bare system calls, whatever could reach beyond it.
+// A worker controlled by a hostile file. A process with the worker's descriptors enters the worker's sandbox and then
+// attempts every harmful system call.
 #include <fcntl.h>
 #include <linux/landlock.h>
 #include <linux/openat2.h>
@@ -40,18 +40,18 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kMemory = std::uint64_t{256} << 20;
 constexpr std::size_t kPage = 4096;
-constexpr int kLeakedFd = 7;  ///< a file open for writing, which the real worker does not even have
+constexpr int kLeakedFd = 7;  ///< a file open for writing; the real worker has none
 constexpr int kFiles = 8;
 constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL;
 
-constexpr int kDone = 0;     // exit codes of the worker: it could
-constexpr int kRefused = 1;  // and it could not, without being ended
+constexpr int kDone = 0;     // exit code: the attempt succeeded
+constexpr int kRefused = 1;  // exit code: the attempt failed
 constexpr int kNoSandbox = 2;
 
-/// What the worker finds, as in import_protocol.h.
+/// The environment of the worker, as in import_protocol.h.
 class Place {
   public:
-    /// \param rows  a pipe is the result.
+    /// \param rows  if true, the result is a pipe
     explicit Place(bool rows = false) {
         fs::create_directory(folder_.path() / "in");
         folder_.write("in/inside", std::string(kPage, 'i'));
@@ -100,7 +100,7 @@ class Place {
         return {std::istreambuf_iterator<char>(file), {}};
     }
 
-    /// For the child: the descriptors at their numbers, and no other.
+    /// Called in the child: moves the descriptors to their numbers and closes all others.
     void become() const {
         std::array<int, kFiles> raised{};
         for (std::size_t i = 0; i < kFiles; ++i) {
@@ -120,12 +120,12 @@ class Place {
 };
 
 struct End {
-    int code = -1;   ///< of the worker; -1 if a signal ended it
-    int signal = 0;  ///< that did
+    int code = -1;   ///< exit code of the worker; -1 if a signal killed it
+    int signal = 0;  ///< the signal that killed it
     bool refused() const { return code == kRefused || signal == SIGSYS; }
 };
 
-/// A child asks, in the sandbox or outside of it.
+/// Makes an attempt in a child process, inside or outside the sandbox.
 End ask(const Place& place, bool sandbox, const std::function<bool()>& what) {
     const pid_t child = ::fork();
     if (child == 0) {
@@ -148,8 +148,8 @@ long raw(long call, Arguments... arguments) {
 
 struct Attempt {
     const char* name;
-    std::function<bool()> what;  ///< true: it could
-    bool alone = true;           ///< can be done outside of the sandbox, here and by anybody
+    std::function<bool()> what;  ///< returns true if it succeeded
+    bool alone = true;           ///< succeeds outside the sandbox, on any machine and for any user
 };
 
 void* mapped(std::uint64_t size, int protection) {
@@ -189,7 +189,7 @@ std::vector<Attempt> attempts(const Place& place) {
         return child > 0;
     };
     return {
-        // open, to read or to write
+        // open for reading or writing
         {"open", [=] { return raw(SYS_open, outside.c_str(), O_RDONLY) >= 0; }},
         {"open /etc/passwd", [=] { return raw(SYS_openat, AT_FDCWD, "/etc/passwd", O_RDONLY) >= 0; }},
         {"open to write", [=] { return raw(SYS_openat, AT_FDCWD, inside.c_str(), O_WRONLY) >= 0; }},
@@ -202,7 +202,7 @@ std::vector<Attempt> attempts(const Place& place) {
         {"openat2 a folder", [=] { return opens(".", O_RDONLY | O_DIRECTORY); }},
         {"openat2 a device", [=] { return opens("/dev/zero", O_RDONLY); }},
         {"openat2 itself", [=] { return opens("/proc/self/mem", O_RDWR); }},
-        // write where it was given no leave to: a file that leaked, its standard output, the mesh, the pipe
+        // write without permission: a leaked file, standard output, the mesh, the pipe
         {"write", [=] { return raw(SYS_write, kLeakedFd, &byte, 1) == 1; }},
         {"write to standard output", [=] { return raw(SYS_write, STDOUT_FILENO, &byte, 1) == 1; }},
         {"write to the pipe", [=] { return raw(SYS_write, kImportAliveFd, &byte, 1) == 1; }},
@@ -219,13 +219,13 @@ std::vector<Attempt> attempts(const Place& place) {
              return raw(SYS_mprotect, mapped(kPage, PROT_READ | PROT_WRITE), kPage, PROT_READ | PROT_EXEC) ==
                     0;
          }},
-        // run code, or another process
+        // run code or another process
         {"clone", [=] { return forked(raw(SYS_clone, SIGCHLD, 0, 0, 0, 0)); }},
         {"clone into a namespace",
          [=] { return forked(raw(SYS_clone, CLONE_NEWUSER | SIGCHLD, 0, 0, 0, 0)); }, false},
         {"clone3", [=] { return forked(raw(SYS_clone3, how, sizeof(how))); },
-         false},  // some containers have none
-        // its parent and other processes
+         false},  // unavailable in some containers
+        // the parent and other processes
         {"tgkill the parent", [=] { return raw(SYS_tgkill, parent, parent, 0) == 0; }},
         {"the parent's limits", [=] { return raw(SYS_prlimit64, parent, RLIMIT_CPU, nullptr, &limit) == 0; }},
         // its own limits
@@ -236,17 +236,17 @@ std::vector<Attempt> attempts(const Place& place) {
     };
 }
 
-/// Seccomp must be there for most of this; every kernel that the tests run on has it.
+/// Most checks need seccomp. Every kernel that runs the tests has it.
 bool kernelHasSeccomp() {
     return ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, nullptr) != 0 && errno == EFAULT;
 }
 
-/// Without it ImportFiles alone keeps to the folder.
+/// Without Landlock, only ImportFiles restricts the worker to the folder.
 bool kernelHasLandlock() {
     return ::syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION) >= 1;
 }
 
-/// System calls that the filter allows, or answers with an error; those above try what of them could do harm.
+/// System calls that the filter allows or fails. attempts() covers the harmful ones.
 const std::vector<std::set<long>> kAnswered = {
     {SYS_brk, SYS_munmap, SYS_mremap, SYS_madvise, SYS_mmap, SYS_mprotect},
     {SYS_read, SYS_readv, SYS_pread64, SYS_lseek, SYS_close, SYS_fstat, SYS_poll, SYS_ppoll},
@@ -267,7 +267,7 @@ bool isAnswered(long call) {
     return std::ranges::any_of(kAnswered, [&](const std::set<long>& calls) { return calls.contains(call); });
 }
 
-// Changes of files, sockets, other programs and processes, ways into the kernel: a number at a time.
+// Tests every other system call by number, such as file changes, sockets and processes.
 TEST(CompromisedWorker, OtherSystemCallsEndIt) {
     ASSERT_TRUE(kernelHasSeccomp());
     const Place place;
@@ -275,7 +275,7 @@ TEST(CompromisedWorker, OtherSystemCallsEndIt) {
     for (const long call : {SYS_unlink, SYS_socket, SYS_execve, SYS_fork, SYS_ptrace, SYS_kill, SYS_dup}) {
         ASSERT_FALSE(isAnswered(call));
     }
-    constexpr long kEnd = 470;  // of those that kernels have
+    constexpr long kEnd = 470;  // above the highest system call number
     for (long call = 0; call < kEnd; call = call == 334 ? 424 : call + 1) {
         if (!isAnswered(call)) {
             EXPECT_EQ(ask(place, true, [call] { return raw(call, 0, 0, 0, 0, 0, 0) >= 0; }).signal, SIGSYS)
@@ -296,7 +296,7 @@ TEST(CompromisedWorker, ReachesNothing) {
             continue;
         }
 #ifdef RELIEF_SANITIZED
-        // The sanitizers write what they find.
+        // Sanitizers write reports.
         if (std::string_view(attempt.name).starts_with("write to ") ||
             attempt.name == std::string_view("write")) {
             continue;
@@ -394,7 +394,7 @@ TEST(CompromisedWorker, HasKernelLimits) {
 #endif
 }
 
-/// Recurses without an end.
+/// Unbounded recursion.
 [[gnu::noinline]] std::size_t descend(std::size_t depth, volatile char* above) {
     volatile char here[kPage] = {};
     here[depth % kPage] = static_cast<char>(above[0] + 1);
@@ -428,7 +428,7 @@ TEST(CompromisedWorker, HasASmallStack) {
               kDone);
     const End end = ask(place, true, recurse);
 #ifdef RELIEF_SANITIZED
-    EXPECT_TRUE(end.signal != 0 || end.code == 1);  // reported
+    EXPECT_TRUE(end.signal != 0 || end.code == 1);  // reported by the sanitizer
 #else
     EXPECT_EQ(end.signal, SIGSEGV);
 #endif

@@ -21,7 +21,7 @@ std::string bytesOf(T value) {
     return bytes;
 }
 
-/// \param kind  componentType: numbers of 1, 1, 2, 2 and 4 bytes from 5120 on, and floats.
+/// \param kind  componentType: 5120 to 5125 are integers of 1, 1, 2, 2 and 4 bytes; 5126 is float
 std::string componentBytes(int kind, int value) {
     const std::size_t size = kind <= 5121 ? 1 : kind <= 5123 ? 2 : 4;
     return kind == 5126 ? bytesOf(static_cast<float>(value)) : bytesOf(value).substr(0, size);
@@ -42,7 +42,7 @@ class Maker {
         for (int i = 0; i < meshes_; ++i) {
             Json primitives = Json::array();
             for (int k = dice_.from(1, 2); k > 0; --k) {
-                // The first is a surface.
+                // The first primitive is a surface.
                 primitives.push_back(primitive(primitives.empty() && i == 0));
             }
             json_["meshes"].push_back({{"primitives", primitives}, {"name", "mesh"}});
@@ -58,7 +58,7 @@ class Maker {
     }
 
   private:
-    /// Values in the buffer, one after the other or a stride apart. \return the number of their view.
+    /// Appends values, packed or with a stride. \return the index of their buffer view
     std::size_t addView(int kind, std::size_t components, const std::vector<int>& values, bool apart,
                         std::size_t& offset) {
         buffer_.resize((buffer_.size() + 3) / 4 * 4, '\x7f');
@@ -95,7 +95,7 @@ class Maker {
         }
         if (!json.contains("sparse") || dice_.once(2)) {
             if (json.contains("sparse")) {
-                for (const int i : replaced_) {  // what lies below must not show
+                for (const int i : replaced_) {  // the sparse values must replace these
                     values[static_cast<std::size_t>(i) * components] ^= 1;
                 }
             }
@@ -165,7 +165,7 @@ class Maker {
         return json;
     }
 
-    /// Of one set, of floats or bytes: 255 of these is 1.
+    /// One set of influences, as floats or as bytes. A byte of 255 is 1.
     void addInfluences(Json& attributes, int vertices) {
         const bool bytes = dice_.once(2);
         const int one = bytes ? 255 : 1;
@@ -225,7 +225,7 @@ class Maker {
         return node;
     }
 
-    /// Each node below a former one or a root; those of a second scene are not shown.
+    /// Each node is a child of an earlier node or a root. Nodes of a second scene are not visible.
     void makeNodes() {
         const int count = dice_.from(2, 6);
         Json roots = Json::array();
@@ -259,13 +259,13 @@ class Maker {
     Dice& dice_;
     Json json_;
     std::string buffer_;
-    std::vector<int> replaced_;  // elements of the last sparse accessor
+    std::vector<int> replaced_;  // elements replaced by the last sparse accessor
     int meshes_ = 0;
     int joints_ = 1;
     bool quantised_ = false;
 };
 
-/// Another value, of any kind.
+/// A different value of any type.
 Json otherValue(const Json& value, Dice& dice) {
     if (value.is_number_integer() && dice.once(4)) {
         const int number = value.get<int>();

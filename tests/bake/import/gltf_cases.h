@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small glTF files of every kind that the specification allows, by a seed, and what may go wrong with them.
+// Small random glTF files that use all features of the specification, and mutations of them.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace relief::test {
 
-/// The same numbers everywhere.
+/// A portable random number generator.
 class Dice {
   public:
     explicit Dice(std::uint64_t seed) : state_(seed) {}
@@ -32,15 +32,16 @@ struct GltfCase {
     GltfContainer container = GltfContainer::kBinary;
 };
 
-/// Trees of nodes with matrices, or translations, rotations and scales; meshes used often, skinned ones; triangles, strips,
-/// fans, lines and points; positions as floats and quantised, apart and sparse; indices of three sizes, sparse or none.
+/// Node hierarchies with matrices or translations, rotations and scales; shared and skinned meshes; triangles, strips,
+/// fans, lines and points; float and quantized positions, strided and sparse; 8-, 16- and 32-bit indices, sparse or
+/// absent.
 [[nodiscard]] GltfCase makeGltf(Dice& dice);
 
-/// Changes one value somewhere in the document: takes it out, doubles it, or puts another in its place.
-/// \return what it did, for messages.
+/// Changes one value of the document: removes, duplicates or replaces it.
+/// \return a description of the change, for messages
 std::string mutateGltf(nlohmann::json& document, Dice& dice);
 
-/// Writes it and its buffer. \return its path.
+/// Writes the document and its buffer. \return the path
 std::filesystem::path writeGltf(const GltfCase& gltf, const TemporaryFolder& folder, const std::string& name);
 
 }  // namespace relief::test

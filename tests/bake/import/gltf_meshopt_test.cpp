@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// EXT_meshopt_compression: what the library packs comes back, filters against their formulas, and hostile sizes.
+// EXT_meshopt_compression: round trips through the meshoptimizer library, filters against their formulas, and hostile
+// sizes.
 #include "bake/import/gltf_meshopt.h"
 
 #include <meshoptimizer.h>
@@ -78,7 +79,7 @@ TEST(GltfMeshopt, DecodesPackedBuffers) {
     const auto triangles = unpacked<std::uint16_t>({{"mode", "TRIANGLES"}, {"count", 12}, {"byteStride", 2}},
                                                    packIndices(indices, true), 12);
     for (std::size_t i = 0; i < 12; i += 3) {
-        // The first corner may be another one.
+        // The triangle may start at another corner.
         std::vector<std::uint32_t> turned(indices.begin() + static_cast<std::ptrdiff_t>(i),
                                           indices.begin() + static_cast<std::ptrdiff_t>(i + 3));
         const auto first = std::find(turned.begin(), turned.end(), triangles[i]);
@@ -89,13 +90,13 @@ TEST(GltfMeshopt, DecodesPackedBuffers) {
 }
 
 TEST(GltfMeshopt, FiltersMatchTheSpecification) {
-    // 2 to the power of the high byte, times the low 24 bits, both signed.
+    // 2 to the power of the high byte, times the low 24 bits; both signed.
     const std::vector<std::uint32_t> powers = {0xFE000003, 0x02FFFFFF, 0x00000000, 0x01000007};
     EXPECT_EQ(
         unpacked<float>({{"mode", "ATTRIBUTES"}, {"filter", "EXPONENTIAL"}, {"count", 2}, {"byteStride", 8}},
                         packAttributes(powers.data(), 2, 8), 4),
         (std::vector<float>{0.75F, -4.0F, 0.0F, 14.0F}));
-    // x, y on the octahedron whose third coordinate is 1 − |x| − |y|, of a length of 64.
+    // x and y on the octahedron; z is 1 − |x| − |y|. The scale is 64.
     const std::vector<std::int8_t> directions = {64, 0, 64, 9, 0, 0, 64, 8, 32, 32, 64, 7, 48, 48, 64, 6};
     const auto normals = unpacked<std::int8_t>(
         {{"mode", "ATTRIBUTES"}, {"filter", "OCTAHEDRAL"}, {"count", 4}, {"byteStride", 4}},
@@ -109,7 +110,7 @@ TEST(GltfMeshopt, FiltersMatchTheSpecification) {
         EXPECT_LE(glm::distance(p, glm::dvec3(normals[i], normals[i + 1], normals[i + 2])), 1.0) << i;
         EXPECT_EQ(normals[i + 3], directions[i + 3]);
     }
-    // Three components in units of √½, and the index of the largest, which is missing.
+    // Three components in units of √½, and the index of the omitted largest one.
     const std::vector<std::int16_t> packed = {1000, -500, 200, (2047 & ~3) | 2, 0, 0, 0, (2047 & ~3) | 3};
     const auto turns = unpacked<std::int16_t>(
         {{"mode", "ATTRIBUTES"}, {"filter", "QUATERNION"}, {"count", 2}, {"byteStride", 8}},
@@ -122,7 +123,8 @@ TEST(GltfMeshopt, FiltersMatchTheSpecification) {
     EXPECT_EQ(turns[7], 32767);
 }
 
-/// The file with every view packed whose elements are of 4 bytes or indices, in a second buffer; the first is none.
+/// Compresses every view of indices or of elements of a multiple of 4 bytes into a second buffer. The first buffer is a
+/// fallback without data.
 GltfCase packedFile(const GltfScribe& scribe) {
     GltfCase file = scribe.file();
     std::string buffer;

@@ -21,7 +21,7 @@ using Json = nlohmann::json;
 using Place = std::function<glm::dvec3(glm::dvec3)>;
 using Numbers = std::vector<double>;
 
-/// What an accessor is for: each use allows other types.
+/// The purpose of an accessor. Each purpose allows different types.
 enum class Use { kPositions, kIndices, kJoints, kWeights, kMatrices, kKeys };
 
 void must(bool holds, const char* what) {
@@ -179,7 +179,7 @@ class Book {
         }
     }
 
-    /// \param m  16 numbers, column by column.
+    /// \param m  16 numbers, column-major
     static Place placeOfMatrix(const double* m) {
         must(std::abs(m[3]) + std::abs(m[7]) + std::abs(m[11]) + std::abs(m[15] - 1) < 3e-5, "the last row");
         glm::dmat4x3 matrix;
@@ -239,7 +239,7 @@ class Book {
         return own;
     }
 
-    /// Where a skin puts vertices.
+    /// Skinned positions of the vertices.
     std::vector<glm::dvec3> skinned(const std::vector<glm::dvec3>& points, const Json& attributes,
                                     const Json& skin) {
         const Json& joints = list(skin, "joints");
@@ -270,7 +270,7 @@ class Book {
                 must(weights[k] >= 0, "a weight");
                 all += weights[k];
                 if (weights[k] > 0 && by[k] >= static_cast<double>(places.size())) {
-                    sum = glm::dvec3(std::nan(""));  // wrong where a triangle uses it
+                    sum = glm::dvec3(std::nan(""));  // invalid only if a triangle uses it
                 } else if (weights[k] > 0) {
                     sum += weights[k] * places.at(static_cast<std::size_t>(by[k]))(points[i]);
                 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Another reader of glTF, as short as the specification allows, for small files with one buffer: what bake/import is compared with.
+// A minimal glTF reader for small files with one buffer, written from the specification. Tests compare bake/import with
+// it.
 #pragma once
 
 #include <array>
@@ -19,13 +20,13 @@ struct GltfMoment {
     double seconds = 0.0;
 };
 
-/// All triangles of the file's scene, in the order in which the file has them, morphed by its weights.
-/// \param moment  nullopt: the nodes as the file has them.
-/// Throws std::exception for whatever is not as the specification says, as far as triangles hang on it.
+/// All triangles of the default scene in file order, with morph weights applied.
+/// \param moment  nullopt: the nodes' own transforms
+/// Throws std::exception if anything that the triangles depend on violates the specification.
 [[nodiscard]] std::vector<Corners> readGltfByTheBook(const GltfCase& file,
                                                      const std::optional<GltfMoment>& moment = {});
 
-/// Seconds that each animation lasts.
+/// Duration of each animation in seconds.
 [[nodiscard]] std::vector<double> gltfLengthsByTheBook(const GltfCase& file);
 
 }  // namespace relief::test

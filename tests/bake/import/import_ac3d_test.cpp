@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// AC3D: objects as nodes, placed by all that is above them; surfaces of every kind; text as TORCS and people write it.
+// AC3D: node hierarchies, all kinds of surfaces, and files as TORCS and other programs write them.
 #include "bake/import/level_folder.h"
 #include "bake/import/mesh_import.h"
 #include "tests/bake/import/import_meshes.h"
@@ -13,7 +13,7 @@ const std::string kHead =
     "MATERIAL \"red paint\" rgb 1 0 0  amb 1 1 1  emis 0 0 0  spec 0 0 0  shi 10  trans 0\n"
     "MATERIAL \"\" rgb 1 1 1  amb 1 1 1  emis 0 0 0  spec 0 0 0  shi 10  trans 0\n";
 
-/// A tetrahedron of two materials. \param keys  before its vertices, a line each. \param after  behind 'kids'
+/// A tetrahedron with two materials. \param keys  lines before its vertices. \param after  text after 'kids'
 std::string tetrahedron(const std::string& name, const std::string& keys = "",
                         const std::string& kids = "0") {
     return "OBJECT poly\nname \"" + name + "\"\n" + keys +
@@ -24,7 +24,7 @@ std::string tetrahedron(const std::string& name, const std::string& keys = "",
 }
 
 TEST(Ac3d, ObjectsInheritTransforms) {
-    // The kids of a shifted object move along; x becomes y by 'rot', whose triples are the images of the axes.
+    // Children inherit the parent's offset. 'rot' maps x to y: its triples are the images of the axes.
     const TemporaryFolder folder;
     const Level read = required(importLevel(folder.write(
         "l.acc", kHead + "OBJECT world\nkids 2\nOBJECT group\nname \"yard\"\nloc 10 0 0\nkids 1\n" +
@@ -47,7 +47,7 @@ TEST(Ac3d, ObjectsInheritTransforms) {
 }
 
 TEST(Ac3d, SurfacesOfEveryKind) {
-    // A quad as a strip with normals and two textures, joined to another by corners that are there twice; and two lines.
+    // A quad as a strip with normals and two textures, joined to another quad by duplicate vertices, and two lines.
     const std::string strip =
         "OBJECT poly\nname plain\ntexture \"a b.rgb\" base\ntexture empty_texture_no_mapping skids\ndata "
         "13\nOBJECT\nkids 9\n"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contents decide what a file is: each format under every name, and what is no mesh at all.
+// The contents determine the format of a file, whatever its name. Files that are not meshes are rejected.
 #include "bake/import/import_format.h"
 
 #include "bake/import/mesh_import.h"
@@ -41,7 +41,7 @@ TEST(ImportFormat, SignaturesOverrideNames) {
         EXPECT_FALSE(warns(right, "its contents"));
     }
     EXPECT_TRUE(importTextInWorker("json.glb", tetrahedronGltf()));
-    // What names nothing beyond doubt is read as its name says.
+    // Files without an unambiguous signature are read by their name.
     expectRefused(importTextInWorker("b.obj", "glTF and other words\n"), "b.obj");
 }
 

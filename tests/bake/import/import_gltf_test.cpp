@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// glTF, right and wrong: each file is read as the specification says, or refused in one line.
+// Valid and invalid glTF: each file is read as specified or rejected with a one-line message.
 
 #include <functional>
 #include <glm/geometric.hpp>
@@ -43,9 +43,9 @@ Wrong node(const std::string& members, const std::string& words) {
     return parts({.nodes = R"({"mesh":0,)" + members + "}"}, words);
 }
 
-// --- against the book ---
+// --- compared with the reference reader ---
 
-/// Whether it may be that a triangle has no area: Relief drops those.
+/// Whether a triangle may have no area. Relief drops such triangles.
 bool isThin(const Corners& t) {
     const glm::dvec3 a = t[1] - t[0];
     const glm::dvec3 b = t[2] - t[0];
@@ -63,7 +63,7 @@ std::vector<Corners> trianglesOf(const TriangleMesh& mesh) {
     return triangles;
 }
 
-/// The same corners, whichever comes first.
+/// Whether both triangles have the same corners in the same order, from any start.
 bool same(const Corners& a, const Corners& b) {
     for (std::size_t turn = 0; turn < 3; ++turn) {
         bool all = true;
@@ -78,7 +78,7 @@ bool same(const Corners& a, const Corners& b) {
     return false;
 }
 
-/// The book does not know what is outwards: a transform that mirrors turns Relief's triangles over.
+/// The reference reader ignores winding: Relief reverses triangles under mirroring transforms.
 bool sameSurface(const Corners& a, const Corners& b) {
     return same(a, b) || same(a, {b[0], b[2], b[1]});
 }
@@ -86,10 +86,10 @@ bool sameSurface(const Corners& a, const Corners& b) {
 struct Verdicts {
     int read = 0;
     int refused = 0;
-    int stricter = 0;  // refused, though the book reads it
+    int stricter = 0;  // rejected, but accepted by the reference reader
 };
 
-/// What Relief reads of a file must be what the book reads. \param right  whether it must be read at all.
+/// Relief must read the same triangles as the reference reader. \param right  the file is valid and must be read
 void compare(const GltfCase& gltf, const fs::path& file, bool right, Verdicts& verdicts) {
     std::optional<std::vector<Corners>> book;
     std::string why;
@@ -122,7 +122,7 @@ void compare(const GltfCase& gltf, const fs::path& file, bool right, Verdicts& v
     ASSERT_EQ(at, triangles.size()) << "triangles that are not in the file";
 }
 
-/// Files of a range of seeds. \param change  what it does to the file, by name.
+/// Compares files of a range of seeds. \param change  modifies a file and returns a description
 Verdicts compareMany(std::uint32_t first, std::uint64_t count, bool right,
                      const std::function<std::string(GltfCase&, Dice&)>& change) {
     const TemporaryFolder folder;
@@ -164,7 +164,7 @@ TEST(ImportGltf, BufferBytesMayBeInvalidIndices) {
     EXPECT_GT(verdicts.refused, 10);
 }
 
-// --- by hand ---
+// --- handwritten files ---
 
 TEST(ImportGltf, SkinnedMeshIgnoresItsNode) {
     const std::string nodes =
@@ -175,12 +175,12 @@ TEST(ImportGltf, SkinnedMeshIgnoresItsNode) {
     const TriangleMesh mesh = loaded(skinned(R"("joints":[1])"));
     EXPECT_EQ(mesh.bounds.max, glm::vec3(1, 2, 3));
     EXPECT_TRUE(mesh.warnings.size() == 1 && warns(mesh, "it is skinned; parts without joints"));
-    // A model of the glTF tutorials, which is bound half a unit beside.
+    // A model of the glTF tutorials whose bind pose is offset by half a unit.
     const TriangleMesh model =
         required(importMesh("/usr/share/assimp/models/glTF2/simple_skin/simple_skin.gltf"));
     EXPECT_EQ(model.bounds.min, glm::vec3(-0.5F, 0, 0));
     EXPECT_TRUE(model.warnings.size() == 1 && warns(model, "in the pose of its nodes"));
-    // Units and axes still do.
+    // Units and axes still apply.
     const ImportOptions options = {"cm", UpAxis::kPlusZ};
     EXPECT_EQ(imported("u.gltf", tetrahedronGltf(skinned(R"("joints":[1])")), options).bounds.max,
               glm::vec3(0.01F, 0.03F, 0.0F));
@@ -219,7 +219,7 @@ TEST(ImportGltf, VersionsAndExtensions) {
         return GltfParts{.more = '"' + std::string(list) + R"(":[")" + name + "\"],"};
     };
     EXPECT_TRUE(load(asset(R"("version":"2.1","minVersion":"2.0")")));
-    // What is only used, and not required, does not stop it.
+    // Extensions that are used but not required do not stop the import.
     EXPECT_TRUE(loaded(extension("extensionsUsed", "VENDOR_unheard_of")).warnings.empty());
     EXPECT_TRUE(loadParts(extension("extensionsUsed", "KHR_mesh_quantization")));
     EXPECT_TRUE(loadParts(extension("extensionsRequired", "KHR_materials_unlit")));
@@ -239,18 +239,18 @@ TEST(ImportGltf, VersionsAndExtensions) {
                  {replaced(tetrahedronGltf(), R"("asset")", R"("assets")"), "no glTF version"},
                  {replaced(tetrahedronGltf(), R"({"asset")", R"({"extensionsRequired":{},"asset")"),
                   "extensionsRequired is not an array"}});
-    // Accessors have the same mesh uncompressed if the extension is only used.
+    // If the extension is optional, its accessors also contain the uncompressed mesh.
     EXPECT_TRUE(loadParts(
         {.primitive = R"("attributes":{"POSITION":0},"indices":1,"extensions":{)"
                       R"("KHR_draco_mesh_compression":{"bufferView":0,"attributes":{"POSITION":0}}})"}));
 }
 
 TEST(ImportGltf, InstancesAreRepeated) {
-    // At the corners of the tetrahedron, (0, 0, 0), (1, 0, 0), (0, 2, 0) and (0, 0, 3), within a node that is twice as large.
+    // Instances at the corners of the tetrahedron, below a node with a scale of 2.
     const auto instances = [](const std::string& attributes) {
         return GltfParts{.nodes = R"({"mesh":0,"scale":[2,2,2],"extensions":{"EXT_mesh_gpu_instancing":{)" +
                                   attributes + "}}}",
-                         // The same floats as three vectors of four numbers, none of which is a rotation.
+                         // The same floats as three VEC4; none is a rotation.
                          .indices = GltfParts().indices +
                                     R"(},{"bufferView":0,"componentType":5126,"count":3,"type":"VEC4")",
                          .more = R"("extensionsRequired":["EXT_mesh_gpu_instancing"],)"};
@@ -391,7 +391,7 @@ TEST(ImportGltf, BinaryChunks) {
 }
 
 TEST(ImportGltf, SparseAndQuantizedAccessors) {
-    // Bytes of −127 and 127 as −1 and 1, moved by the values of a sparse accessor.
+    // Bytes of ±127 are ±1, offset by a sparse accessor.
     const std::string text =
         R"({"asset":{"version":"2.0"},"extensionsRequired":["KHR_mesh_quantization"],"scenes":[{"nodes":[0]}],)"
         R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[)"
@@ -436,7 +436,7 @@ TEST(ImportGltf, FlatAndMorphedPartsWarn) {
 
 TEST(ImportGltf, ScenesMustBeNonemptyTrees) {
     std::string unfolding;
-    for (int i = 0; i < 40; ++i) {  // a kilobyte; 2⁴⁰ instances
+    for (int i = 0; i < 40; ++i) {  // a kilobyte that expands to 2⁴⁰ instances
         const std::string next = std::to_string(i + 1);
         unfolding += R"({"children":[)" + next + "," + next + "]},";
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Geometry that a file has and does not show, and instances of what it does not have.
+// Hidden geometry, and instances of missing geometry.
 
 #include <cstring>
 #include <ctime>
@@ -19,7 +19,7 @@
 namespace relief::test {
 namespace {
 
-/// The tetrahedron at the node `t`, and at `other`, moved by 10 along x, with these properties.
+/// The tetrahedron at node `t`, and at node `other` with these properties, translated by 10 along x.
 std::string twoFbx(const std::string& properties, const std::string& other_class = "Mesh") {
     std::string text = tetrahedronFbx(1, 1, "100");
     const std::string model = "Model: 2000, \"Model::t\", \"Mesh\" {\nVersion: 232\nProperties70:  {\n}\n}\n";
@@ -32,7 +32,7 @@ std::string twoFbx(const std::string& properties, const std::string& other_class
     return replaced(text, placed, placed + "C: \"OO\",3000,0\nC: \"OO\",1000,3000\n");
 }
 
-/// The node `parent` holds `inner`, which shows the tetrahedron at x = 10 beside that of `t`.
+/// Node `parent` has the child `inner`, a tetrahedron at x = 10, beside node `t`.
 std::string nestedFbx(const std::string& parent, const std::string& inner) {
     std::string text = twoFbx(inner);
     text = replaced(text, "Model: 3000",
@@ -42,7 +42,7 @@ std::string nestedFbx(const std::string& parent, const std::string& inner) {
     return replaced(text, "C: \"OO\",3000,0\n", "C: \"OO\",4000,0\nC: \"OO\",3000,4000\n");
 }
 
-/// `Tree` with the levels `near`, at x = 0, and `far`, at x = 10; `t` beside it.
+/// A LodGroup `Tree` with the levels `near` at x = 0 and `far` at x = 10, beside node `t`.
 std::string levelsFbx() {
     std::string text = twoFbx("");
     text = replaced(text, "Model: 3000",
@@ -53,7 +53,7 @@ std::string levelsFbx() {
                     "C: \"OO\",4000,0\nC: \"OO\",5000,4000\nC: \"OO\",1000,5000\nC: \"OO\",3000,4000\n");
 }
 
-/// An FBX document of the lines above as binary.
+/// Converts the text FBX documents above to binary.
 class BinaryFbx {
   public:
     explicit BinaryFbx(const std::string& text) : lines_(text) {
@@ -78,7 +78,7 @@ class BinaryFbx {
         std::memcpy(&out_[at], &number, sizeof(number));
     }
 
-    /// Up to its '}'. \return whether it had lines.
+    /// Reads until '}'. \return whether the block has lines
     bool readBlock() {
         bool any = false;
         for (std::string line; std::getline(lines_, line) && line != "}"; any = true) {
@@ -180,7 +180,7 @@ std::string propertyShow(int value) {
     return R"(P: "Show", "bool", "", "",)" + std::to_string(value) + "\n";
 }
 
-/// A document with this library of nodes, and this visual scene.
+/// A document with this node library and this visual scene.
 std::string dae(const std::string& scene, const std::string& library = "") {
     return replaced(
         replaced(tetrahedronDae(""), R"(<node id="n"><instance_geometry url="#g"/></node>)", scene),
@@ -192,7 +192,7 @@ constexpr const char* kMoved = "<translate>10 0 0</translate>";
 constexpr const char* kUnseen =
     R"(<extra><technique profile="FCOLLADA"><visibility>0.000000</visibility></technique></extra>)";
 
-/// A node of the tetrahedron at x = 10.
+/// A node with the tetrahedron at x = 10.
 std::string hiddenNode(const std::string& attributes, const std::string& extra = kUnseen) {
     return "<node " + attributes + ">" + kMoved + R"(<instance_geometry url="#g"/>)" + extra + "</node>";
 }
@@ -200,7 +200,7 @@ std::string hiddenDae(const std::string& attributes, const std::string& extra = 
     return dae(kShownNode + hiddenNode(attributes, extra));
 }
 
-/// The tetrahedron at x = 0 and, hidden, at x = 10.
+/// The tetrahedron at x = 0, and hidden at x = 10.
 std::vector<std::pair<std::string, std::string>> hiddenFiles() {
     const std::string hidden = R"({"mesh":0,"name":"other","translation":[10,0,0],"extensions":)"
                                R"({"KHR_node_visibility":{"visible":false}}})";
@@ -257,7 +257,7 @@ TEST(ImportHidden, HiddenGeometryIsSkippedAndCounted) {
     }
 }
 
-// In FBX, Visibility is that of all below, but Show is that of the node only.
+// FBX: Visibility applies to all descendants, Show only to its node.
 TEST(ImportHidden, FbxShowAffectsOnlyItsNode) {
     const TriangleMesh mesh = imported("show.fbx", nestedFbx(propertyShow(0), ""));
     EXPECT_EQ(mesh.triangles.size(), 8U);
@@ -280,7 +280,7 @@ TEST(ImportHidden, VisibleGeometryIsKept) {
         EXPECT_EQ(mesh.triangles.size(), 8U);
         EXPECT_TRUE(mesh.warnings.empty());
     }
-    // A node that does not inherit its visibility.
+    // A node that does not inherit visibility.
     const std::string apart = R"(P: "Visibility Inheritance", "Visibility Inheritance", "", "",0)"
                               "\n";
     EXPECT_EQ(imported("apart.fbx", nestedFbx(visibility("0"), apart)).triangles.size(), 8U);
@@ -300,7 +300,7 @@ TEST(ImportHidden, KeepReadsHiddenGeometry) {
     }
 }
 
-/// Names of COLLADA nodes may be missing, or occur several times; an id is not needed, and a sid is not unique.
+/// COLLADA nodes may have no name or equal names. An id is optional, and a sid is not unique.
 TEST(ImportHidden, ColladaNodesWithEqualNamesAreHiddenSeparately) {
     const std::string other = R"(<technique profile="OTHER"><kind>1</kind></technique>)";
     for (const std::string& extra : {std::string(kUnseen), replaced(kUnseen, "<extra>", "<extra>" + other),
@@ -329,7 +329,7 @@ TEST(ImportHidden, ColladaNodesWithEqualNamesAreHiddenSeparately) {
 TEST(ImportHidden, FullyHiddenFilesAreRejectedWithTheOption) {
     const std::string all = R"({"mesh":0,"extensions":{"KHR_node_visibility":{"visible":false}}})";
     expectWrong("none.gltf", {{tetrahedronGltf({.nodes = all}), "all of its objects are hidden"}});
-    // The object gets a chunk 0x4010, and the keyframer a node of it.
+    // The object gets the chunk 0x4010; later, a keyframer contains a node for it.
     std::string file = tetrahedron3ds();
     file += std::string("\x10\x40\6\0\0\0", 6);
     for (const std::size_t size_at : {2U, 8U, 14U}) {
@@ -371,7 +371,7 @@ TEST(ImportHidden, OnlyTheFirstLevelOfDetailIsBaked) {
     expectWrong("levels.gltf",
                 {{tetrahedronGltf({.nodes = R"({"mesh":0,"extensions":{"MSFT_lod":{"ids":[7]}}})"}),
                   "nodes[0].extensions.MSFT_lod references nodes[7], which does not exist"}});
-    // The first level is hidden, here with a node without a name above it.
+    // The first level is hidden, directly or by an unnamed parent.
     const std::string near = R"({"mesh":0,"extensions":{"MSFT_lod":{"ids":[1,2]})";
     const std::string hidden = R"("KHR_node_visibility":{"visible":false})";
     const std::string lower = R"({"mesh":0,"translation":[10,0,0]},{"mesh":0,"translation":[20,0,0]})";
@@ -402,7 +402,7 @@ TEST(ImportHidden, CyclicLevelsOfDetailAreRejected) {
         {{tetrahedronGltf({.nodes = node("1") + "," + node("0"), .roots = "0,1"}), words},
          {tetrahedronGltf({.nodes = node("1") + "," + node("2") + "," + node("0"), .roots = "0,1,2"}), words},
          {tetrahedronGltf({.nodes = R"({"children":[1]},)" + node("0")}), words}});
-    // An own number, a level of a level, a level of two nodes, and a level below its node.
+    // Its own index, a level with a level, a shared level, and a level that is also a child.
     const GltfParts chain{.nodes = node("0,1,2") + "," + node("2") + R"(,{"mesh":0},)" +
                                    node("4,2", R"(,"children":[4])") + R"(,{"mesh":0})",
                           .roots = "0,1,2,3"};
@@ -411,7 +411,7 @@ TEST(ImportHidden, CyclicLevelsOfDetailAreRejected) {
     EXPECT_TRUE(warns(mesh, "left out 3 lower levels of detail"));
 }
 
-/// Each of the matches below holds all that follow it.
+/// Every string contains all following ones, so copies would take quadratic time.
 TEST(ImportHidden, LongFbxStringsAreNotCopied) {
     constexpr std::uint32_t kSize = 1U << 20;
     const auto string = [](std::uint32_t size, const char* text) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Materials of mesh files: names by surface, responses of KHR_physics_rigid_bodies, and what of them makes meshes of a level differ.
+// Materials of mesh files: surface names, KHR_physics_rigid_bodies, and how they separate the meshes of a level.
 #include "bake/import/level_folder.h"
 #include "bake/import/mesh_import.h"
 #include "tests/bake/import/import_meshes.h"
@@ -34,7 +34,7 @@ TEST(ImportMaterials, PhysicsMaterialsGiveNamesAndResponses) {
     EXPECT_EQ(mesh.surface_names[0], (SurfaceName{0, "", "rubber", 0.75F, 1.0F}));
     EXPECT_EQ(mesh.surface_names[1], (SurfaceName{1, "", "ice", 0.25F, 0.6F})) << "the schema's friction";
     EXPECT_EQ(mesh.surface_names[2], (SurfaceName{2, "", "", 1.0F, 0.0F}));
-    // Of a level the three nodes are three meshes, each of a single surface, whose name stays.
+    // In a level, the three nodes are three meshes. Each has one surface, which keeps its name.
     const auto level = required(importLevel(path));
     ASSERT_EQ(level.meshes.size(), 3U);
     ASSERT_EQ(level.meshes[0].surface_names.size(), 1U);
@@ -44,7 +44,7 @@ TEST(ImportMaterials, PhysicsMaterialsGiveNamesAndResponses) {
     EXPECT_TRUE(hasSeveralMaterials(level.meshes));
     EXPECT_FALSE(hasSeveralMaterials(std::span(level.meshes).first(1)));
     EXPECT_FALSE(hasSeveralMaterials(std::span(level.meshes).subspan(2)));
-    // Without materials they are one.
+    // Without materials, the three meshes are one.
     ImportOptions without;
     without.materials = false;
     EXPECT_EQ(importLevel(path, without)->meshes.size(), 1U);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a worker that a hostile mesh has taken over may answer.
+// Results that a compromised worker could send.
 #include "bake/import/import_message.h"
 
 #include <cstring>
@@ -14,7 +14,7 @@
 namespace relief::test {
 namespace {
 
-constexpr std::size_t kNames = 2;  // that were asked for
+constexpr std::size_t kNames = 2;  // number of requested names
 
 TriangleMesh rawTriangle() {
     TriangleMesh raw;
@@ -61,7 +61,7 @@ TEST(ImportMessage, RoundTripsMeshesAndErrors) {
             [](TriangleMesh& lie) { lie.unused_vertices = std::numeric_limits<std::uint64_t>::max(); },
             [](TriangleMesh& lie) { lie.marks.resize(2, 1); },   // a mark without a triangle
             [](TriangleMesh& lie) { lie.labels = {2}; },         // a label without a name
-            [](TriangleMesh& lie) { lie.labels.resize(2, 0); },  // or without a triangle
+            [](TriangleMesh& lie) { lie.labels.resize(2, 0); },  // a label without a triangle
         },
         [](const TriangleMesh& lie) { return readImportMessage(bytesOf(lie)).has_value(); });
     const Result<TriangleMesh> error = readImportMessage(bytesOf(fail(ErrorCode::kLimit, "two\nlines \x1b")));
@@ -82,7 +82,7 @@ TEST(ImportMessage, TruncationsAndExtensionsAreRejected) {
 }
 
 TEST(ImportMessage, FlippedBitsAreSafe) {
-    // The sanitizers watch; nothing but a mesh that finishMesh takes or an error may come out.
+    // Every result is a mesh that finishMesh() accepts, or an error. Sanitizers detect memory errors.
     const TemporaryFolder folder;
     const ImportSource source = required(ImportSource::open(folder.write("t.obj", tetrahedronObj())));
     const std::vector<std::byte> whole = bytesOf(rawTriangle());
