@@ -223,7 +223,7 @@ Collider bakeSpecs(const PreparedMesh& mesh, const std::vector<std::string>& spe
 }
 
 DepthMap bakeMap(const TriangleMesh& mesh, const std::string& spec, std::uint32_t resolution) {
-    // A collider without any surface is refused, a map without one is not: the second map is for company.
+    // Baking fails for a collider without any surface, but not for a single empty map. The other maps ensure a surface.
     return bakeSpecs(mesh, {spec, "float:size=16", "float:dir=-y,size=16"}, resolution).maps.front();
 }
 

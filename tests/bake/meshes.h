@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes made by formula, closed and wound outwards, and helpers to bake and read them.
+// Closed-form meshes, closed and wound outward, and helpers to bake and query them.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -25,30 +25,30 @@ namespace relief::test {
 /// Columns of `axes` are the box's axes.
 [[nodiscard]] TriangleMesh makeBoxMesh(const glm::dvec3& center, const glm::dvec3& half,
                                        const glm::dmat3& axes = glm::dmat3(1.0));
-/// An icosahedron whose triangles are halved `levels` times along each edge; vertices on the sphere.
+/// An icosahedron subdivided `levels` times; vertices on the sphere.
 [[nodiscard]] TriangleMesh makeIcosphere(const glm::dvec3& center, double radius, int levels);
-/// Around the z axis.
+/// The axis is z.
 [[nodiscard]] TriangleMesh makeTorusMesh(double ring_radius, double tube_radius, unsigned around,
                                          unsigned across);
-/// n × n squares of y = height over [−1, 1]²; normals +y.
+/// n × n squares of y = height over [−1, 1]²; normals are +y.
 [[nodiscard]] TriangleMesh makePlane(float height, unsigned n);
 
-inline constexpr float kHillsHalf = 100.0F;  ///< of the sides of hills, along x and z
+inline constexpr float kHillsHalf = 100.0F;  ///< half the extent of the hills along x and z
 [[nodiscard]] float hillsAt(float x, float z);
 /// n × n squares of hills above a floor at y = −20.
 [[nodiscard]] TriangleMesh makeHills(std::uint32_t n);
 
-/// A square of side 3 across an axis, at `at` on it, with a square window of this side in its middle.
+/// A square of side 3 at `at` on an axis, perpendicular to it, with a square window of side `window` in its middle.
 [[nodiscard]] TriangleMesh makePanel(int axis, double at, double window = 0.0);
-/// Six panels of side 3 that cross at ±0.5: of the 27 rooms of a cube, the one in the middle has no way out, but by a square
-/// window of this side.
+/// Six panels of side 3 that intersect at ±0.5 and form the 27 rooms of a cube. The middle room is sealed, except for a
+/// square window of side `window`.
 [[nodiscard]] TriangleMesh makeRooms(double window = 0.0);
 
 [[nodiscard]] TriangleMesh reversed(TriangleMesh mesh);
-/// All of them as one mesh.
+/// Merges meshes into one.
 [[nodiscard]] TriangleMesh joined(const std::vector<TriangleMesh>& meshes);
 
-/// Each vertex at to(vertex).
+/// Maps each vertex p to to(p).
 template <class To>
 [[nodiscard]] TriangleMesh moved(TriangleMesh mesh, const To& to) {
     for (glm::vec3& p : mesh.positions) {
@@ -57,7 +57,7 @@ template <class To>
     return finished(mesh.positions, mesh.triangles);
 }
 
-/// Without the triangles whose middle `gone` is true of.
+/// Removes the triangles whose centroid satisfies `gone`.
 template <class Gone>
 [[nodiscard]] TriangleMesh without(const TriangleMesh& mesh, const Gone& gone) {
     std::vector<glm::uvec3> kept;
@@ -71,14 +71,13 @@ template <class Gone>
     return finished(mesh.positions, kept);
 }
 
-/// Of a mesh that must be right.
+/// Fails the test if the mesh is invalid.
 [[nodiscard]] MeshQuery queryOf(PreparedMesh mesh);
 
-/// Bakes maps, which must be possible.
+/// Fails the test if the bake fails.
 [[nodiscard]] Collider bakeMaps(const PreparedMesh& mesh, std::vector<MapSpec> maps,
                                 Quality quality = Quality::kNormal, Prefer prefer = Prefer::kNeither);
-/// Bakes specs, which must be right. Maps that do not say otherwise are of the paper's texels: projected,
-/// half.
+/// Bakes map specs; fails the test on errors. Maps default to the paper's texels: projected, half.
 [[nodiscard]] Collider bakeSpecs(const PreparedMesh& mesh, const std::vector<std::string>& specs,
                                  std::uint32_t resolution = 64, unsigned threads = 0);
 [[nodiscard]] DepthMap bakeMap(const TriangleMesh& mesh, const std::string& spec,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which triangles have the names that somebody asks for, in files as exporters write them and as nobody should.
+// Name patterns mark the right triangles, in typical files of exporters and in hostile ones.
 
 #include "bake/import/mesh_import.h"
 #include "tests/bake/import/import_meshes.h"
@@ -16,7 +16,8 @@ ImportOptions asking(const Names& names) {
     return options;
 }
 
-/// A file's text, and by names the marks of its triangles: through the worker, and in this process, the same.
+/// Imports a text through the worker and in this process, with equal results. Returns the marks of its triangles by
+/// name.
 void expectMarks(const std::string& name, const std::string& text,
                  const std::vector<std::pair<Names, Marks>>& cases) {
     for (const auto& [names, marks] : cases) {
@@ -33,12 +34,12 @@ void expectUnknown(const std::string& file, const std::string& text, const Names
     EXPECT_LT(mesh.error().message.size(), 2500U);
 }
 
-/// Four corners; what follows them names faces.
+/// Four vertices; named faces follow.
 std::string obj(const std::string& faces) {
     return "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n" + faces;
 }
 
-/// Nodes with a mesh 'door-1' of two primitives: the first triangle of the tetrahedron as paint and as glass.
+/// glTF nodes with a mesh 'door-1' of two primitives: the tetrahedron's first triangle as paint and as glass.
 std::string gltf(const std::string& nodes, const std::string& roots) {
     const std::string text =
         tetrahedronGltf({.nodes = nodes,
@@ -59,26 +60,27 @@ TEST(ImportNames, ObjNamesAreGroupsObjectsAndMaterials) {
                  {{"body"}, {1, 1, 0, 0}},
                  {{"glass"}, {0, 1, 1, 0}},
                  {{"paint", "house"}, {1, 0, 0, 2}},
-                 // The last counts if a triangle has several of the names.
+                 // If a triangle has several of the names, the last one counts.
                  {{"body", "glass"}, {1, 2, 2, 0}},
                  {{"glass", "body"}, {2, 2, 1, 0}}});
     expectUnknown("a.obj", text, {"body", "glas"},
                   "'glas'; did you mean 'glass'? Its names: 'body', 'paint', 'glass', 'wheel', 'house'");
     expectUnknown("a.obj", text, {"Body"}, "'body'");
-    // A group may have several names and go on later.
+    // A group can have several names and can be continued.
     expectMarks("g.obj",
                 obj("g left door\nf 1 2 3\ng frame\nf 1 2 4\ng right door\nf 2 3 4\ng frame\nf 1 3 4\n"),
                 {{{"door", "frame"}, {1, 2, 1, 2}}, {{"left door"}, {1, 0, 0, 0}}});
-    // A name of a group and of a material is both.
+    // One name can belong to a group and to a material.
     expectMarks("b.obj",
                 obj("g glass\nusemtl paint\nf 1 2 3\ng body\nusemtl glass\nf 1 2 4\nusemtl paint\nf 2 3 4\n"),
                 {{{"glass"}, {1, 1, 0}}});
-    // Triangles without area take their names with them.
+    // Triangles without area are dropped together with their names.
     expectMarks("d.obj", obj("g a\nf 1 1 3\nf 1 2 3\ng b\nf 4 4 4\nf 1 2 4\n"), {{{"a", "b"}, {1, 2}}});
 }
 
 TEST(ImportNames, GltfNamesAreNodesMeshesAndMaterials) {
-    // Two cars share a mesh of two materials; the second has two of it. A node's name is that of all below it.
+    // Two cars share a mesh with two materials; the second car contains it twice. A node's name applies to all its
+    // descendants.
     const std::string text =
         gltf(R"({"name":"first","mesh":0},{"name":"second","children":[2,3]},{"name":"near","mesh":0},)"
              R"({"name":"far","translation":[5,0,0],"mesh":0})",
@@ -113,9 +115,9 @@ TEST(ImportNames, HostileNamesAreSanitized) {
     EXPECT_EQ(importTextInWorker("h.gltf", text, asking(crowd)).error().code, ErrorCode::kLimit);
 }
 
-// Neither does it overflow the stack.
+// A deep hierarchy must not overflow the stack either.
 TEST(ImportNames, NodeChainIsWalkedOnce) {
-    // Each of 20,000 nodes has the next below it, and a mesh.
+    // Each of 20,000 nodes has a mesh and the next node as child.
     constexpr int kNodes = 20'000;
     std::string nodes;
     for (int i = 0; i < kNodes; ++i) {
@@ -128,7 +130,7 @@ TEST(ImportNames, NodeChainIsWalkedOnce) {
 }
 
 TEST(ImportNames, EveryTriangleHasItsNodeAndItsMaterial) {
-    // Two nodes of one name are two.
+    // Two nodes with equal names are distinct.
     const std::string chairs =
         gltf(R"({"name":"chair","mesh":0},{"name":"chair","translation":[5,0,0],"mesh":0})", "0,1");
     const std::vector<std::tuple<std::string, std::string, Names>> cases = {

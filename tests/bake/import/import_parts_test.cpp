@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything in a mesh file but triangles is counted, named or refused; nothing is left out without a warning.
+// Everything in a mesh file except triangles is counted, named or rejected. Nothing is skipped without a warning.
 #include "bake/import/scene_polygons.h"
 
 #include "bake/import/mesh_import.h"
@@ -17,7 +17,7 @@ MeshParts obj(std::string_view text) {
     return mesh ? partsOf(mesh->polygons) : MeshParts();
 }
 
-/// A file that is read, its warnings without "NAME: ", and what else is expected of it.
+/// A valid file, its warnings without "NAME: ", and other expected results.
 struct Expected {
     std::string name;
     std::string text;
@@ -51,7 +51,7 @@ TEST(ImportParts, EveryCountHasAWarning) {
     EXPECT_EQ(
         warning({.polygons = 1, .lines = 1, .points = 1, .free_forms = 3}),
         Lines{"left out 1 line, 1 point and 3 free-form curves or surfaces: only polygons have a surface"});
-    // A tenth of the vertices may lie loose; those of lines are none of them.
+    // A tenth of the vertices can be loose. Vertices of lines are not loose.
     EXPECT_EQ(warning({.polygons = 9, .vertices = 100, .unused = 90, .loose = 10}), Lines());
     EXPECT_EQ(warning({.polygons = 9, .vertices = 100, .unused = 11, .loose = 11}).size(), 1U);
     EXPECT_FALSE(partsRefusal({.polygons = 1, .lines = 1}));
@@ -68,7 +68,7 @@ TEST(ImportParts, ObjStatementsAreCounted) {
             "3\n");
     EXPECT_EQ(parts.vertices, 6U);
     EXPECT_EQ(parts.unused, 3U);
-    EXPECT_EQ(parts.loose, 1U);  // 5: neither the line's 4 and 6 nor the faces' 1, 2 and 3
+    EXPECT_EQ(parts.loose, 1U);  // vertex 5; the line has 4 and 6, and the faces have 1, 2 and 3
     EXPECT_EQ(parts.polygons, 3U);
     EXPECT_EQ(parts.lines, 2U) << "a face of two corners is one";
     EXPECT_EQ(parts.free_forms, 2U);
@@ -88,13 +88,13 @@ TEST(ImportParts, UnusedVerticesAreCountedInEveryFormat) {
         {{"a.obj", tetrahedronObj(), {}},
          {"b.obj", tetrahedronObj() + "v 9 9 9\nv 9 9 9\nf 1 1 2\nf 2 2 2\n", {warning}, 2},
          {"a.ply", ply, {warning}, 2},
-         // The first three of the twelve indices: one corner of four has no triangle.
+         // Only the first three of twelve indices: one of four vertices has no triangle.
          {"a.gltf",
           tetrahedronGltf({.indices = half}),
           {replaced(warning, "2 of its 6 vertices belong", "1 of its 4 vertices belongs")},
           1,
           1},
-         // Two primitives with one list of vertices, as many exporters write them: each leaves the other's.
+         // Two primitives share one vertex list, as many exporters write them. Each uses its own part.
          {"shared.gltf",
           tetrahedronGltf(
               {.primitive =
@@ -114,7 +114,7 @@ TEST(ImportParts, LinesPointsAndFreeFormsAreCountedOrRejected) {
     const auto gltf = [](const std::string& primitives) {
         return tetrahedronGltf({.primitive = primitives});
     };
-    // The scene places one of two meshes, or both.
+    // The scene contains one of two meshes, or both.
     const std::string two =
         replaced(tetrahedronGltf(), R"(}]}],"accessors")",
                  R"(}]},{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],"accessors")");

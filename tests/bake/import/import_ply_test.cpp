@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PLY files whose surface is known in closed form: faces, strips, and what is neither.
+// PLY files with a closed-form surface: faces, strips, and files without either.
 #include "formats/polygons/ply_mesh.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::array kEncodings = {"ascii", "binary_little_endian", "binary_big_endian"};
 
-/// A PLY file, item by item, in one of the encodings.
+/// Builds a PLY file item by item, in any encoding.
 class PlyWriter {
   public:
     explicit PlyWriter(std::string encoding) : encoding_(std::move(encoding)) {
@@ -49,7 +49,7 @@ class PlyWriter {
         }
         return *this;
     }
-    /// Of an element.
+    /// Data of one element.
     PlyWriter& end() {
         text_ += encoding_ == "ascii" ? "\n" : "";
         return *this;
@@ -61,21 +61,21 @@ class PlyWriter {
     std::string text_;
 };
 
-// A box of 1 × 2 × 3 from the origin; bit 0 of a corner's index is x, bit 1 y, bit 2 z.
+// A box of 1 × 2 × 3 at the origin. Bits 0, 1 and 2 of a vertex index select x, y and z.
 constexpr const char* kBoxHeader =
     "element vertex 8\nproperty float x\nproperty uchar red\nproperty double y\nproperty float z";
 
-// Its sides in three strips, its ends in two. The first two are of odd length: a turn that outlives its strip would wind
-// the next inwards.
+// Three strips for the sides, two for the ends. The first two have odd lengths: winding parity that outlives its strip
+// would reverse the next one.
 const std::vector<std::int64_t> kBoxStrip = {0, 1, 4, 5,  6, 7, 2, -1, 2,  7, 3, -1, 2,
                                              3, 0, 1, -1, 0, 4, 2, 6,  -1, 1, 3, 5,  7};
 
-// The same, in the same order.
+// The same triangles in the same order.
 const std::vector<std::vector<std::int64_t>> kBoxTriangles = {{0, 1, 4}, {4, 1, 5}, {4, 5, 6}, {6, 5, 7},
                                                               {6, 7, 2}, {2, 7, 3}, {2, 3, 0}, {0, 3, 1},
                                                               {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {5, 3, 7}};
 
-/// \param triangles  each written out.
+/// \param triangles  whether to write triangles instead of strips
 std::string boxOf(const std::string& encoding, bool triangles = false) {
     PlyWriter ply(encoding);
     ply.line("obj_info a box").line(kBoxHeader);
@@ -103,7 +103,7 @@ PolygonMesh polygons(const std::string& text) {
     return required(read(text));
 }
 
-// Three corners in a plane, in text.
+// Four vertices in a plane, as text.
 const std::string kHead =
     "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
 const std::string kFace = "element face 1\nproperty list uchar int vertex_indices\n";
@@ -140,19 +140,20 @@ TEST(ImportPly, StripsRestartAndAlternate) {
     for (
         const Case& c : std::vector<Case>{
             {"4 0 1 2 3\n", {0, 1, 2, 2, 1, 3}},
-            // A strip of one triangle, ends without strips, and strips too short for a triangle: each begins unturned.
+            // One triangle, repeated restarts, and strips too short for a triangle. Every strip starts with even
+            // parity.
             {"13 -1 0 1 2 -1 -1 1 3 -1 3 1 2 0\n", {0, 1, 2, 3, 1, 2, 2, 1, 0}},
-            // One list each.
+            // One list per strip.
             {"3 0 1 2\n0\n4 3 1 2 -1\n", {0, 1, 2, 3, 1, 2}, "element tristrips 3"},
-            // Repeated corners lead from one part to the next: nothing for each, but the turn goes on.
+            // Repeated vertices join two parts. They make no triangles, but the parity continues.
             {"8 0 1 2 2 3 3 1 0\n", {0, 1, 2, 1, 3, 0}},
-            // What -1 is where lists are unsigned, and in text.
+            // -1 in unsigned lists, in binary and as text.
             {"7 0 1 2 4294967295 3 1 2\n", {0, 1, 2, 3, 1, 2}, "element tristrips 1", "list uint uint"},
             {"7 0 1 2 -1 3 1 2\n", {0, 1, 2, 3, 1, 2}, "element tristrips 1", "list uint uint"}}) {
         SCOPED_TRACE(c.lists);
         EXPECT_EQ(polygons(strips(c.element, c.lists, c.type)).corners, c.corners);
     }
-    // Faces beside them; a file may name its vertices last.
+    // Faces beside strips. The vertices may come last.
     const std::string both =
         "ply\nformat ascii 1.0\nelement tristrips 1\nproperty list int int vertex_index\n"
         "element face 1\nproperty list uchar int vertex_indices\nproperty uchar red\n" +
@@ -189,7 +190,8 @@ TEST(ImportPly, TruncationsAreRejected) {
     for (const char* encoding : kEncodings) {
         const std::string whole = boxOf(encoding);
         ASSERT_TRUE(read(whole));
-        // In text, the last number alone may lose digits; here it has one, with a space and the line's end behind it.
+        // Only the last number of a text file can lose digits. Here it has one digit, followed by a space and a
+        // newline.
         const std::size_t last = encoding == std::string("ascii") ? whole.size() - 2 : whole.size();
         for (std::size_t size = 0; size < last; ++size) {
             ASSERT_FALSE(read(whole.substr(0, size))) << encoding << ", " << size << " bytes";
@@ -198,7 +200,7 @@ TEST(ImportPly, TruncationsAreRejected) {
 }
 
 TEST(ImportPly, TrailingBytes) {
-    // A line with a number too many shifts all that follows: four columns for three.
+    // An extra number in a line shifts all following ones: four columns instead of three.
     expectWrong("p.ply",
                 {{strips("element face 1", "3 0 1 2 9\n", "list uchar int"), "does not end with its line"}});
     const std::string binary = boxOf("binary_little_endian");
@@ -234,7 +236,7 @@ TEST(ImportPly, UnknownFaceListsAreRejectedOrNamed) {
     EXPECT_EQ(part.sizes.size(), 1U);
     ASSERT_EQ(part.warnings.size(), 1U);
     EXPECT_NE(part.warnings[0].find("'polygon' is not read"), std::string::npos) << part.warnings[0];
-    // What programs put beside their faces is no reason to warn.
+    // Common elements beside faces do not warn.
     EXPECT_TRUE(polygons(kHead + kFace +
                          "property list uchar float texcoord\nproperty int material_index\nelement edge 1\n"
                          "property int vertex1\nproperty int vertex2\nelement multi_texture_face 1\n"
@@ -249,7 +251,7 @@ TEST(ImportPly, PointsAndEdgesAreNotASurface) {
     expectWrong(
         "p.ply",
         {{kHead + rest, "it has 4 vertices but no faces; for a scan"},
-         // Also of a cloud that is cut off: more points would not help.
+         // Also a truncated cloud: more points would not help.
          {kHead + "end_header\n0 0 0\n", "for a scan"},
          {kHead + replaced(kFace, "face 1", "face 0") + rest, "for a scan"},
          {kHead + replaced(kFace, "face 1", "range_grid 4") + rest + "1 0\n1 1\n0\n1 2\n", "for a scan"},
@@ -267,7 +269,7 @@ TEST(ImportPly, CoordinatesRoundToTheNearestFloat) {
 }
 
 TEST(ImportPly, ConcavePolygonsStayConcave) {
-    // An L of six corners, area 3: a fan round its first corner would have triangles turned over.
+    // An L with six corners and an area of 3: a fan around its first corner would reverse some triangles.
     const TriangleMesh mesh =
         imported("l.ply", replaced(kHead, "vertex 4", "vertex 6") + kFace +
                               "end_header\n2 1 0\n1 1 0\n1 2 0\n0 2 0\n0 0 0\n2 0 0\n6 0 1 2 3 4 5\n");

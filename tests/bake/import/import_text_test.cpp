@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text formats as people write them: each file below is valid and was misread, or is wrong and was read.
+// Text formats as found in practice: valid files that other readers misread, and invalid files that they accept.
 
 #include <algorithm>
 #include <cctype>
@@ -20,7 +20,7 @@ void expectTetrahedron(const std::string& name, std::string_view contents) {
     EXPECT_TRUE(mesh.warnings.empty());
 }
 
-/// Files of this name that are the tetrahedron.
+/// Files with this name that contain the tetrahedron.
 void expectTetrahedra(const std::string& name, const std::vector<std::string>& texts) {
     for (const std::string& text : texts) {
         expectTetrahedron(name, text);
@@ -93,7 +93,7 @@ TEST(ImportText, Off) {
                           {replaced(kOff, "4 4 0", "4 3 6"), "line 10: '3' follows the last"},
                           {replaced(kOff, "OFF", "OFF BINARY"), "binary"},
                           {replaced(kOff, "OFF", "nOFF"), "three-dimensional"}});
-    // A convex polygon of many corners, on a parabola: assimp read up to 9, and the file without the others.
+    // A convex polygon with many corners on a parabola. assimp read polygons up to 9 corners and skipped the others.
     std::string corners;
     std::string face = "100";
     for (int i = 0; i < 100; ++i) {
@@ -110,11 +110,11 @@ TEST(ImportText, OffRecordsCanSpanLines) {
     const auto oneLine = [](const std::string& text) { return replaced(text, "\n", " "); };
     expectTetrahedra(
         "a.off", {head + vertices + oneLine(faces), head + oneLine(vertices) + "\n" + faces, oneLine(kOff),
-                  // A colour ends with the line that the last index stands in.
+                  // A colour ends at the end of the line with the last index.
                   head + vertices + "3 0 2\n1 255 0 0\n3 0\n1\n3 .5 .5 .5 1\n3 1 2 3 7\n3 0 3 2 9 9 9",
                   oneLine("C" + head + replaced(vertices, "\n", " 1 .5 0 1\n") + faces),
                   oneLine("STCN" + head + replaced(vertices, "\n", " 0 0 1 9 9 9 9 .5 0\n") + faces)});
-    // This many words on a line, wherever a record ends.
+    // Breaks lines after this many words, regardless of records.
     const auto wrapped = [&](const std::string& lines, std::size_t words) {
         std::string text = oneLine(lines);
         std::size_t count = 0;
@@ -127,7 +127,7 @@ TEST(ImportText, OffRecordsCanSpanLines) {
         expectTetrahedron("a.off", head + wrapped(vertices + faces, words));
         expectTetrahedron("a.off", head + replaced(vertices, "\n", " 9 9 9\n") + wrapped(faces, words));
     }
-    // Colours cannot be told from further faces.
+    // Colours would be ambiguous with further faces.
     expectWrong("a.off", {{head + vertices + oneLine(replaced(faces, "\n", " 255 0 0\n")),
                            "line 7: it ends after face 1 of 4"}});
     const std::string whole = oneLine(kOff);
@@ -178,7 +178,7 @@ TEST(ImportText, TruncationsAreRejected) {
     }
 }
 
-// The size decides: a header may begin as any other format does.
+// The size decides: the header can start like any other format.
 TEST(ImportText, BinaryStlWithAnyHeaderAndLength) {
     for (const char* header : {"solid vertex", "OFF", "ply\n", "glTF\x02", "BB3D", "\x1f\x8b", "\xff\xfe",
                                "{\"asset\"", "v 0 0 0\nf 1 2 3\n", "MM", "<COLLADA"}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One tetrahedron in every format, with units and axes: it must lie at the same coordinates.
+// One tetrahedron in every format, with units and axes, must have the same coordinates.
 #include "bake/import/import_units.h"
 
 #include <glm/geometric.hpp>
@@ -12,7 +12,7 @@
 namespace relief::test {
 namespace {
 
-/// A file, how it is imported, and the corners of its box in metres, or in object units.
+/// A file, its import options, and its bounds in metres or object units.
 struct Placed {
     std::string name;
     std::string text;
@@ -41,7 +41,7 @@ void expectPlaced(const std::vector<Placed>& cases) {
 
 constexpr glm::vec3 kLow(0.0F);
 constexpr glm::vec3 kHigh(1, 2, 3);
-const glm::vec3 kLowZ(0, 0, -2);  // with z upwards
+const glm::vec3 kLowZ(0, 0, -2);  // with z up
 const glm::vec3 kHighZ(1, 3, 0);
 constexpr std::optional<UpAxis> kOwnAxis;
 
@@ -89,7 +89,7 @@ TEST(ImportUnits, FormatsWithUnitsAndAxesAgree) {
     expectPlaced(
         {{"z.fbx", tetrahedronFbx(2, 1, "100"), "", kOwnAxis, kLowZ, kHighZ},
          {"z.gltf", tetrahedronGltf(), "", UpAxis::kPlusZ, kLowZ, kHighZ, "m", 1},
-         // In centimetres times its factor.
+         // Centimetres times the file's factor.
          {"y.fbx", tetrahedronFbx(1, 1, "1"), "", kOwnAxis, kLow, 0.01F * kHigh},
          {"in.fbx", tetrahedronFbx(1, 1, "2.54"), "", kOwnAxis, kLow, 0.0254F * kHigh},
          {"x.fbx", tetrahedronFbx(0, 1, "100"), "", kOwnAxis, {-2, 0, 0}, {0, 1, 3}},
@@ -98,16 +98,16 @@ TEST(ImportUnits, FormatsWithUnitsAndAxesAgree) {
          {"no.dae", tetrahedronDae(""), "", kOwnAxis, kLow, kHigh},
          {"in.dae", tetrahedronDae("<unit meter=\"0.0254\"/>"), "", kOwnAxis, kLow, 0.0254F * kHigh},
          {"x.dae", tetrahedronDae("<up_axis>X_UP</up_axis>"), "", kOwnAxis, {-2, 0, 0}, {0, 1, 3}},
-         // As XML allows it.
+         // XML allows these variants.
          {"odd.dae", tetrahedronDae("<unit name=\"meter\"\n meter = '0.5'/><up_axis>\nZ_UP </up_axis>"), "",
           kOwnAxis, 0.5F * kLowZ, 0.5F * kHighZ},
-         // A master scale divides; 0 is none.
+         // Coordinates are divided by the master scale; 0 means none.
          {"t.3ds", tetrahedron3ds(), "", kOwnAxis, kLowZ, kHighZ, ""},
          {"half.3ds", tetrahedron3ds(0.5F), "", kOwnAxis, 2.0F * kLowZ, 2.0F * kHighZ, ""},
          {"zero.3ds", tetrahedron3ds(0.0F), "", kOwnAxis, kLowZ, kHighZ, ""}});
 }
 
-// --- formats that have no writer elsewhere ---
+// --- formats without other writers ---
 
 template <class T>
 std::string packed(const std::vector<T>& values, bool big_endian = false) {
@@ -161,12 +161,12 @@ TEST(ImportUnits, AssimpFormatsKeepTheirCoordinates) {
         "3;0,2,1;,\n3;0,1,3;,\n3;1,2,3;,\n3;0,3,2;;\n}\n";
     for (const auto& [name, text] :
          {std::pair{"t.x", x}, std::pair{"t.b3d", tetrahedronB3d()}, std::pair{"t.lwo", tetrahedronLwo()}}) {
-        // z is negated; the up axis stays that of the file.
+        // z is negated. The up axis remains that of the file.
         expectPlaced({{name, text, "", kOwnAxis, {0, 0, -3}, {1, 2, 0}, ""},
                       {name, text, "in", kOwnAxis, {0, 0, -3 * 0.0254F}, {0.0254F, 2 * 0.0254F, 0}},
                       {name, text, "", UpAxis::kPlusZ, {0, 0, 0}, {1, 3, 2}, ""}});
     }
-    // Decimal commas are points. An SMD is skinned, and looks for an animation.
+    // Decimal commas are read as points. An SMD is skinned and may reference an animation.
     const std::string smd = tetrahedronSmd();
     expectPlaced({{"t.smd", smd, "", kOwnAxis, kLow, kHigh, "", 2},
                   {"t.smd", smd, "cm", UpAxis::kPlusZ, 0.01F * kLowZ, 0.01F * kHighZ, "m", 2},
@@ -209,7 +209,7 @@ TEST(ImportUnits, ColladaHeadersAreParsed) {
     }
 }
 
-// A file whose unit cannot be meant is refused, and read if the caller names one.
+// Files with implausible units are rejected unless an option gives the unit.
 TEST(ImportUnits, ImplausibleUnitsNeedAnOption) {
     struct Case {
         std::string name;
@@ -239,7 +239,7 @@ TEST(ImportUnits, ImplausibleUnitsNeedAnOption) {
         const TriangleMesh cured = imported(c.name, c.text, {c.unit_option, c.up_option});
         EXPECT_LT(glm::distance(cured.bounds.max, 0.01F * kHigh), 1e-6F);
     }
-    // The importer of FBX does not go on there.
+    // assimp's FBX importer fails in this case.
     expectRefused(importText("zero.fbx", tetrahedronFbx(1, 1, "0"), {"cm", kOwnAxis}),
                   "UnitScaleFactor is 0, which is not a length; export it again");
 }
@@ -266,7 +266,7 @@ TEST(ImportUnits, FbxUnitsAreReadFromTextAndBinary) {
     EXPECT_FALSE(unit("Kaydara FBX Binary  "));
 }
 
-// What a left-handed file calls z is turned round when it is asked for.
+// Requesting another up axis converts z of a left-handed file.
 TEST(ImportUnits, UpAxisOfLeftHandedFiles) {
     SourceFrame left;
     left.mirrored = true;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hostile meshes through the worker: right, or refused with one clear line; and nothing outside the folder is
-// opened. What needs real limits of memory is in tests/cli/import.sh: the address sanitizer knows none.
+// The worker imports hostile meshes correctly or rejects them with one clear message, and opens no file outside the
+// folder. Tests of memory limits are in tests/cli/import.sh, because the address sanitizer has none.
 #include <sys/inotify.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Tells whether a file was opened by anybody: the kernel's word, not ours.
+/// Reports whether any process opened a file, according to the kernel.
 class OpenWatch {
   public:
     explicit OpenWatch(const fs::path& file)
@@ -96,7 +96,7 @@ TEST(ImportWorker, NoFileOutsideTheFolderIsOpened) {
         SCOPED_TRACE(name);
         const TriangleMesh mesh =
             required(load(folder, "in/t.obj", "mtllib " + name + "\nusemtl secret\n" + tetrahedronObj()));
-        // A material library is of no use here: a warning, and the mesh.
+        // A material library is optional: the mesh is imported with a warning.
         EXPECT_TRUE(warns(mesh, "left out '"));
         EXPECT_EQ(mesh.dependencies.size(), 1U);
         EXPECT_FALSE(watch.opened());
@@ -113,7 +113,7 @@ TEST(ImportWorker, NoFileOutsideTheFolderIsOpened) {
         expectRefused(load(folder, "in/t.gltf", tetrahedronGltf({.uri = uri})), words);
         EXPECT_FALSE(watch_buffer.opened());
     }
-    // The watch sees what it should.
+    // Check the watch itself.
     folder.write("in/t.obj", "mtllib secret.mtl\n" + tetrahedronObj());
     fs::create_hard_link(secret, folder.path() / "in/secret.mtl");
     EXPECT_TRUE(importMeshInWorker(folder.path() / "in/t.obj"));
@@ -128,7 +128,7 @@ TEST(ImportWorker, DeepJsonIsRejected) {
         }
         expectRefused(importTextInWorker("deep.gltf", deep), "deep", ErrorCode::kLimit);
     }
-    // Brackets in strings are no depth.
+    // Brackets in strings do not count as depth.
     EXPECT_TRUE(importTextInWorker(
         "t.gltf", tetrahedronGltf({.more = "\"extras\":\"\\\"" + std::string(1000, '[') + "\","})));
 }
@@ -155,7 +155,7 @@ TEST(ImportWorker, LeaksNoDescriptorsOrChildren) {
 }
 
 TEST(ImportWorker, EveryModelOfThePackageIsReadOrRejected) {
-    // Every seventh, and all invalid ones; scripts/nightly.sh import takes all. Nothing may crash the worker.
+    // Every seventh model and all invalid ones; scripts/nightly.sh import tests all. The worker must not crash.
     const bool all = std::getenv("RELIEF_SOAK") != nullptr;
     std::set<fs::path> files;
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator("/usr/share/assimp/models")) {
@@ -170,7 +170,7 @@ TEST(ImportWorker, EveryModelOfThePackageIsReadOrRejected) {
     for (const fs::path& file : files) {
         const bool invalid = file.parent_path().filename() == "invalid";
 #ifdef RELIEF_SANITIZED
-        // The address sanitizer ends a process that asks for too much.
+        // The address sanitizer kills processes that allocate too much.
         if (file.filename() == "OutOfMemory.off") {
             continue;
         }

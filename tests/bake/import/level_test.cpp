@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Levels: each different mesh once, placed by poses where these keep its shape.
+// Levels: each distinct mesh once, placed by poses that preserve its shape.
 #include "bake/import/level_folder.h"
 
 #include <limits>
@@ -35,7 +35,7 @@ glm::dvec3 placed(const LevelBody& body, const glm::dvec3& p) {
            body.scale * (p + body.rotation[3] * t + glm::cross(v, t));
 }
 
-/// The corners that the level has, placed, are those of the same file as one mesh, in its order.
+/// Expects the placed triangles of the level to equal those of the same file as one mesh, in order.
 void expectSameCorners(const Level& level, const fs::path& path, const ImportOptions& options = {}) {
     const TriangleMesh whole = required(importMeshInWorker(path, options));
     std::size_t triangle = 0;
@@ -71,7 +71,7 @@ TEST_F(Levels, SharedMeshIsImportedOnce) {
 }
 
 TEST_F(Levels, RotationsAreRecovered) {
-    // Quarter turns, half turns, and those whose w is nearly 0: each branch of the conversion.
+    // Quarter turns, half turns, and quaternions with w near 0 cover every branch of the conversion.
     for (const char* q :
          {"1,0,0,0", "0,1,0,0", "0,0,1,0", "0.70710678,0,0,0.70710678", "0,-0.70710678,0,0.70710678",
           "0.5,0.5,0.5,0.5", "-0.5,0.5,-0.5,-0.5", "0.6,0,0.8,0", "0.1,0.7,0.1,-0.7", "0.36,0.48,0.8,0"}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mesh files of several formats, right ones and wrong ones, all written here.
+// Valid and invalid mesh files in several formats, all written by the tests.
 #include "bake/import/mesh_import.h"
 
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace relief::test {
 namespace {
 
-// A unit box from the origin, of quads.
+// A unit box with a corner at the origin, made of quads.
 constexpr const char* kBoxObj =
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
     "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 1 5 8 4\n";
@@ -43,7 +43,7 @@ TEST(MeshImport, MirroredNodesKeepOutwardWinding) {
     }
     EXPECT_EQ(mirrored.bounds.min, glm::vec3(-1, 0, 0));
     EXPECT_EQ(twice.bounds.min, glm::vec3(-1, 0, -3));
-    // Mirrored meshes bake to mirrored maps: the slanted face's normal points out of the solid in both.
+    // Mirrored meshes give mirrored maps. The normal of the slanted face points outward in both.
     const glm::dvec3 normal = glm::normalize(glm::dvec3(6, 3, 2));
     for (const auto& [mesh, x] : {std::pair{&plain, 0.2F}, std::pair{&mirrored, -0.2F}}) {
         const Vote v = vote(bakeMap(*mesh, "float:dir=-z"), {x, 0.4F, 6.0F}).value();

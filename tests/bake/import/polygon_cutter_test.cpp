@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Polygons are cut without slits and overlaps, wherever they lie.
+// Polygons are triangulated without gaps and overlaps, also far from the origin.
 #include "bake/import/polygon_cutter.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace relief::test {
 namespace {
 
-/// Twice the area of a polygon.
+/// Twice the area vector of a polygon.
 double areaOf(const std::vector<glm::vec3>& corners) {
     glm::dvec3 sum(0.0);
     for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
@@ -23,7 +23,7 @@ double areaOf(const std::vector<glm::vec3>& corners) {
     return length(sum);
 }
 
-/// Every triangle has an area and is wound as the polygon is, and together they have its area.
+/// Expects triangles with positive areas and the polygon's winding, whose areas sum to that of the polygon.
 void expectWhole(const std::vector<glm::vec3>& corners, const std::string& what, double tolerance = 1e-3) {
     PolygonCutter cutter;
     const auto triangles = cutter.cut(corners);
@@ -40,7 +40,7 @@ void expectWhole(const std::vector<glm::vec3>& corners, const std::string& what,
     EXPECT_NEAR(areas, areaOf(corners), tolerance * areas) << what;
 }
 
-/// A rectangle with `more` corners on its edges.
+/// A rectangle with `more` extra vertices on its edges.
 std::vector<glm::vec3> rectangle(int more, const glm::dvec3& origin, const glm::dvec3& u,
                                  const glm::dvec3& v) {
     std::vector<glm::vec3> corners;
@@ -64,7 +64,7 @@ TEST(PolygonCutter, CornersOnStraightEdges) {
             expectWhole(rectangle(more, origin, {0, 0, size}, {size, 0, 0}), what);
         }
     }
-    // A triangle with a corner on any of its edges.
+    // A triangle with an extra vertex on any edge.
     for (int i = 0; i < 3; ++i) {
         std::vector<glm::vec3> corners{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}};
         corners.insert(corners.begin() + i + 1, 0.5F * (corners[i] + corners[(i + 1) % 3]));
@@ -77,7 +77,7 @@ TEST(PolygonCutter, CornersOnStraightEdges) {
 
 TEST(PolygonCutter, ConcavePolygonsFarFromTheOrigin) {
     for (std::uint32_t seed = seedFrom(31), end = seed + 200; seed < end; ++seed) {
-        // A star: radii of its corners at random, so that it does not cross itself.
+        // A star with random radii, which does not intersect itself.
         std::mt19937 random(seed);
         const int count = 5 + static_cast<int>(random() % 40);
         const double far = (seed % 4) * 1.4e5;
@@ -107,7 +107,7 @@ TEST(PolygonCutter, DegeneratePolygonsAreTriangulated) {
 }
 
 TEST(PolygonCutter, CombWithThousandsOfTeethIsTriangulated) {
-    // Its ears were looked for among all corners, for each of all corners: 8,000 took most of a minute.
+    // A quadratic search for ears among 8,000 vertices took most of a minute.
     constexpr int kTeeth = 2000;
     std::vector<glm::vec3> corners;
     for (int i = 0; i < kTeeth; ++i) {
@@ -122,7 +122,7 @@ TEST(PolygonCutter, CombWithThousandsOfTeethIsTriangulated) {
 }
 
 TEST(PolygonCutter, SelfIntersectingPolygonLosesNoTriangles) {
-    // A first try that gives up must not win over one that cuts all.
+    // An incomplete first attempt must not be preferred to a complete one.
     std::mt19937 random(7);
     std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
     PolygonCutter cutter;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Baked maps against closed forms: a box, a torus and a plane, in every format, direction and compare. What would break
-// these: a wrong sign, scale, axis, face, border, rounding, or a normal that points inwards.
+// Baked maps of a box, a torus and a plane compared with closed forms, for every format, direction and compare. Detects
+// wrong signs, scales, axes, faces, borders and rounding, and inward normals.
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -13,7 +13,7 @@ namespace {
 
 const char* const kDirections[] = {"+x", "-x", "+y", "-y", "+z", "-z"};
 
-/// Half a step of a format's depth where it is `depth`, and what the floats of T and of the ray add.
+/// Half a quantization step at `depth`, plus float errors of the transform and the ray.
 double depthTolerance(MapFormat format, double depth) {
     constexpr double kFloats = 5e-7;
     switch (format) {
@@ -25,7 +25,7 @@ double depthTolerance(MapFormat format, double depth) {
         case MapFormat::kCube8:
             return 0.5 * 1.7320509 / 65534.0 + kFloats;
         case MapFormat::kFrontBackHalf:
-            return std::ldexp(depth, -11) + kFloats;  // half a unit in the last of 11 bits, at most
+            return std::ldexp(depth, -11) + kFloats;  // at most half a unit in the last of 11 bits
         case MapFormat::kPatches:
             break;
     }
@@ -35,7 +35,7 @@ double depthTolerance(MapFormat format, double depth) {
 const glm::dvec3 kBoxCenter(0.3125, -0.25, 0.5);
 const glm::dvec3 kBoxHalf(1.0, 0.5, 0.75);
 
-/// The part of a ray inside a box centred at the origin.
+/// The interval of a ray inside a box centred at the origin.
 struct Span {
     double in = -1e300;
     double out = 1e300;
@@ -71,16 +71,16 @@ void expectSurface(const std::optional<Surface>& surface, double depth, const gl
                    const DepthMap& map, double depth_slack = 0.0) {
     ASSERT_TRUE(surface);
     EXPECT_NEAR(surface->depth, depth, depthTolerance(map.format, depth) + depth_slack);
-    // Quantised normals are at most 0.64° off.
+    // Quantized normals have errors up to 0.64°.
     const double cosine = glm::dot(glm::dvec3(surface->normal), normal);
     EXPECT_GT(cosine, map.format == MapFormat::kFloat32 ? 1.0 - 1e-6 : std::cos(0.65 * 0.0174533));
 }
 
-/// Every texel of a map of the box. In its own frame the slabs give the truth.
+/// Checks every texel of a map of the box. In the box's frame the slab test gives the truth.
 void checkBoxMap(const DepthMap& map, const glm::dmat3& axes = glm::dmat3(1.0)) {
     const glm::dmat3 inverse = glm::transpose(axes);
     const bool turned = axes != glm::dmat3(1.0);
-    const double slack = turned ? 2e-6 : 0.0;  // T's floats, on a slope
+    const double slack = turned ? 2e-6 : 0.0;  // float errors of the transform on sloped faces
     int hits = 0;
     for (std::uint32_t face = 0; face < map.faceCount(); ++face) {
         for (std::uint32_t y = 0; y < map.height; ++y) {
@@ -107,7 +107,7 @@ void checkBoxMap(const DepthMap& map, const glm::dmat3& axes = glm::dmat3(1.0)) 
                     expectEnd(texel.back, true);
                 }
                 if (testing::Test::HasFailure()) {
-                    return;  // one texel's story is enough
+                    return;  // one failing texel is enough
                 }
             }
         }
@@ -132,7 +132,7 @@ TEST(BakeBox, OrthographicMapsAreExact) {
 
 TEST(BakeBox, CubesAreExact) {
     const TriangleMesh mesh = makeBoxMesh(kBoxCenter, kBoxHalf);
-    // The middle, another point inside, and one outside that looks at the box.
+    // The middle, another point inside, and a point outside that views the box.
     for (const std::string spec :
          {"cube:size=24", "cube:size=24,center=1/-0.5/0.25", "cube:size=33,center=-2/1/1"}) {
         SCOPED_TRACE(spec);
@@ -153,8 +153,7 @@ TEST(BakeBox, TiltedBoxAlongAnObliqueDirection) {
 }
 
 TEST(BakeBox, RaysAlongEdgesHitAFrontFace) {
-    // The texel centres of column 2 lie exactly on the box's edge x = 0 (box chosen so): both faces are met
-    // there.
+    // Texel centres of column 2 are exactly on the edge x = 0, so rays hit both faces there.
     const TriangleMesh roof =
         finished({{-1, 0, -1}, {0, 1, -1}, {1, 0, -1}, {-1, 0, 1}, {0, 1, 1}, {1, 0, 1}},
                  {{0, 3, 4}, {0, 4, 1}, {1, 4, 5}, {1, 5, 2}, {0, 2, 5}, {0, 5, 3}, {0, 1, 2}, {3, 5, 4}});
@@ -163,7 +162,7 @@ TEST(BakeBox, RaysAlongEdgesHitAFrontFace) {
         const Texel ridge = decodeTexel(map.format, map.texelAt(0, map.width / 2, map.height / 2));
         ASSERT_TRUE(ridge.front);
         EXPECT_NEAR(ridge.front->depth, 0.25, 1e-6);
-        // The left face has the lower index.
+        // The left face has the lower triangle index.
         EXPECT_NEAR(ridge.front->normal.x, -std::sqrt(0.5), 1e-6);
         EXPECT_NEAR(ridge.front->normal.y, std::sqrt(0.5), 1e-6);
     }
@@ -192,7 +191,7 @@ TEST(BakePlane, FlatMeshFacesTheViewer) {
                     ASSERT_EQ(texel.front->normal, glm::vec3(0, direction == "-y" ? 1 : -1, 0));
                 }
             }
-            // Seen from above, distances above it are exact.
+            // Distances above the plane are exact in the view from above.
             if (direction == "-y") {
                 EXPECT_NEAR(vote(map, {0.1F, 1.25F, -0.3F}).value().distance, 1.0F, 1e-5);
                 EXPECT_LT(vote(map, {0.1F, 0.245F, -0.3F})->distance, 0.0F);
@@ -236,7 +235,7 @@ TEST(BakeWinding, InvertedMeshesGiveTheSameMaps) {
 TEST(BakeSubBox, VolumesThatCutTheObjectAbstain) {
     const TriangleMesh mesh = makeBoxMesh({0, 0, 0}, {1, 1, 1});
 
-    // Beside the object's middle, depth held: rays start in free space.
+    // A window beside the middle, at full depth: rays start in free space.
     const DepthMap window = bakeMap(mesh, "fixed8:dir=-y,box=-0.5/-2/-0.5/0.5/2/0.5");
     EXPECT_FALSE(window.encloses);
     EXPECT_TRUE(window.empty_is_outside);
@@ -244,15 +243,14 @@ TEST(BakeSubBox, VolumesThatCutTheObjectAbstain) {
     EXPECT_NEAR(vote(window, {0.25F, 1.5F, 0})->distance, 0.5F, 1e-3);
     EXPECT_NEAR(vote(window, {0.25F, 0.5F, 0})->distance, -0.5F, 1e-3);
 
-    // The near plane inside the object: the texels that look at the solid's inner side stay empty, and
-    // abstain.
+    // A near plane inside the object: texels that would show the inner side of the solid stay empty and abstain.
     const DepthMap cut = bakeMap(mesh, "float:dir=-y,box=-2/-2/-2/2/0.5/2");
     EXPECT_FALSE(cut.encloses);
     EXPECT_FALSE(cut.empty_is_outside);
     EXPECT_FALSE(decodeTexel(cut.format, cut.texelAt(0, 32, 32)).front);
     EXPECT_FALSE(vote(cut, {0, 0, 0}));
 
-    // The other end sees free space, so its surface is kept and empty rays are outside.
+    // The opposite end sees free space: its surface is kept, and empty rays are outside.
     const DepthMap half = bakeMap(mesh, "front-back:dir=-y,box=-2/-2/-2/2/0.5/2");
     EXPECT_TRUE(half.empty_is_outside);
     const Texel middle = decodeTexel(half.format, half.texelAt(0, 32, 32));
@@ -262,12 +260,12 @@ TEST(BakeSubBox, VolumesThatCutTheObjectAbstain) {
     EXPECT_LT(vote(half, {0, 0, 0})->distance, 0.0F);
     EXPECT_EQ(vote(half, {1.5F, 0, 0})->distance, kFarOutside);
 
-    // A far plane inside the object does not matter to LESS.
+    // A far plane inside the object does not affect LESS.
     const DepthMap top = bakeMap(mesh, "fixed8:dir=-y,box=-2/0.5/-2/2/2/2");
     EXPECT_TRUE(top.empty_is_outside);
     EXPECT_NEAR(vote(top, {0, 1.5F, 0})->distance, 0.5F, 1e-3);
 
-    // A box that is the mesh's own: surfaces in the volume's faces are met all the same.
+    // If the volume equals the mesh bounds, surfaces on the volume's faces are still hit.
     const DepthMap exact = bakeMap(mesh, "float:dir=-y,box=-1/-1/-1/1/1/1");
     EXPECT_TRUE(exact.encloses);
     EXPECT_TRUE(exact.empty_is_outside);
@@ -277,7 +275,7 @@ TEST(BakeSubBox, VolumesThatCutTheObjectAbstain) {
         EXPECT_NEAR(texel.front->depth, 0.0F, 1e-6);
     }
 
-    // Cubes: LESS in free space is always sound, GREATER only if it holds the object.
+    // Cubes: LESS in free space is always sound; GREATER only if the cube contains the object.
     EXPECT_TRUE(bakeMap(mesh, "cube:box=0.9/0.9/0.9/2/2/2,compare=less").empty_is_outside);
     EXPECT_FALSE(bakeMap(mesh, "cube:box=0.5/0.5/0.5/2/2/2,compare=greater").empty_is_outside);
     EXPECT_FALSE(bakeMap(mesh, "cube:box=0.5/0.5/0.5/2/2/2,compare=greater").encloses);
@@ -294,7 +292,7 @@ TEST(BakeScale, TinyHugeAndFarMeshesBake) {
             EXPECT_GT(vote(map, (kBoxCenter + 3.0 * kBoxHalf) * scale).value().distance, 0.0);
         }
     }
-    // 1000 times its size from the origin: floats still tell its faces apart.
+    // At 1000 times its size from the origin, floats still separate the faces.
     const DepthMap map = bakeMap(makeBoxMesh({1000, -2000, 500}, kBoxHalf), "float:dir=-x");
     EXPECT_TRUE(map.encloses);
     EXPECT_NEAR(vote(map, {1000, -2000, 500})->distance, -1.0, 2e-3);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The least budget for a promise: kept, not wasteful, within its bounds, and honest where it cannot be kept.
+// The smallest budget for an error target: it meets the target, wastes little, respects its bounds, and fails if the
+// target is unreachable.
 #include "bake/maps/budget_search.h"
 
 #include "tests/bake/meshes.h"
@@ -16,7 +17,7 @@ BudgetSearchOptions optionsFor(double percent) {
 }
 
 TEST(BudgetSearch, KeepsTheTargetWithFewExtraBytes) {
-    constexpr double kPercent = 0.1;  // which the least budget does not keep
+    constexpr double kPercent = 0.1;  // the smallest budget misses this target
     const MeshQuery query = queryOf(makeTorusMesh(1.0, 0.4, 64, 32));
     BudgetSearchOptions options = optionsFor(kPercent);
     std::size_t told = 0;
@@ -26,10 +27,10 @@ TEST(BudgetSearch, KeepsTheTargetWithFewExtraBytes) {
     EXPECT_EQ(found.chosen.bytes, found.baked.collider.texelBytes());
     EXPECT_LE(found.chosen.bytes, found.chosen.budget);
     EXPECT_EQ(told, found.tries.size());
-    // What it says is what measuring the result says.
+    // Measuring the result gives the reported error.
     const TruthSamples truth = sampleTruth(query, options.accuracy);
     EXPECT_EQ(measureField(truth, fieldOf(found.baked.collider)).near.total(), found.chosen.wrong_percent);
-    // A budget within a tenth below was tried, and is too small.
+    // The search tried a budget at most a tenth smaller, which misses the target.
     bool narrow = false;
     for (const BudgetTry& made : found.tries) {
         EXPECT_GE(made.budget, 32'000U);
@@ -39,7 +40,7 @@ TEST(BudgetSearch, KeepsTheTargetWithFewExtraBytes) {
     EXPECT_TRUE(narrow);
 }
 
-// Two boxes so far apart that the least budget's finest cell holds neither.
+// Two boxes so far apart that the finest cell of the smallest budget contains neither.
 TEST(BudgetSearch, TriesMoreBytesIfTheSmallestBudgetIsEmpty) {
     const TriangleMesh mesh =
         joined({makeBoxMesh({5, 5, 5}, glm::dvec3(5.0)), makeBoxMesh({1e7, 0.5, 0.5}, glm::dvec3(0.5))});
@@ -55,7 +56,7 @@ TEST(BudgetSearch, EasyTargetNeedsTheSmallestBudget) {
     const BudgetSearchResult found = required(bakeForError(query, query, optionsFor(50.0)));
     EXPECT_EQ(found.chosen.budget, 32'000U);
     EXPECT_EQ(found.tries.size(), 1U);
-    // One that it just misses costs more.
+    // A slightly stricter target needs a larger budget.
     const double promise = 0.75 * found.chosen.wrong_percent;
     const BudgetSearchResult better = required(bakeForError(query, query, optionsFor(promise)));
     EXPECT_LE(better.chosen.wrong_percent, promise);
@@ -73,7 +74,7 @@ TEST(BudgetSearch, ReportsTheBestIfTheTargetIsUnreachable) {
     EXPECT_EQ(found.error().code, ErrorCode::kDifference);
     ASSERT_EQ(tries.size(), 2U);
     EXPECT_EQ(tries[1].budget, 50'000U) << "the limit itself is tried";
-    // The best need not be the largest: a few texels more may fall less well.
+    // The best budget is not always the largest: rounding can favour fewer texels.
     const BudgetTry& best = tries[0].wrong_percent <= tries[1].wrong_percent ? tries[0] : tries[1];
     EXPECT_NE(found.error().message.find(std::to_string(best.bytes) + " bytes"), std::string::npos)
         << found.error().message;

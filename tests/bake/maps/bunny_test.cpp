@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole pipeline on a real mesh: determinism, provenance, round trip, and known signs.
+// The whole pipeline on a real mesh: determinism, provenance, round trips and known sides.
 #include <algorithm>
 #include <atomic>
 
@@ -24,7 +24,7 @@ const std::vector<std::string> kAllFormats = {
     "front-back:dir=-x", "front-back:dir=1/2/3", "fixed8:dir=-y", "float:dir=+z,compare=greater", "cube",
     "cube:center=0/5/0"};
 
-/// The same bytes on one thread, on two, and on more than there are.
+/// Expects the same bytes with one thread, with two, and with more threads than cores.
 void expectSameOnThreads(const TriangleMesh& mesh, const std::vector<std::string>& specs) {
     const std::vector<std::byte> one = *writeContainer(bakeSpecs(mesh, specs, 96, 1));
     for (const unsigned threads : {2U, 7U}) {
@@ -40,8 +40,7 @@ TEST(BakeBunny, IsDeterministic) {
 }
 
 TEST(BakeTies, AreDeterministic) {
-    // Triangles' edges on texel centres, and every triangle twice, the second time turned over: ties
-    // everywhere.
+    // Triangle edges on texel centres, and every triangle duplicated and reversed: ties everywhere.
     TriangleMesh mesh = makePlane(0.0F, 60);
     for (std::size_t i = 0, n = mesh.triangles.size(); i < n; ++i) {
         const glm::uvec3 t = mesh.triangles[i];
@@ -60,7 +59,7 @@ TEST(BakeBunny, RoundTripsWithProvenance) {
     EXPECT_EQ(back.provenance.mesh_name, "bunny.obj");
     EXPECT_EQ(back.provenance.mesh_hash, bunny().content_hash);
     EXPECT_EQ(back.provenance.triangles, 69666U);
-    // The recorded options bake the same maps again.
+    // Baking with the recorded options gives the same maps.
     std::vector<std::string> specs;
     for (const RecordedOption& option : back.provenance.options) {
         if (option.name == "map") {
@@ -84,7 +83,7 @@ TEST(BakeBunny, DefaultMapsClassifyPoints) {
         << "concavities that no map sees are told inside";
 }
 
-/// The search on three maps of planes, 0.5 % of the longest side off the surface, which is a texel, and 5 % off.
+/// The search on three maps of planes, at 0.5 % of the longest side from the surface (one texel) and at 5 %.
 TEST(BakeBunny, NearestSurfaceIsTheNearestTriangle) {
     const MeshQuery query = queryOf(bunny());
     const Collider collider = bakeSpecs(
@@ -104,7 +103,7 @@ TEST(BakeBunny, NearestSurfaceIsTheNearestTriangle) {
         int astray = 0;
         for (const TruthPoint& point : samples.near) {
             const SurfaceSample nearest = nearestSurface(collider, point.position);
-            // The point found is on the mesh; deep inside, another surface may be as far away by chance.
+            // The point found is on the mesh. Deep inside, another surface can be equally near.
             if (std::abs(double{nearest.distance} - double{point.distance}) < 0.01 * off) {
                 const double from_mesh = query.closest(nearest.point).distance;
                 ASSERT_LT(from_mesh, 0.2 * off);
@@ -125,7 +124,7 @@ TEST(BakeProgress, RunsFromZeroToOne) {
                                                  direction + ",decode=" + decode));
         }
         options.progress = [&](double share) {
-            EXPECT_EQ(++within, 1);  // from one thread at a time
+            EXPECT_EQ(++within, 1);  // called by one thread at a time
             EXPECT_GT(share, last);
             last = share;
             --within;

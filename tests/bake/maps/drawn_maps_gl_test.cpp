@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Front-back maps of planes that DepthMapRenderer draws against baked ones, on real meshes: two programs that share the view
-// and the meaning of a texel, and no arithmetic.
+// Front-back plane maps drawn by DepthMapRenderer, compared with baked maps of real meshes. The two programs share the
+// view and the texel format, but no arithmetic.
 
 #include <algorithm>
 #include <cmath>
@@ -26,14 +26,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Only where a texel's centre lies so near to an edge of a triangle, in texels, may one program see a surface and the
-/// other none: rasterisers move vertices to a grid of 1/256 texel.
+/// In texels. Only within this distance from a triangle edge may one program find a surface and the other none:
+/// rasterisers snap vertices to 1/256 texel.
 constexpr double kEdge = 0.01;
-constexpr double kShare = 1e-3;  // of the texels whose depths may differ by more than a unit
+constexpr double kShare = 1e-3;  // fraction of texels whose depths may differ by more than one code
 
 constexpr const char* kFormats[] = {"front-back:dir=-x", "front-back:dir=1/2/3"};
 
-/// The meshes of libcgal-demo and the documents of libcgal-dev, unpacked once.
+/// The meshes of libcgal-demo, unpacked once.
 const fs::path& cgalMeshes() {
     static const TemporaryFolder folder;
     static const fs::path meshes = [] {
@@ -77,11 +77,11 @@ std::optional<Surface> surfaceAt(const DepthMap& map, const TexelEnd& at) {
     return at.end == 0 ? texel.front : texel.back;
 }
 
-/// Differences between two maps of the same view.
+/// Differences between two maps with the same view.
 struct Agreement {
     std::uint64_t both = 0;          ///< surfaces in both maps
-    std::vector<TexelEnd> depths;    ///< in both, but their depths are more than a code apart
-    std::vector<TexelEnd> coverage;  ///< present in only one map
+    std::vector<TexelEnd> depths;    ///< in both maps, but the depths differ by more than one code
+    std::vector<TexelEnd> coverage;  ///< in only one map
 };
 
 Agreement compareMaps(const DepthMap& a, const DepthMap& b) {
@@ -102,7 +102,7 @@ Agreement compareMaps(const DepthMap& a, const DepthMap& b) {
     return agreement;
 }
 
-/// Distance from a texel's centre to the nearest edge of a triangle as the view sees it, in texels.
+/// Distance in texels from a texel's centre to the nearest projected triangle edge.
 double edgeDistance(const TriangleMesh& mesh, const View& view, const TexelEnd& at) {
     const glm::dvec2 centre(at.x + 0.5, at.y + 0.5);
     const auto project = [&](std::uint32_t vertex) {
@@ -126,15 +126,15 @@ double edgeDistance(const TriangleMesh& mesh, const View& view, const TexelEnd& 
     return nearest;
 }
 
-/// Of a mesh by its name.
+/// The parameter is the name of a mesh.
 class DrawnMapsGlTest : public testing::TestWithParam<const char*> {
   protected:
     void SetUp() override { context_ = required(GlContext::create()); }
     std::unique_ptr<GlContext> context_;
 };
 
-/// Texels whose plane is not steep: the ray caster moves others behind the rays next to them, which the GPU
-/// does not look at.
+/// Whether a texel's plane is not steep. The ray caster moves steep planes behind neighbouring rays, which the GPU does
+/// not examine.
 bool isFlat(const DepthMap& map, const TexelEnd& at) {
     const glm::dvec3 ray = texelRay(map, 0, at.x, at.y).direction;
     return std::abs(glm::dot(glm::dvec3(surfaceAt(map, at)->normal), ray)) / glm::length(ray) > 0.36;
@@ -157,8 +157,8 @@ TEST_P(DrawnMapsGlTest, MatchMapsWithOneRayPerTexel) {
         }
         EXPECT_LE(static_cast<double>(flat), std::max(2.0, kShare * static_cast<double>(agreement.both)));
         EXPECT_LE(static_cast<double>(agreement.depths.size()), 0.01 * static_cast<double>(agreement.both));
-        // The ray caster looks for silhouettes between texels' centres, and stores walls where it finds them:
-        // what the GPU alone has lies on an edge.
+        // The ray caster also finds walls at silhouettes between texel centres. Surfaces only in the GPU map must lie
+        // at an edge.
         std::uint64_t checked = 0;
         for (const TexelEnd& at : agreement.coverage) {
             if (surfaceAt(drawn, at) && checked++ < 10) {

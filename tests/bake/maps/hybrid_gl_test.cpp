@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colliders baked from meshes, of patches beside maps and cubes: the shader and the CPU give the same field.
+// Baked colliders of patches beside maps and cubes: shader and CPU give the same field.
 #include <random>
 
 #include "tests/bake/meshes.h"

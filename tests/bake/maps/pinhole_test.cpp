@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays that are aimed exactly at vertices and edges of closed meshes: none may pass through. Voxels.* has solids whose vertices
-// lie over texel centres.
+// Rays aimed exactly at vertices and edges of closed meshes must not pass through. Voxels.* covers vertices over texel
+// centres.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -32,7 +32,7 @@ View aimedAt(const glm::dvec3& at, const glm::dvec3& d) {
     return view;
 }
 
-/// Embree alone lets a few of a thousand such rays through, to the far side.
+/// Embree by itself misses a few of a thousand such rays.
 TEST(Pinholes, RaysAtVerticesAndEdgesHit) {
     for (const glm::dvec3& center : {glm::dvec3(0.0), glm::dvec3(100.1, 50.3, -20.7)}) {
         for (const int levels : {2, 3, 4}) {
@@ -56,7 +56,7 @@ TEST(Pinholes, RaysAtVerticesAndEdgesHit) {
                     }
                     const double cosine = dot(p - center, d);
                     if (std::abs(cosine) < 0.5) {
-                        continue;  // too near to the silhouette for eight texels
+                        continue;  // too near the silhouette for eight texels
                     }
                     const View view = aimedAt(p, d);
                     const RayEnd end = cosine < 0.0 ? RayEnd::kNear : RayEnd::kFar;
@@ -66,7 +66,7 @@ TEST(Pinholes, RaysAtVerticesAndEdgesHit) {
                         worst = hit.empty() ? worst : std::max(worst, std::abs(double{hit.depth()} - 0.5));
                     };
                     count(RayProbe(scene, view, end).trace(0, 3, 4));
-                    if (i % 16 < 2) {  // the whole mesh is scanned for the few texels of each
+                    if (i % 16 < 2) {  // few, because each scans the whole mesh
                         std::array<Hit, 64> near;
                         std::array<Hit, 64> far;
                         ScanConverter(scene, view).scan({0, 0, 8}, near, far);

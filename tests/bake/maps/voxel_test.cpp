@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nothing deep in a solid is ever outside: against solids of unit cubes, whose insides and distances are exact, and
-// whose vertices, edges and faces lie under texel centres and borders in every way. Some cubes have their centre on the
-// surface: their rays may run through the solid.
+// Points deep in a solid are never outside. The solids are voxel grids, whose sides and distances are exact. Their
+// vertices, edges and faces lie under texel centres and borders in every way. Some cube maps have their centre on the
+// surface, so their rays can run through the solid.
 //
-// Bound. A map's rays know what is solid but for what lies between them: a point that is farther from the surface than
-// its texel's diagonal, where all rays of the texel are in the solid, is inside. For a cube the texel is as large as it
-// is at the point's distance from the centre. A quantum of the depth, and a float's grain, come on top.
+// Bound: a map's rays sample the solid; only the space between them is unknown. A point is inside if its distance from
+// the surface exceeds the texel's diagonal and all rays of the texel are in the solid. Texels of cubes are measured at
+// the point's distance from the centre. A depth quantum and float errors are added.
 //
-// With Quality::kFast a texel knows one ray, its centre's, and goes on beside it by the plane that it met. Of a ball in
-// the solid about a point, at r from the ray, the ray's chord begins behind the plane: √(ρ² − r²) ≤ r tan θ, where θ is
-// between the ray and the plane's normal, so that ρ ≤ r / cos θ, and r is half a diagonal at most.
+// With Quality::kFast a texel has only its centre ray, and extends the plane that it hits. Consider a ball of radius ρ
+// in the solid about a point at distance r from the ray. The ray's chord starts behind the plane: √(ρ² − r²) ≤ r tan θ,
+// with θ between the ray and the plane's normal. So ρ ≤ r / cos θ, and r is at most half a diagonal.
 #include <cmath>
 #include <random>
 
@@ -24,7 +24,7 @@ namespace {
 
 constexpr int kPoints = 8000;
 
-/// The cosine between the ray through p and the normal of the surface that decided about p; 1 of projected maps.
+/// Cosine between the ray through p and the normal of the deciding surface; 1 for maps without planes.
 double cosineAt(const DepthMap& map, const FieldSample& sample, const glm::vec3& p) {
     const Affine& rows = map.object_to_map;
     const glm::dvec3 q = rows.apply(p);
@@ -36,7 +36,7 @@ double cosineAt(const DepthMap& map, const FieldSample& sample, const glm::vec3&
     return map.decode == Decode::kPlane ? cosine : 1.0;
 }
 
-/// \param cosine  of one ray a texel: cosineAt; else 1.
+/// \param cosine  cosineAt() with one ray per texel, else 1
 double boundAt(const DepthMap& map, const glm::vec3& p, double cosine = 1.0) {
     const double beside = std::max(1.0, 0.5 / cosine);
     const glm::dvec3 scale = map.object_per_map;
@@ -61,14 +61,14 @@ Collider baked(const PreparedMesh& mesh, const std::vector<std::string>& specs, 
         options.maps.push_back(required(parseMapSpec(text)));
     }
     Result<Baked> result = bake(mesh, options);
-    return result ? std::move(result->collider) : Collider{};  // a part of the volume may hold no surface
+    return result ? std::move(result->collider) : Collider{};  // part of the volume may contain no surface
 }
 
 std::string text(const glm::vec3& p) {
     return std::to_string(p.x) + "/" + std::to_string(p.y) + "/" + std::to_string(p.z);
 }
 
-/// Every way to look at a solid of voxels, with numbers drawn from the seed.
+/// Random views of a voxel solid, drawn from the seed.
 std::vector<std::vector<std::string>> viewsOf(const VoxelGrid& grid, const TriangleMesh& mesh,
                                               std::uint32_t seed) {
     std::mt19937 random(seed);
@@ -81,7 +81,7 @@ std::vector<std::vector<std::string>> viewsOf(const VoxelGrid& grid, const Trian
         "front-back:dir=" + std::to_string(below(7) - 3) + "/" + std::to_string(below(7) - 3) + "/1";
     const std::string steep = "front-back:dir=" + std::to_string(500 + below(500)) + "/" +
                               std::to_string(below(101) - 50) + "/" + std::to_string(below(201) - 100);
-    // Texel centres, or borders, on the integers.
+    // Texel centres or borders lie on integers.
     const int per_unit = 1 + below(6);
     const double shift = below(2) == 0 ? 0.0 : 0.5 / per_unit;
     const int side = std::max({grid.size().x, grid.size().y, grid.size().z}) + 2;
@@ -112,7 +112,7 @@ std::vector<std::vector<std::string>> viewsOf(const VoxelGrid& grid, const Trian
     return views;
 }
 
-/// Points in the grid, in object space and in cells: where the solid is, and how deep.
+/// Samples points in the solid and checks the depth of those that the collider places outside.
 void expectNothingDeepOutside(const VoxelGrid& grid, const Collider& collider, std::uint32_t seed,
                               Quality quality = Quality::kNormal) {
     std::mt19937 random(seed);
@@ -156,8 +156,8 @@ TEST(Voxels, DeepPointsAreInside) {
     }
 }
 
-/// Grids of other seeds by which this was found wrong: rays that start in the solid and run through an edge into the next
-/// cell, and an edge between such rays that was taken for a silhouette.
+/// Seeds that failed before: rays that start in the solid and pass through an edge into the next cell, and an edge
+/// between such rays that was treated as a silhouette.
 TEST(Voxels, DeepPointsAreInsideInFormerFailures) {
     for (const std::uint32_t seed : {1'762'264'770U, 5'000'003U, 9'000'002U, 9'000'005U}) {
         expectNothingDeepOutsideOfAnyView(seed, {Quality::kFast});

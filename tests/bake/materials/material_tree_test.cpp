@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which surface is of which material: at contacts with baked maps of every format, against meshes whose borders are known in
-// closed form. A tree whose cells are too large, not dilated or turned the wrong way is wrong at more than a hundredth of them.
+// Materials at contacts with baked maps of every format, compared with meshes whose material borders have closed forms.
+// Trees with too large, undilated or rotated cells are wrong at more than a hundredth of the contacts.
 #include "bake/materials/material_tree.h"
 
 #include <cmath>
@@ -25,7 +25,7 @@ namespace {
 
 using Labelled = std::function<std::uint32_t(const glm::vec3& middle, const glm::vec3& normal)>;
 
-/// A mesh, its material at a point of its surface, and how far that is from another material.
+/// A mesh, its material at a surface point, and the distance from there to another material.
 struct Scene {
     TriangleMesh mesh;
     Labelled material;
@@ -52,7 +52,7 @@ std::uint32_t sideOf(const glm::vec3& normal) {
     return 0;
 }
 
-/// Each side has its own material.
+/// Each side of the box has its own material.
 Scene dice() {
     Scene scene(makeBoxMesh(glm::dvec3(0.1, -0.2, 0.3), glm::dvec3(1.0, 0.6, 0.8)),
                 {"px", "nx", "py", "ny", "pz", "nz"},
@@ -68,9 +68,9 @@ Scene dice() {
     return scene;
 }
 
-constexpr float kSquare = 0.25F;  ///< a side
+constexpr float kSquare = 0.25F;  ///< side length of a square
 
-/// A slab whose top is a checkerboard of 8 x 8 squares; its other sides are a third material.
+/// A slab whose top is a checkerboard of 8 x 8 squares. Its other sides have a third material.
 Scene checkerboard() {
     const TriangleMesh below = without(makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0, 0.1, 1.0)),
                                        [](const glm::dvec3& p) { return p.y > 0.09; });
@@ -90,7 +90,7 @@ Scene checkerboard() {
     return scene;
 }
 
-/// A board three texels thick, wood above and felt below; its rim is wood.
+/// A board three texels thick: wood above, felt below, and a wooden rim.
 Scene board() {
     Scene scene(makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0, 0.025, 1.0)), {"wood", "felt"},
                 [](const glm::vec3&, const glm::vec3& n) { return n.y < -0.5F ? 1U : 0U; });
@@ -101,7 +101,7 @@ Scene board() {
     return scene;
 }
 
-/// The collider's surface along a normal of the mesh.
+/// The collider's surface point along a mesh normal.
 std::optional<glm::vec3> contactAlong(const Collider& collider, const glm::vec3& at, const glm::vec3& n,
                                       float reach) {
     const auto inside = [&](float along) { return evaluate(collider, at + along * n).inside(); };
@@ -117,7 +117,7 @@ std::optional<glm::vec3> contactAlong(const Collider& collider, const glm::vec3&
     return at + high * n;
 }
 
-/// Of the maps there: patches of flat surfaces are large.
+/// Texel size at a point: patches of flat surfaces have large texels.
 float texelAt(const Collider& collider, const glm::vec3& p) {
     const DepthMap& map = collider.maps[0];
     if (map.format != MapFormat::kPatches) {
@@ -161,7 +161,7 @@ Count countContacts(const Collider& collider, const Scene& scene) {
 
 struct Format {
     const char* name;
-    std::vector<std::string> maps;  ///< empty: planned patches
+    std::vector<std::string> maps;  ///< if empty, patches are planned
 };
 
 std::vector<Format> formats() {
@@ -266,7 +266,7 @@ TEST(MaterialTree, SingleMaterialNeedsNoTree) {
     EXPECT_NEAR(double{kept.materials.list[0].area_share}, 0.5, 1e-6);
     EXPECT_EQ(none.materials, Materials());
     EXPECT_EQ(kept.maps, none.maps);
-    // Requested, a single one is kept, too: a level of many meshes has it told apart by name.
+    // On request, a single material is also kept: levels distinguish meshes by material name.
     plain.surface_names = {{0, "node", "stone"}};
     request.materials = MaterialsAs::kKeep;
     const Collider single = bake(request, {}, plain)->baked.collider;

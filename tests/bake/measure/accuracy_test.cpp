@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The yardstick against closed forms: truth, the shares that it finds for fields whose errors are known,
-// the distance volume that colliders are compared with, and the report.
+// Accuracy measurement compared with closed forms: the truth, errors of fields with known errors, the reference
+// distance volume, and the report.
 #include "bake/measure/accuracy.h"
 
 #include <cmath>
@@ -36,7 +36,7 @@ TEST(MeshQuery, BoxDistancesMatchTheFormula) {
     EXPECT_TRUE(query.watertight());
     for (const glm::vec3& p : pointsIn(mesh.bounds, 3000)) {
         const double expected = boxDistance(glm::transpose(axes) * (glm::dvec3(p) - center), half);
-        // The mesh's corners are floats.
+        // The mesh has float coordinates.
         EXPECT_NEAR(query.signedDistance(p), expected, 2e-6);
     }
 }
@@ -83,8 +83,7 @@ AccuracyOptions withSamples(std::uint32_t samples) {
     return {.samples = samples};
 }
 
-/// P(|P| <= r) for P on a sphere of radius R plus an isotropic normal deviate σ: the noncentral Maxwell
-/// distribution.
+/// P(|P| <= r) for P on a sphere of radius R plus an isotropic normal deviate σ (noncentral Maxwell distribution).
 double radiusBelow(double r, double sphere, double sigma) {
     const auto normal = [](double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); };
     const auto bell = [&](double x) { return std::exp(-0.5 * x * x / (sigma * sigma)); };
@@ -93,7 +92,7 @@ double radiusBelow(double r, double sphere, double sigma) {
 }
 
 constexpr std::uint32_t kSamples = 40'000;
-/// Four standard deviations of a share near 1/4 of that many points, in percent, and the mesh's own error.
+/// Four standard deviations of a fraction near 1/4 of kSamples points, in percent, plus the mesh error.
 constexpr double kShareTolerance = 400.0 * 0.433 / 200.0 + 0.1;
 
 class AccuracyOfASphere : public ::testing::Test {
@@ -111,7 +110,7 @@ class AccuracyOfASphere : public ::testing::Test {
         static const TruthSamples truth = sampleTruth(query(), withSamples(kSamples));
         return truth;
     }
-    /// The mesh's own signed distance minus `shift`: the solid grown by that much.
+    /// The signed distance of the mesh minus `shift`: the solid grown by `shift`.
     static Field grown(double shift) {
         return [shift](const glm::vec3& p) -> std::optional<FieldValue> {
             return FieldValue{static_cast<float>(query().signedDistance(p) - shift),
@@ -125,7 +124,7 @@ TEST_F(AccuracyOfASphere, ExactFieldHasNoErrors) {
     EXPECT_EQ(accuracy.near.total() + accuracy.uniform.total(), 0.0);
     EXPECT_EQ(accuracy.distance_p99, 0.0);
     EXPECT_EQ(accuracy.far_percent + accuracy.unknown_percent + accuracy.no_normal_percent, 0.0);
-    // The field's normals are the sphere's, the truth those of its triangles, of edges 0.036 long.
+    // The field has the normals of the sphere, the truth those of triangles with edges of 0.036.
     EXPECT_LT(accuracy.normal_p99, 1.4);
     EXPECT_GT(accuracy.normal_mean, 0.1);
 }
@@ -170,13 +169,13 @@ TEST_F(AccuracyOfASphere, DepthErrorsInsideAreMeasured) {
     EXPECT_LT(right.normal_mean, 1.0);
     EXPECT_GT(samples().inside.size(), 0.99 * kSamples);
     EXPECT_EQ(right.points, samples().inside.size());
-    // As deep as the far side: at r, which is uniform from 0.1 to 1, 1 + r instead of 1 − r, too large from r = 0.25 / 2.25 on.
+    // Depth of the far side: 1 + r instead of 1 − r, with r uniform in 0.1…1. It is too large for r above 0.25 / 2.25.
     const InsideAccuracy deep = measureField(samples(), [](const glm::vec3& p) {
                                     return FieldValue{-1.0F - glm::length(p), glm::normalize(p)};
                                 }).inside;
     EXPECT_NEAR(deep.far_face_percent, 100.0 * (1.0 - 0.25 / 2.25) / 0.9, 0.2);
     EXPECT_NEAR(deep.depth_mean, 2.0 * 0.55, 0.01);
-    // The opposite normal, in an object so large that its depth tells nothing; and nothing inside.
+    // Reversed normals with correct depths; then an empty field.
     const InsideAccuracy turned = measureField(samples(), [](const glm::vec3& p) {
                                       return FieldValue{glm::length(p) - 1.0F, -glm::normalize(p)};
                                   }).inside;
@@ -188,7 +187,7 @@ TEST_F(AccuracyOfASphere, DepthErrorsInsideAreMeasured) {
     EXPECT_EQ(empty.far_face_percent, 100.0);
 }
 
-// Of two boxes that overlap, the ends within the other one are no boundary.
+// The ends of overlapping boxes inside the other box are not a boundary.
 TEST(Accuracy, OverlapsHaveNoBoundary) {
     const TriangleMesh boxes =
         joined({makeBoxMesh({-0.4, 0, 0}, {1, 1, 1}), makeBoxMesh({0.4, 0, 0}, {1, 1, 1})});
@@ -203,7 +202,7 @@ TEST(Accuracy, OverlapsHaveNoBoundary) {
 }
 
 TEST_F(AccuracyOfASphere, NormalErrorsAreInDegrees) {
-    // Turned about a fixed axis by 10°, a normal n moves by 2·asin(sin 5° · sin ∠(n, axis)): 10° at most.
+    // A rotation by 10° about a fixed axis moves a normal n by 2·asin(sin 5° · sin ∠(n, axis)), at most 10°.
     const glm::mat3 turn(rotation({0, 0, 1}, 10.0));
     const FieldAccuracy accuracy = measureField(samples(), [&](const glm::vec3& p) {
         return FieldValue{0.0F, turn * glm::normalize(p)};
@@ -222,13 +221,13 @@ TEST_F(AccuracyOfASphere, VisibleSurfaceFraction) {
     EXPECT_NEAR(unseen({"fixed8:dir=-z,compare=greater"}), 50.0, 1.2);
     EXPECT_LT(unseen({"front-back:dir=1/2/3"}), 0.2);
     EXPECT_EQ(unseen({"cube:center=0/0/0"}), 0.0);
-    // A half of the sphere lies in the box, and a half of that is seen.
+    // Half of the sphere is in the box, and half of that is visible.
     EXPECT_NEAR(unseen({"fixed8:dir=-z,box=0/-1.1/-1.1/1.1/1.1/1.1"}), 75.0, 1.2);
-    // From a point at twice the radius, a cap of (1 − 1/2) / 2.
+    // From twice the radius, a cap of (1 − 1/2) / 2 is visible.
     EXPECT_NEAR(unseen({"cube:center=0/0/2,compare=less"}), 75.0, 1.2);
 }
 
-/// Sides and normals are those that particles meet, to the bit; distances those that whoever asks for a distance gets.
+/// Sides and normals are bit-identical to those of collisions, distances to those of the nearest-surface query.
 TEST_F(AccuracyOfASphere, ColliderUsesVotesAndNearestDistances) {
     const Collider collider = bakeSpecs(mesh(), {"front-back:dir=+x", "front-back:dir=1/2/3"}, 48);
     const FieldAccuracy whole = measureCollider(samples(), query(), collider).field;
@@ -245,7 +244,7 @@ TEST_F(AccuracyOfASphere, ColliderUsesVotesAndNearestDistances) {
 }
 
 TEST(Accuracy, BuriedSurfaceIsExcluded) {
-    // Two boxes that touch: both copies of the face between them have the inside on both sides.
+    // Two touching boxes: both copies of the common face have the inside on both sides.
     const TriangleMesh mesh = joined({makeBoxMesh({-1, 0, 0}, {1, 1, 1}), makeBoxMesh({1, 0, 0}, {1, 1, 1})});
     const MeshQuery query = queryOf(mesh);
     EXPECT_TRUE(query.watertight());
@@ -288,7 +287,7 @@ TEST(Accuracy, SeedsChangePointsAndPrefixesAreStable) {
 }
 
 TEST(Accuracy, SurfacePointsFollowTheArea) {
-    // Of a box of 4 × 1 × 1 the two small faces have a ninth of the area.
+    // In a box of 4 × 1 × 1 the two small faces have a ninth of the area.
     const TruthSamples samples =
         sampleTruth(queryOf(makeBoxMesh({0, 0, 0}, {2, 0.5, 0.5})), withSamples(kSamples));
     std::size_t small = 0;
@@ -330,7 +329,7 @@ TEST(DistanceVolume, LinearFieldIsExact) {
             EXPECT_NEAR(value.distance, linear(p), 0.51 * range / 32767.0);
             EXPECT_GT(glm::dot(glm::dvec3(value.normal), glm::normalize(slope)), 0.9999);
         }
-        // Beyond the box all is outside, and the distance grows by the way to it.
+        // All points beyond the box are outside. Their distance includes the distance to the box.
         const glm::vec3 beyond(-1.5F, 0.5F, 3.0F);
         EXPECT_NEAR(volume.at(beyond).distance, std::max(0.0, linear({-1.0, 0.5, 3.0})) + 0.5, 1e-4);
         EXPECT_GT(volume.at({1.0F, 5.0F, 3.0F}).distance, 0.0F);
@@ -338,7 +337,7 @@ TEST(DistanceVolume, LinearFieldIsExact) {
 }
 
 TEST(DistanceVolume, NodesEqualTheTruth) {
-    // Closed, where signs are carried along rows, and open, where every node is asked.
+    // A closed mesh, whose signs are propagated along rows, and an open mesh, whose nodes are tested one by one.
     for (const bool open : {false, true}) {
         TriangleMesh mesh = makeTorusMesh(1.0, 0.3, 48, 24);
         if (open) {
@@ -368,7 +367,7 @@ TEST(DistanceVolume, NodesEqualTheTruth) {
 
 // --- reports ---
 
-// Names and types of the fields are those of the schema; what is computed for it is tested here.
+// The schema defines names and types. This test covers computed values.
 TEST(AccuracyReport, SumsAndPercentagesAreConsistent) {
     const MeshQuery query = queryOf(makeBoxMesh({0, 0, 0}, {1, 2, 0.5}));
     const TruthSamples samples = sampleTruth(query, withSamples(1000));

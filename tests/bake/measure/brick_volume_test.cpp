@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sparse rivals against closed forms, and their bytes against counts by hand.
+// The sparse reference volumes compared with closed forms, and their sizes with manual counts.
 #include "bake/bench/brick_volume.h"
 
 #include <cmath>
@@ -22,12 +22,12 @@ std::vector<BrickLayout> layouts() {
 }
 
 TEST(BrickVolume, PlaneIsExactToQuantization) {
-    // A tilted cube; points round the middle of one face see only that plane.
+    // A rotated cube. Points near the middle of a face are affected only by its plane.
     const glm::dmat3 axes = rotation({1, 2, 0}, 35.0);
     const MeshQuery query = queryOf(makeBoxMesh({0, 0, 0}, {1, 1, 1}, axes));
     for (const BrickLayout& layout : layouts()) {
         const BrickVolume volume = BrickVolume::build(query, layout, 200'000);
-        // The largest voxel that can lie there: a fifth of the face's distance from its edges.
+        // The largest possible voxel there: a fifth of the distance to the edges of the face.
         std::mt19937 random(4);
         std::uniform_real_distribution<double> unit(-1.0, 1.0);
         for (int i = 0; i < 2000; ++i) {
@@ -46,8 +46,8 @@ TEST(BrickVolume, SignsAreExactBeyondTheInterpolationError) {
     const TruthSamples samples = sampleTruth(query, {.samples = 2000});
     for (const BrickLayout& layout : layouts()) {
         const BrickVolume volume = BrickVolume::build(query, layout, 100'000);
-        // Between nodes a distance bends by an eighth of the curvature a voxel squared, along each of two axes; leaves of
-        // an octree may be four times the smallest.
+        // Interpolation error: an eighth of the curvature times the voxel squared, for each of two axes. Leaves of an
+        // octree can be four times the smallest.
         const double voxel = volume.voxel() * (layout.octree ? 4.0 : 1.0);
         const double bend = voxel * voxel / 0.75 / 4.0 + layout.band * voxel / 127.0;
         for (const std::vector<TruthPoint>* points : {&samples.near, &samples.uniform}) {
@@ -66,13 +66,13 @@ TEST(BrickVolume, SignsAreExactBeyondTheInterpolationError) {
 TEST(BrickVolume, BytesAreNodesAndIndex) {
     const MeshQuery query = queryOf(makeBoxMesh({0, 0, 0}, {0.5, 0.25, 0.25}));
     BrickLayout layout{.cells = 4, .flat_index = true};
-    // Voxels of a 32nd: cubes of an eighth, 8x4x4 in the box, whose surface lies on the outermost faces.
+    // Voxels of 1/32: bricks of 1/8, so 8x4x4 in the box. The surface is on the outermost faces.
     const BrickVolume flat = BrickVolume::withVoxels(query, layout, 1.0 / 32.0);
     EXPECT_EQ(flat.nodeBytes(), flat.bricks() * 125);
     EXPECT_EQ(flat.indexBytes(), 8U * 4U * 4U * 2U);
     layout.flat_index = false;
     const BrickVolume levels = BrickVolume::withVoxels(query, layout, 1.0 / 32.0);
-    // Two blocks of 4x4x4, whose lower level counts from their first brick in a byte a cube.
+    // Two blocks of 4x4x4. Their lower level stores one byte per brick, relative to the first brick.
     EXPECT_EQ(levels.indexBytes(), 2U * (4U + 64U));
 }
 
@@ -82,7 +82,7 @@ TEST(BrickVolume, BudgetIsUsedDeterministically) {
         for (const std::uint64_t bytes : {30'000U, 250'000U}) {
             const BrickVolume volume = BrickVolume::build(query, layout, bytes);
             EXPECT_LE(volume.bytes(), bytes) << volume.text();
-            // A few dozen large bricks come in leaps.
+            // With a few dozen large bricks, sizes change in large steps.
             EXPECT_GE(volume.bytes(), bytes - (volume.bricks() < 100 ? bytes / 2 : bytes / 10))
                 << volume.text();
             EXPECT_NEAR(volume.at({2.3F, 0.0F, 0.0F}).distance, 1.0, 1e-2) << "beyond the box, by the way";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each part by its own size, against fields whose errors are known: a field that forgets a pillar, one that is right, one
-// that makes a sheet thicker than anybody asked for.
+// Errors of each part at its own scale, for fields with known errors: a missing pillar, an exact field, and a sheet
+// that is too thick.
 #include "bake/measure/part_accuracy.h"
 
 #include <cmath>
@@ -22,7 +22,7 @@ PartsAccuracy measured(const ShapedMesh& shape, const Field& field, const PartOp
     return measureParts(queryOf(shape.mesh), shape.parts, field, options);
 }
 
-/// The side of boxes, inside of any.
+/// A field that is inside in any of the boxes.
 Field fieldOfBoxes(const std::vector<Bounds>& boxes) {
     return [boxes](const glm::vec3& p) -> std::optional<FieldValue> {
         for (const Bounds& box : boxes) {
@@ -34,7 +34,7 @@ Field fieldOfBoxes(const std::vector<Bounds>& boxes) {
     };
 }
 
-/// A slab of 5 km, and a pillar of 2 × 9 × 2 m on it.
+/// A slab of 5 km with a pillar of 2 × 9 × 2 m.
 const glm::dvec3 kSlabCenter(0.0, -5.0, 0.0);
 const glm::dvec3 kSlabHalf(2500.0, 5.0, 2500.0);
 const glm::dvec3 kPillarCenter(700.0, 4.6, -900.0);
@@ -50,13 +50,14 @@ TEST(PartAccuracy, MissingPillarIsLostDespiteItsSmallArea) {
 
     const PartsAccuracy right = measured(shape, fieldOfBoxes({slab.bounds, pillar.bounds}));
     EXPECT_EQ(right.countOf(PartVerdict::kHeld), 2U);
-    EXPECT_LE(right.parts[0].wrong.total(), 0.3);  // floats of 900 m resolve a 700th of the points' distance
+    EXPECT_LE(right.parts[0].wrong.total(),
+              0.3);  // floats near 900 m resolve a 700th of the points' distance
 
     const PartsAccuracy absent = measured(shape, fieldOfBoxes({slab.bounds}));
     EXPECT_EQ(absent.countOf(PartVerdict::kLost), 1U);
     const PartAccuracy& worst = absent.parts.front();
     EXPECT_EQ(worst.part, 1U);
-    // A point beside a plane is as likely inside as outside; edges of the pillar make that a little less.
+    // Points near a plane are equally often inside and outside; slightly fewer are inside near edges.
     EXPECT_NEAR(worst.wrong.false_outside, 50.0, 6.0);
     EXPECT_EQ(worst.wrong.false_inside, 0.0);
     EXPECT_NEAR(worst.sigma, 0.005 * 9.0, 1e-6);
@@ -72,7 +73,7 @@ TEST(PartAccuracy, MissingPillarIsLostDespiteItsSmallArea) {
     EXPECT_DOUBLE_EQ(defaultDetail(shape.parts, "m"), 0.1);
     EXPECT_DOUBLE_EQ(defaultDetail(shape.parts, "m", 100.0), 0.001);
 
-    // Filled up, as a texel of 20 m would do it.
+    // Filled as by a texel of 20 m.
     Bounds swollen = pillar.bounds;
     swollen.min -= glm::vec3(10.0F, 0.0F, 10.0F);
     swollen.max += glm::vec3(10.0F, 10.0F, 10.0F);
@@ -85,7 +86,7 @@ PartOptions fewPoints() {
     return {.points = 100};
 }
 
-/// A slab of 200 with 60 boxes on it, of which the field knows none.
+/// A slab of 200 with 60 boxes, all of which are missing in the field.
 PartsAccuracy measuredWithoutBoxes(double side, const std::string& unit) {
     const TriangleMesh slab = makeBoxMesh({0, -1, 0}, {100, 1, 100});
     std::vector<TriangleMesh> all = {slab};
@@ -110,7 +111,7 @@ TEST(PartAccuracy, SmallLostPartsAreCountedButIgnored) {
         EXPECT_NE(verdict.text.find("; 60 of 61 parts, at most "), std::string::npos) << verdict.text;
         EXPECT_NE(verdict.text.find(" not represented"), std::string::npos) << verdict.text;
     }
-    // At 10 cm a person notices them, and so does one who looks at all of the slab at 4.
+    // Boxes of 10 cm matter to people; boxes of 4 matter relative to the slab.
     for (const auto& [side, unit] : {std::pair{0.101, "m"}, {4.0, ""}}) {
         const PartsAccuracy found = measuredWithoutBoxes(side, unit);
         EXPECT_EQ(found.countOf(PartVerdict::kLost), 60U) << side;
@@ -119,7 +120,7 @@ TEST(PartAccuracy, SmallLostPartsAreCountedButIgnored) {
 }
 
 TEST(PartAccuracy, ManySmallLostPartsMatter) {
-    // 200 cubes, each 0.6 % of the diagonal of all: the loss of one is not noticed.
+    // 200 cubes, each 0.6 % of the total diagonal: the loss of one is unnoticeable.
     std::vector<TriangleMesh> cubes;
     for (int i = 0; i < 200; ++i) {
         cubes.push_back(makeBoxMesh({i % 10, i / 10 % 10, i / 100}, glm::dvec3(0.04)));
@@ -127,7 +128,7 @@ TEST(PartAccuracy, ManySmallLostPartsMatter) {
     const ShapedMesh shape = shaped(joined(cubes));
     EXPECT_GT(defaultDetail(shape.parts, ""), 0.08);
     EXPECT_EQ(measured(shape, fieldOfBoxes({}), fewPoints()).countOf(PartVerdict::kLost), 200U);
-    // A hundredth of the surface is absent; half of the points beside it are wrong.
+    // A hundredth of the surface is missing, and half of the points near it are wrong.
     std::vector<Bounds> most;
     for (std::size_t i = 2; i < cubes.size(); ++i) {
         most.push_back(cubes[i].bounds);
@@ -135,7 +136,7 @@ TEST(PartAccuracy, ManySmallLostPartsMatter) {
     const PartsAccuracy few = measured(shape, fieldOfBoxes(most), fewPoints());
     EXPECT_EQ(few.countOf(PartVerdict::kLost), 0U);
     EXPECT_EQ(few.ignored.lost, 2U);
-    // A given detail holds.
+    // An explicit detail overrides the default.
     PartOptions options = fewPoints();
     options.detail = 0.1;
     EXPECT_EQ(measured(shape, fieldOfBoxes({}), options).ignored.lost, 200U);
@@ -160,7 +161,7 @@ TEST(PartAccuracy, LatticeRodCountsByItsLength) {
 }
 
 TEST(PartAccuracy, ExcessCountsAtTheScaleOfTheAsset) {
-    // A plate of 0.4 beside a cube of 10 is too thick: 0.01 is too little to notice, 0.1 is not.
+    // A plate of 0.4 beside a cube of 10 is too thick: by 0.01, which is unnoticeable, and by 0.1, which is not.
     const TriangleMesh cube = makeBoxMesh({0, 0, 0}, glm::dvec3(5.0));
     const TriangleMesh plate = makeBoxMesh({0, 8, 0}, {0.2, 0.01, 0.2});
     const ShapedMesh shape = shaped(joined({cube, plate}));
@@ -175,12 +176,13 @@ TEST(PartAccuracy, ExcessCountsAtTheScaleOfTheAsset) {
         EXPECT_EQ(text.find("not represented"), std::string::npos) << text;
         EXPECT_EQ(text.ends_with("; 1 of 2 parts is thicker than in the mesh"), lost == 0) << text;
     }
-    // A plate that is absent counts, however thin.
+    // A missing plate counts even if it is thin.
     EXPECT_EQ(measured(shape, fieldOfBoxes({cube.bounds})).countOf(PartVerdict::kLost), 1U);
 }
 
 TEST(PartAccuracy, LostPartsAreConfirmedWithMorePoints) {
-    // Boxes that are too large by half the distance of their points: about 20 % are wrong, with few points at times 25 %.
+    // Boxes too large by half the distance of their points: about 20 % of the points are wrong, but sometimes 25 % of
+    // few points.
     std::vector<TriangleMesh> boxes;
     std::vector<Bounds> bounds;
     for (int i = 0; i < 40; ++i) {
@@ -197,7 +199,7 @@ TEST(PartAccuracy, LostPartsAreConfirmedWithMorePoints) {
 }
 
 TEST(PartAccuracy, CoarsePartsCountByArea) {
-    // Cubes that are too small by half the distance of their points.
+    // Cubes too small by half the distance of their points.
     for (const double side : {10.0, 0.5}) {
         const TriangleMesh other = makeBoxMesh({0, 0, 0}, glm::dvec3(5.0));
         const TriangleMesh cube = makeBoxMesh({0, 12, 0}, glm::dvec3(0.5 * side));
@@ -230,7 +232,7 @@ TEST(PartAccuracy, PartsInsideOthersAreHidden) {
 }
 
 TEST(PartAccuracy, ShellIsWrongBeyondItsThickness) {
-    // A leaf of 0.1 beside a body of 10: a default of 0.02 is a fifth of it.
+    // A leaf of 0.1 beside a body of 10. The default thickness of 0.02 is a fifth of the leaf.
     const TriangleMesh leaf =
         moved(makePlane(0.0F, 2), [](const glm::dvec3& p) { return 0.05 * p + glm::dvec3(0.0, 8.0, 0.0); });
     const TriangleMesh body = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(5.0));
@@ -254,7 +256,7 @@ TEST(PartAccuracy, ShellIsWrongBeyondItsThickness) {
     EXPECT_EQ(thick.parts.front().part, 1U);
     EXPECT_GT(thick.parts.front().wrong.false_inside, 40.0);
 
-    // The leaf may be too thick in the solid, but a field without it is no better.
+    // The leaf is too thick in the solid, but a field without the leaf is also wrong.
     const PartsAccuracy absent = measured(by_default, fieldOfBoxes({body.bounds}), fine);
     EXPECT_EQ(absent.countOf(PartVerdict::kLost), 1U);
     EXPECT_EQ(absent.parts.front().part, 1U);
@@ -268,7 +270,7 @@ TEST(PartAccuracy, DefaultThicknessDependsOnThePart) {
     EXPECT_DOUBLE_EQ(partThickness(1.0, 100.0), 1.0);
     EXPECT_DOUBLE_EQ(partThickness(1.0, 1000.0), 4.0);  // at least 0.4 %
     EXPECT_DOUBLE_EQ(partThickness(1.0, 0.8), 0.2);     // at most a quarter
-    // By a texel that is given, a large part takes no more than it.
+    // With an explicit texel, the thickness of a large part is at most that of the default.
     EXPECT_DOUBLE_EQ(partThickness(1.0, 1000.0, true), 1.0);
     EXPECT_DOUBLE_EQ(partThickness(1.0, 0.8, true), 0.2);
     // A single box: one and a half texels, clamped to 0.4 to 4 % of its side.
@@ -280,7 +282,7 @@ TEST(PartAccuracy, DefaultThicknessDependsOnThePart) {
 }
 
 TEST(PartAccuracy, NodesAndMaterialsWeightPartsByArea) {
-    // Two nodes: "tower" of two boxes, of which the field forgets the smaller, and "hut".
+    // Two nodes: "tower" with two boxes, the smaller of which is missing in the field, and "hut".
     const TriangleMesh big = makeBoxMesh({0, 0, 0}, glm::dvec3(2.0));
     const TriangleMesh small = makeBoxMesh({10, 0, 0}, glm::dvec3(1.0));
     const TriangleMesh hut = makeBoxMesh({0, 10, 0}, glm::dvec3(1.0));
@@ -296,7 +298,7 @@ TEST(PartAccuracy, NodesAndMaterialsWeightPartsByArea) {
     EXPECT_EQ(found.groups[0].name, "tower");
     EXPECT_EQ(found.groups[0].parts, 2U);
     EXPECT_EQ(found.groups[0].lost, 1U);
-    // The areas are as 4 to 1.
+    // The areas have a ratio of 4 to 1.
     EXPECT_NEAR(found.groups[0].wrong.total(), found.parts.front().wrong.total() / 5.0, 1e-9);
     EXPECT_EQ(found.groups[1].name, "hut");
     EXPECT_EQ(found.groups[1].wrong.total(), 0.0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tree made by hand, whose leaves and their sizes are known: a patch that is not counted, a child that is taken for its
-// sibling, and heights of a leaf of another side.
+// A handmade tree with known leaves and sizes. Detects uncounted patches, confused siblings, and the heights of wrong
+// leaves.
 #include "bake/measure/patch_cells.h"
 
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@ namespace {
 
 constexpr glm::vec3 kUp(0.0F, 0.0F, 1.0F);
 
-/// Two roots beside each other along x, each 4 object units wide, from the origin. The first is split; of its octants 1 is a
-/// patch of 3² heights, 6 is split and holds a patch of 5², and the others have no record. The second root is outside.
+/// Two roots along x, each 4 object units wide, from the origin. The first is split: octant 1 is a patch of 3² heights,
+/// 6 is split and contains a patch of 5², the others have no record. The second root is outside.
 DepthMap handMade() {
     PatchHeights five{.side = 5};
     PatchHeights three{.side = 3};
@@ -50,7 +50,7 @@ DepthMap handMade() {
 TEST(PatchCells, CountsCellsWithHeights) {
     DepthMap map = handMade();
     EXPECT_EQ(patchCount(map), 2U);
-    // Heights may look like records.
+    // Heights can look like records.
     for (std::byte& byte : std::span(map.texels).subspan(std::size_t{6} * 8)) {
         byte = std::byte{3};
     }
@@ -68,7 +68,7 @@ TEST(PatchCells, SpacingDependsOnTheLeaf) {
     EXPECT_EQ(patchSpacingAt(map, {0.5F, 3.5F, 2.5F}), 1.0) << "beside it, without heights";
     EXPECT_EQ(patchSpacingAt(map, {1.0F, 1.0F, 1.0F}), 2.0) << "an octant without a record";
     EXPECT_EQ(patchSpacingAt(map, {6.0F, 1.0F, 1.0F}), 4.0) << "a root without heights";
-    // Beyond the roots, and on their last faces: the nearest.
+    // Points beyond the roots and on their last faces use the nearest cell.
     EXPECT_EQ(patchSpacingAt(map, {3.0F, -9.0F, -9.0F}), 1.0);
     EXPECT_EQ(patchSpacingAt(map, {8.0F, 4.0F, 4.0F}), 4.0);
     EXPECT_EQ(patchSpacingAt(map, {1e30F, 0.0F, 0.0F}), 4.0);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The truth about shells against closed forms, and what it finds in a hollow one that its own solid calls right.
+// The truth of shells compared with closed forms, and errors that it finds in a hollow shell although its own solid has
+// none.
 #include "bake/bench/sheet_truth.h"
 
 #include <cmath>
@@ -15,7 +16,7 @@ ShapeOptions shellOf(double thickness) {
     return {.as = ShapeAs::kShell, .thickness = thickness};
 }
 
-/// The share of the points that a solid has on the wrong side.
+/// The fraction of points that a solid classifies wrongly.
 WrongShare wrongIn(const MeshQuery& solid, const std::vector<TruthPoint>& points) {
     return measureNear(points, [&](const glm::vec3& p) {
         return FieldValue{solid.inside(p) ? -1.0F : 1.0F, {}};
@@ -30,19 +31,19 @@ TEST(SheetTruth, RodInsideItsShellIsSolid) {
     EXPECT_EQ(truth->inside({0, 0, 0}), true);
     EXPECT_EQ(truth->inside({0, 0.069F, 0}), true);
     EXPECT_EQ(truth->inside({0, 0.071F, 0}), false);
-    EXPECT_EQ(truth->inside({0, 0.05F, 0.05F}), std::nullopt);  // at an edge: its mitre
+    EXPECT_EQ(truth->inside({0, 0.05F, 0.05F}), std::nullopt);  // at the mitre of an edge
     const MeshQuery solid = queryOf(shaped.mesh);
     const std::vector<TruthPoint> points = truth->sample(solid, {.samples = 5000});
     EXPECT_GT(points.size(), 4000U);
     EXPECT_EQ(wrongIn(solid, points).total(), 0.0);
-    // As it was when its inner offset turned over: hollow by 0.03. A point of that solid's own has nothing against it.
+    // A former bug: the inverted inner offset left a hollow of 0.03. Sampling that solid itself finds no error.
     const TriangleMesh hollow = joined(
         {makeBoxMesh({0, 0, 0}, {0.55, 0.07, 0.07}), reversed(makeBoxMesh({0, 0, 0}, {0.47, 0.03, 0.03}))});
     EXPECT_GT(wrongIn(queryOf(hollow), points).false_outside, 20.0);
 }
 
 TEST(SheetTruth, SheetAndBlockKeepTheirKinds) {
-    // The block is a solid; the shell is that of the sheet only.
+    // The block stays solid. Only the sheet gets a shell.
     const TriangleMesh mesh = joined({makePlane(0.0F, 4), makeBoxMesh({5, 0, 0}, {1, 1, 1})});
     ShapeOptions options = shellOf(0.1);
     options.as = ShapeAs::kAuto;
@@ -57,7 +58,7 @@ TEST(SheetTruth, SheetAndBlockKeepTheirKinds) {
     for (const TruthPoint& point : points) {
         ASSERT_EQ(point.inside(), std::abs(point.position.y) < 0.05F) << point.position.y;
     }
-    // Of a mesh without sheets there is nothing to measure.
+    // A mesh without sheets has nothing to measure.
     const TriangleMesh block = makeBoxMesh({0, 0, 0}, {1, 1, 1});
     const SheetTruth none = required(SheetTruth::build(PreparedMesh(block), shapedBy(block, options)));
     EXPECT_TRUE(none.empty() && none.sample(queryOf(block), few).empty());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The worst places against closed forms: where maps are tampered with, what no map sees, what is finer than a texel, what
-// lies behind another part, sheets and open meshes.
+// The worst places compared with closed forms: corrupted maps, unseen surface, details finer than a texel, occluded
+// parts, sheets and open meshes.
 #include "bake/measure/worst_places.h"
 
 #include <cmath>
@@ -39,8 +39,8 @@ TEST(WorstPlaces, AreWhereAMapIsCorrupted) {
     const TriangleMesh sphere = makeIcosphere({1, 2, 3}, 1.0, 5);
     Collider collider = bakeSpecs(sphere, threeViews("64"));
     const Measured sound = measured(sphere, collider);
-    // A block of 10 × 10 texels of the map along y, of the 62 that cover the sphere, has no surface any more: its map
-    // calls what it looks at outside, at both ends.
+    // Clears a block of 10 × 10 texels in the map along y, where the sphere covers 62 texels. The map reports outside
+    // there, at both ends.
     DepthMap& map = collider.maps[1];
     for (std::uint32_t y = 20; y < 30; ++y) {
         for (std::uint32_t x = 36; x < 46; ++x) {
@@ -50,7 +50,7 @@ TEST(WorstPlaces, AreWhereAMapIsCorrupted) {
     }
     const Measured found = measured(sphere, collider);
     ASSERT_GE(found.places.size(), 2U);
-    // The map looks down: x to the right, and −z upwards.
+    // The map looks down: x is right and −z is up.
     const double texel = 2.0 / 62.0;
     const double x = 1.0 + texel * (41.0 - 32.0);
     const double z = 3.0 - texel * (25.0 - 32.0);
@@ -69,7 +69,7 @@ TEST(WorstPlaces, AreWhereAMapIsCorrupted) {
         EXPECT_NEAR(std::abs(double{place.position.y} - 2.0), height, 0.12);
         EXPECT_NEAR(place.size(), 10.0 * texel, 2.5 * texel);
         (place.position.y > 2.0F ? above : below) = true;
-        // About half of the points near the block, which is 0.83 % of the sphere, are inside.
+        // The block covers 0.83 % of the sphere. About half of the points near it are inside.
         EXPECT_GT(static_cast<double>(place.points), 0.3 * 40'000 * 0.0083);
         EXPECT_GT(static_cast<double>(place.points),
                   5.0 * static_cast<double>(sound.places.empty() ? 0 : sound.places[0].points));
@@ -107,7 +107,7 @@ TEST(WorstPlaces, UnseenCavityIsFixedByACube) {
     ASSERT_EQ(found.places.size(), 3U);
     for (const WorstPlace& place : found.places) {
         EXPECT_EQ(place.cause, WrongCause::kUnseen) << wordOf(place.cause);
-        // But for texels that were chosen to be right in the cavity, and are wrong before it.
+        // The exceptions are texels fitted to the cavity, which are wrong in front of it.
         EXPECT_GT(place.inside_percent, 60.0);
         EXPECT_NEAR(double{glm::length(place.position - glm::vec3(0.2F, 0.0F, 0.0F))}, 0.5, 0.05);
     }
@@ -119,8 +119,8 @@ TEST(WorstPlaces, UnseenCavityIsFixedByACube) {
 }
 
 TEST(WorstPlaces, PlateCausesSilhouetteErrors) {
-    // A plate 0.1 thick hovers 0.02 above a block. The view from above does not see into the gap; of the view from the
-    // side, a texel of 0.25 holds it.
+    // A plate 0.1 thick hovers 0.02 above a block. The view from above cannot see into the gap. In the side view, one
+    // texel of 0.25 contains the gap.
     const TriangleMesh mesh =
         joined({makeBoxMesh({0, -0.5, 0}, {1, 0.5, 1}), makeBoxMesh({0, 0.07, 0}, {1, 0.05, 1})});
     const Measured found =
@@ -134,7 +134,7 @@ TEST(WorstPlaces, PlateCausesSilhouetteErrors) {
 }
 
 TEST(WorstPlaces, OpenShellIsNamed) {
-    // A sphere that has lost its cap: most rays still find its inside, but the view from above looks in.
+    // A sphere without its cap: most rays still find its inside, but the view from above looks into it.
     const TriangleMesh sphere =
         without(makeIcosphere({0, 0, 0}, 1.0, 4), [](const glm::dvec3& p) { return p.y > 0.8; });
     const Measured open =
@@ -145,7 +145,7 @@ TEST(WorstPlaces, OpenShellIsNamed) {
 }
 
 TEST(Sights, WallParallelToTheViewIsUnseen) {
-    // Four of a box's six faces are parallel to the one view.
+    // Four of the six faces are parallel to the only view.
     const TriangleMesh box = makeBoxMesh({0, 0, 0}, {1, 1, 1});
     for (const std::string& decode : {std::string(kPlanes), std::string()}) {
         EXPECT_NEAR(measured(box, bakeSpecs(box, {"front-back:dir=-z,size=32" + decode})).unseen_percent,

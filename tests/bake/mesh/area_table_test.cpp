@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles by their share of the area, against a sum over all of them.
+// Triangles selected by area fraction, compared with a running sum.
 #include "bake/mesh/area_table.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// As many meshes at once as a level may have: a device for each would end at the thousandth.
+// As many meshes at once as a level can have. With one Embree device per mesh, the thousandth would fail.
 
 #include <vector>
 

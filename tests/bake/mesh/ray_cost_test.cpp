@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a ray through a mesh costs, against counts by hand.
+// Estimated ray costs, compared with manual counts.
 #include "bake/mesh/ray_cost.h"
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace relief::test {
 namespace {
 
 TEST(RayCost, BoxCountsTwoFacesTwice) {
-    // Each face is the box of both of its triangles, and a line crosses two faces.
+    // The bounds of both triangles of a face equal the face, and a line crosses two faces.
     EXPECT_NEAR(boxesOnLine(makeBoxMesh({1, 2, 3}, {1, 2, 3})), 4.0, 1e-6);
     const TriangleMesh fine_ball = makeIcosphere({0, 0, 0}, 1.0, 5);
     EXPECT_LT(boxesOnLine(fine_ball), 8.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parts by labels, and those that lie astray.
+// Parts split by labels, and outlier parts.
 #include "bake/mesh/surface_parts.h"
 
 #include "tests/bake/meshes.h"
@@ -27,9 +27,9 @@ TEST(SurfaceParts, OutliersAreFarAndSmall) {
     EXPECT_TRUE(straysOf({body, knob}).parts.empty());
     EXPECT_TRUE(straysOf({body}).parts.empty());
     EXPECT_TRUE(straysOf({}).parts.empty());
-    // Two boxes 100 km apart are a scene of two boxes.
+    // Two boxes 100 km apart are a scene of two boxes, not outliers.
     EXPECT_TRUE(straysOf({body, part(glm::vec3(1e5F), glm::vec3(1e5F + 10.0F), 600.0)}).parts.empty());
-    // A small part that is no farther away than the body is long belongs to it.
+    // A small part within one body length belongs to the body.
     EXPECT_TRUE(straysOf({body, part(glm::vec3(12.0F), glm::vec3(13.0F), 0.1)}).parts.empty());
 }
 

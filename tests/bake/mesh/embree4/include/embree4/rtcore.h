@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stands for <embree4/rtcore.h> where there is no Embree 4: the names and signatures in which Embree 4 differs from 3, as
-// its manual gives them, done by Embree 3. With it -DRELIEF_EMBREE=4 compiles and bakes
+// A substitute for <embree4/rtcore.h> on systems without Embree 4. It implements the names and signatures of the Embree
+// 4 manual that differ from version 3 with Embree 3, so that -DRELIEF_EMBREE=4 compiles and bakes
 // (tests/cli/embree4.sh, scripts/nightly.sh embree4).
 #pragma once
 
-// Embree 4's context has no filter and no flags; code that takes them from it is told so at the end of this file.
+// The context of Embree 4 has no filter and no flags. The end of this file makes their use an error.
 #define RTCIntersectContext RTCRayQueryContext
 #include <embree3/rtcore.h>
 #undef RTCIntersectContext
@@ -49,7 +49,7 @@ RTC_FORCEINLINE void rtcInitOccludedArguments(RTCOccludedArguments* arguments) {
     *arguments = {RTC_RAY_QUERY_FLAG_INCOHERENT, RTC_FEATURE_FLAG_ALL, nullptr, nullptr, nullptr};
 }
 
-/// As Embree 4: a filter among the arguments is asked only by those that say so, and is never the context's.
+/// As in Embree 4, the filter of the arguments runs only if the flags enable it, and the context has none.
 template <class Arguments>
 RTCRayQueryContext* embree3Context(const Arguments& arguments) {
     const bool asked = (arguments.flags & RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER) != 0;
@@ -73,6 +73,6 @@ inline void rtcOccluded1(RTCScene scene, RTCRay* ray, RTCOccludedArguments* argu
     rtcOccluded1(scene, embree3Context(*arguments), ray);
 }
 
-// What Embree 4 no longer has.
+// Names removed in Embree 4.
 #pragma GCC poison RTCIntersectContext rtcInitIntersectContext RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION
 #pragma GCC poison RTC_INTERSECT_CONTEXT_FLAG_COHERENT RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT
