@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random points in a box, the same by every compiler.
+// Random points in a box, equal on every compiler.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace relief::test {
 
-/// Uniform in a box of 1.2 times these bounds.
+/// Uniform points in a box of 1.2 times these bounds.
 [[nodiscard]] inline std::vector<glm::vec3> pointsIn(const Bounds& bounds, int count) {
     MersenneRandom random(7);
     std::vector<glm::vec3> points;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes shaped as the tool shapes them.
+// Meshes wound and shaped as in a bake.
 #pragma once
 
 #include "bake/repair/winding.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Work on a given number of threads.
+// Runs work on a given number of threads.
 #pragma once
 
 #include <tbb/global_control.h>
@@ -9,7 +9,7 @@
 
 namespace relief::test {
 
-/// \return what f returns.
+/// \return the result of f
 template <class F>
 auto onThreads(int threads, const F& f) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism,

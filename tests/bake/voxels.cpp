@@ -15,7 +15,7 @@ VoxelGrid::VoxelGrid(const glm::ivec3& size)
 
 VoxelGrid VoxelGrid::random(std::uint32_t seed) {
     std::mt19937 random(seed);
-    // No distribution of the library's: the same solids everywhere.
+    // Avoids library distributions, which are not portable.
     const auto below = [&](std::uint32_t n) { return static_cast<int>(random() % n); };
     VoxelGrid grid({2 + below(6), 2 + below(6), 2 + below(6)});
     const auto share = 30U + random() % 60U;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Solids of unit cubes on integer coordinates: every vertex, edge and face lies on a plane that axis-aligned rays run
-// along, and inside and distance are known exactly.
+// Solids of unit cubes on integer coordinates. All vertices, edges and faces are on planes along which axis-aligned
+// rays run. Sides and distances are exact.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,10 @@ namespace relief::test {
 
 class VoxelGrid {
   public:
-    /// All empty.
+    /// An empty grid.
     explicit VoxelGrid(const glm::ivec3& size);
 
-    /// Seeded: a share of full cells, made smoother or not; never all empty.
+    /// A random grid with a random fraction of full cells, either independent or in blocks. Never empty.
     [[nodiscard]] static VoxelGrid random(std::uint32_t seed);
 
     [[nodiscard]] const glm::ivec3& size() const { return size_; }
@@ -25,12 +25,11 @@ class VoxelGrid {
     [[nodiscard]] bool full(const glm::ivec3& cell) const;
     void set(const glm::ivec3& cell, bool full);
 
-    /// Two triangles for each face between a full and an empty cell, outwards; vertices are shared, so that edges of
-    /// four triangles and pinched vertices occur. \param origin, scale  of the grid in object space.
+    /// Two triangles for each face between a full and an empty cell, wound outward. Vertices are shared, so edges with
+    /// four triangles and pinched vertices occur. \param origin, scale  transform from the grid to object space
     [[nodiscard]] TriangleMesh mesh(const glm::dvec3& origin = glm::dvec3(0.0), double scale = 1.0) const;
 
-    /// Distance from a point, in grid units, to the nearest cell of the other kind: to the surface. At most `reach`,
-    /// an integer, which is all that is looked at.
+    /// Distance in grid units from a point to the surface, limited to the integer `reach`.
     [[nodiscard]] double distance(const glm::dvec3& p, int reach) const;
     [[nodiscard]] bool inside(const glm::dvec3& p) const;
 

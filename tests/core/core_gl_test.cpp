@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The core of the runtime by itself: this program links no layer, so it also proves that load, upload, step, births and one
-// emitter need none.
+// The core of the runtime, linked without its layers: load, upload, step, births and one emitter need no layer.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -16,7 +15,7 @@ namespace {
 
 constexpr double kRadius = 1.0;
 
-/// What a program reads from a file.
+/// A container as read from a file.
 std::vector<std::byte> ballFile() {
     Collider ball = threeMaps(*makeSphere(glm::dvec3(0.0), kRadius), glm::dvec3(0.0), glm::dmat3(1.0), 1.05,
                               64, MapFormat::kFrontBackFixed, Decode::kPlane);
@@ -26,7 +25,7 @@ std::vector<std::byte> ballFile() {
 
 class CoreGlTest : public GlTest {};
 
-// Snow on a ball: it starts above, none of it ends inside, and what rests does so on the ball's surface.
+// Snow falls on a ball. None of it ends inside, and all resting snow is on the surface.
 TEST_P(CoreGlTest, SnowSettlesOnABall) {
     const Collider ball = required(readContainer(ballFile()));
     const auto textures = required(ColliderTextures::create(ball));
@@ -53,8 +52,8 @@ TEST_P(CoreGlTest, SnowSettlesOnABall) {
         const double height = glm::length(glm::dvec3(state.position)) - kRadius;
         ASSERT_EQ(state.contact, Contact::kStopped);
         ASSERT_GT(state.position.y, 0.0F);
-        // Outside by the vote on the CPU, but for rounding. At the ball's outline in a map a texel whose middle misses the ball is
-        // empty throughout: half its diagonal, 0.026. A sweep stops less than its length above the surface.
+        // Outside by the CPU's vote, except for rounding. Texels at the ball's outline are empty if their centre misses
+        // the ball; half their diagonal is 0.026. A sweep stops less than its length above the surface.
         ASSERT_GT(evaluate(ball, state.position).distance, -1e-5F);
         ASSERT_GT(height, -0.026);
         ASSERT_LT(height, 0.1);

@@ -123,8 +123,7 @@ TEST(GltfMeshopt, FiltersMatchTheSpecification) {
     EXPECT_EQ(turns[7], 32767);
 }
 
-/// Compresses every view of indices or of elements of a multiple of 4 bytes into a second buffer. The first buffer is a
-/// fallback without data.
+/// Compresses all views. Buffer 0 contains the compressed data; buffer 1 is a fallback without data.
 GltfCase packedFile(const GltfScribe& scribe) {
     GltfCase file = scribe.file();
     std::string buffer;

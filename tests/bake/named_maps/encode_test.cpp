@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Encoded texels against encodeTexel of formats/texel.h, which is proven there.
+// Encoded texels compared with encodeTexel() of formats/texel.h, which has its own tests.
 #include "bake/named_maps/encode.h"
 
 #include "bake/mesh/triangle_plane.h"
@@ -18,7 +18,7 @@ TEST(Encode, MatchesEncodeTexel) {
           "front-back:size=40,dir=1/1/1,depth=unorm16", "cube:size=20"}) {
         const Result<MapSpec> spec = completeSpec(*parseMapSpec(text), mesh, 40);
         const View view = required(makeView(*spec, mesh));
-        // With a table of normals and without one, the same bytes.
+        // The table of normals does not change a byte.
         for (const std::uint64_t texels : {std::uint64_t{0}, std::uint64_t{1} << 30}) {
             const NormalTable normals(mesh, scene.winding(), texels);
             DepthMap map = view.emptyMap();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Supporting planes: promises of plane_fit.h and fitted_map.h, first on shapes with a closed form, then by the yardstick.
+// Supporting planes: the guarantees of plane_fit.h and fitted_map.h, tested on closed-form shapes and by accuracy.
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
@@ -20,9 +20,8 @@ WrongShare wrongNear(const TriangleMesh& mesh, const Collider& collider) {
     return measureField(sampleTruth(query, {.samples = 30'000}), fieldOf(collider)).near;
 }
 
-/// No sampled point of the surface lies in front of the plane. Footprints whose rays run side by side and all meet a surface
-/// are searched in another way than those of which one runs askew, if by far less than matters, or misses: the first two find
-/// planes that are as good.
+/// Footprints whose rays are parallel and all hit use a faster search than footprints with a skewed or missed ray. Both
+/// searches must find equally good planes, without a sampled point in front of them.
 TEST(PlaneFit, NoSampledPointIsInFrontOfThePlane) {
     std::mt19937 random(6);
     std::uniform_real_distribution<double> unit(-1.0, 1.0);
@@ -30,14 +29,15 @@ TEST(PlaneFit, NoSampledPointIsInFrontOfThePlane) {
     int same = 0;
     constexpr int kRepeats = 2000;
     for (int repeat = 0; repeat < kRepeats; ++repeat) {
-        const std::size_t count = repeat % 3 == 0 ? 9 : 16;  // also what no block of lanes divides
+        const std::size_t count =
+            repeat % 3 == 0 ? 9 : 16;  // also a count that the SIMD width does not divide
         const std::size_t across = repeat % 3 == 0 ? 3 : 4;
         const glm::dvec3 slope(0.6 * unit(random), 0.6 * unit(random), 0.0);
-        // Some lie so near the viewer that planes begin in front of it.
+        // Some are so near the viewer that planes start in front of it.
         const double depth = repeat % 5 == 0 ? 0.002 : 0.3;
         std::vector<FootprintRay> rays(count);
         for (std::size_t i = 0; i < count; ++i) {
-            // Off the lattice, on which several planes may be the best.
+            // Off the lattice, on which several planes can be the best.
             rays[i].origin = {0.005 * (double(i % across) + 0.3 * unit(random)) - 0.007,
                               0.005 * (double(i / across) + 0.3 * unit(random)) - 0.007, 0};
             rays[i].direction = {0, 0, 1};
@@ -55,7 +55,7 @@ TEST(PlaneFit, NoSampledPointIsInFrontOfThePlane) {
         const std::optional<FittedPlane> askew = fit();
         ASSERT_TRUE(straight);
         ASSERT_TRUE(askew);
-        // Of planes that are equally good one may be taken for the other.
+        // Either of two equally good planes is correct.
         const auto costOf = [&](const FittedPlane& plane) {
             double cost = 0.0;
             for (const FootprintRay& ray : rays) {
@@ -91,15 +91,15 @@ TEST(PlaneFit, FootprintWithoutSurfaceIsEmpty) {
 }
 
 TEST(FittedMap, TiltedFaceIsExactToAQuantum) {
-    // One face of a turned box, seen obliquely: away from the edges the plane is the face itself, but for the
-    // normal's index (at most 0.65°, over half a texel) and the depth's quantum, both on the free side.
+    // One face of a rotated box, seen obliquely. Away from the edges the plane equals the face, except for quantization
+    // of the normal (at most 0.65°, over half a texel) and of the depth, both on the free side.
     const glm::dmat3 axes = rotation({0, 1, 0}, 25.0);
     const Collider collider = bakeSpecs(makeBoxMesh({0, 0, 0}, {1, 1, 1}, axes),
                                         {"front-back:dir=-z,size=66x66,depth=unorm16,decode=plane"});
     const glm::dvec3 normal = axes * glm::dvec3(0, 0, 1);
     const double texel = 2.0 * 1.33 / 64.0;
     const double bound = texel * 0.0114 + 4.0 / 65534.0;
-    // The outermost eighth of a texel lies beyond its samples.
+    // The outermost eighth of a texel is beyond its samples.
     const double rim = std::sqrt(2.0) / 8.0 * texel * 0.0114;
     std::mt19937 random(2);
     std::uniform_real_distribution<double> unit(-0.9, 0.9);
@@ -114,8 +114,8 @@ TEST(FittedMap, TiltedFaceIsExactToAQuantum) {
     }
 }
 
-/// A box whose walls run through texels, not along their edges, seen along three of its edges: the map's rays never meet the
-/// walls. No point of the box is outside, and no point a texel away from it is inside.
+/// A box seen along its edges. Its walls cross texels, so rays never hit them. No point of the box is outside, and no
+/// point more than a texel away is inside.
 TEST(FittedMap, WallsSeenEdgeOnLoseNoSolid) {
     const TriangleMesh mesh = makeBoxMesh({0, 0, 0}, {1.0, 0.7, 0.4}, glm::dmat3(1.0));
     const Collider collider = bakeSpecs(
@@ -138,7 +138,7 @@ TEST(FittedMap, WallsSeenEdgeOnLoseNoSolid) {
     }
 }
 
-/// Several maps are fitted, or traced, at the same time: each as it would be alone.
+/// Several maps are fitted or traced in parallel.
 TEST(FittedMap, MapsBakedTogetherMatchSeparateBakes) {
     const TriangleMesh mesh = makeTorusMesh(1.0, 0.4, 48, 24);
     const std::vector<std::string> specs = {"front-back:dir=-z,size=40x52,depth=unorm16,decode=plane",

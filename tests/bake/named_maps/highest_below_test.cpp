@@ -27,7 +27,7 @@ Points centred(Points points) {
     return points;
 }
 
-/// How high a plane of these slopes is over the origin when no point is below it.
+/// Height over the origin of the highest plane with these slopes that is below all points.
 double heightBelow(const Points& points, double along_x, double along_y) {
     double height = INFINITY;
     for (const glm::dvec3& p : points) {
@@ -36,7 +36,7 @@ double heightBelow(const Points& points, double along_x, double along_y) {
     return height;
 }
 
-/// The highest plane of all that three of the points span: one of them is a facet of the hull over the origin.
+/// The highest plane among those through three of the points. One of them is the facet of the hull over the origin.
 double highestOfAll(const Points& points) {
     double highest = -INFINITY;
     for (const glm::dvec3& a : points) {
@@ -83,7 +83,7 @@ TEST(HighestBelow, IsTheBestPlaneThroughThreePoints) {
         }
         expectHighest(centred(points));
         expectHighest(grid(2 + round % 5, [&](int, int) { return number(random); }));
-        // Heights that repeat, as of steps.
+        // Repeated heights, as on steps.
         expectHighest(grid(2 + round % 5, [&](int, int) { return std::floor(2.0 * number(random)); }));
     }
 }

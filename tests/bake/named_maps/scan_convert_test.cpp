@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scan conversion against whole numbers, which know exactly which triangles cover a sample, and against Embree's rays.
+// Scan conversion compared with exact integer coverage and with Embree's rays.
 #include "bake/named_maps/scan_convert.h"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ Scanned scan(const TriangleMesh& mesh, const View& view) {
     Scanned hits;
     hits.near.resize(std::size_t{view.width} * view.height);
     hits.far.resize(hits.near.size());
-    // In stripes, as big maps are.
+    // In stripes, as for large maps.
     const ScanConverter converter(scene, view);
     for (std::uint32_t y = 0; y < view.height; y += 7) {
         const std::uint32_t end = std::min(y + 7, view.height);
@@ -41,9 +41,9 @@ Scanned scan(const TriangleMesh& mesh, const View& view) {
     return hits;
 }
 
-constexpr int kSide = 64;  // of the box, in quarters
+constexpr int kSide = 64;  // side of the box in quarter units
 
-/// What covers a sample, by whole numbers: strictly, or by an edge too.
+/// Exact coverage of a sample by triangles, with or without their edges.
 struct Covered {
     double first = INFINITY;
     double last = -INFINITY;
@@ -58,8 +58,8 @@ struct Covered {
 
 using Corner = std::array<std::int64_t, 3>;
 
-/// Adds the depth of a triangle at (x, y), all in quarters, to `within` if the sample is inside, to `touched` if it is
-/// inside or on an edge.
+/// Adds the depth of a triangle at (x, y), in quarter units, to `within` if the sample is strictly inside, and to
+/// `touched` if it is inside or on an edge.
 void addCovered(const std::array<Corner, 3>& t, std::int64_t x, std::int64_t y, Covered& within,
                 Covered& touched) {
     const auto side = [&](const Corner& a, const Corner& b, std::int64_t px, std::int64_t py) {
@@ -88,7 +88,7 @@ TEST(ScanConverter, MatchesIntegerCoverage) {
     std::mt19937_64 random(seedFrom(3));
     std::uint64_t compared = 0;
     for (int round = 0; round < 60; ++round) {
-        // Corners on a coarse grid make edges and corners that lie on samples, and slivers.
+        // Coarse coordinates put edges and vertices on samples, and make slivers.
         const int step = round % 3 == 0 ? 1 : round % 3 == 1 ? 2 : 8;
         const auto number = [&] {
             return static_cast<std::int64_t>(random() % (kSide / step + 1)) * step + (step > 1 ? 1 : 0);
@@ -114,7 +114,7 @@ TEST(ScanConverter, MatchesIntegerCoverage) {
         const Scanned hits = scan(mesh, view);
         for (std::uint32_t row = 0; row < view.height; ++row) {
             for (std::uint32_t column = 0; column < view.width; ++column) {
-                // Where the texel's centre is, in quarters: texels are half a unit wide.
+                // The texel centre in quarter units; texels are half a unit wide.
                 const glm::dvec3 at = 4.0 * view.ray(0, column, row).origin;
                 const auto x = static_cast<std::int64_t>(std::lround(at.x));
                 const auto y = static_cast<std::int64_t>(std::lround(at.y));
@@ -173,13 +173,13 @@ TEST(ScanConverter, MatchesRays) {
                 }
             }
             EXPECT_GT(met, 100U) << spec;
-            EXPECT_LE(others, met / 2000) << spec;  // rays that pass by an edge within the tracer's rounding
+            EXPECT_LE(others, met / 2000) << spec;  // rays that pass an edge within the tracer's rounding
         }
     }
 }
 
 TEST(ScanConverter, FrontFaceWinsInCoplanarSurfaces) {
-    // Two squares back to back, in both orders.
+    // Two back-to-back squares, in both orders.
     for (const bool turned : {false, true}) {
         TriangleMesh mesh = makePlane(0.0F, 1);
         const std::size_t count = mesh.triangles.size();
@@ -207,8 +207,8 @@ TEST(ScanConverter, FrontFaceWinsInCoplanarSurfaces) {
     }
 }
 
-/// Two of four columns that stand about an edge, diagonally: a ray that runs through the edge leaves the one solid and
-/// enters the other there, or passes between the two.
+/// Two of four columns around an edge, diagonally opposite. A ray through the edge leaves one column and enters the
+/// other, or passes between the two.
 TEST(ScanConverter, RayThroughSharedEdgeKeepsItsSide) {
     for (const bool starts_inside : {true, false}) {
         VoxelGrid grid({2, 2, 1});
@@ -219,7 +219,7 @@ TEST(ScanConverter, RayThroughSharedEdgeKeepsItsSide) {
         const TriangleMesh mesh = grid.mesh();
         const RayScene scene = required(RayScene::build(mesh));
 
-        // The volume begins and ends in the middle of the columns on its way; the middle column of texels looks at the edge.
+        // The volume starts and ends inside columns. The middle column of texels looks at the edge.
         const View part = viewOf(mesh, "front-back:dir=1/1/0,up=+z,size=33,box=0.25/0.25/0/1.75/1.75/1");
         ASSERT_EQ(part.starts_free[0], !starts_inside);
         ASSERT_EQ(part.starts_free[1], !starts_inside);
@@ -232,14 +232,14 @@ TEST(ScanConverter, RayThroughSharedEdgeKeepsItsSide) {
             }
         }
 
-        // A cube whose centre is on the first column's side. The same edge, of which the ray knows two of the six faces.
+        // A cube map centred on the first column's side. Its rays through the same edge test only two of the six faces.
         View cube = viewOf(mesh, "cube:size=6,compare=less,box=-2/-1.5/-1.5/2/2.5/2.5");
         cube.centre_on_surface = true;
         ASSERT_TRUE(mayStartInside(scene, cube, RayEnd::kNear));
         std::vector<Hit> face(36);
         ScanConverter(scene, cube).scan({0, 0, 6}, face, {});
         for (const std::uint32_t x : {2U, 3U}) {
-            const Hit& hit = face[std::size_t{1} * 6 + x];  // y grows downwards: the direction (1, 1/2, ±1/6)
+            const Hit& hit = face[std::size_t{1} * 6 + x];  // y points down: the direction (1, 1/2, ±1/6)
             ASSERT_FALSE(hit.empty());
             EXPECT_NEAR(hit.depth(), 0.5 * std::sqrt(1.0 + 1.0 / 4.0 + 1.0 / 36.0), 1e-6);
             EXPECT_EQ(hit.fromBehind(), starts_inside);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes as CGAL has them.
+// Conversion of meshes to CGAL.
 #pragma once
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -15,7 +15,7 @@ namespace relief::test {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using SurfaceMesh = CGAL::Surface_mesh<Kernel::Point_3>;
 
-/// Vertices of equal positions once. Every face must fit: the mesh is manifold.
+/// Merges vertices with equal positions. Fails the test if the mesh is not manifold.
 [[nodiscard]] inline SurfaceMesh toCgal(const TriangleMesh& mesh) {
     SurfaceMesh out;
     const std::vector<std::uint32_t> welded = weldedVertices(mesh);

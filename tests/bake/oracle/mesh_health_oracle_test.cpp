@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What inspectMesh counts on real meshes against CGAL's halfedges.
+// Counts of inspectMesh() on real meshes compared with CGAL's halfedges.
 #include <CGAL/Polygon_mesh_processing/connected_components.h>
 
 #include <cstdlib>

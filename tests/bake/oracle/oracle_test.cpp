@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Baked colliders against CGAL, which decides inside and outside by exact predicates.
+// Baked colliders compared with CGAL, which classifies points by exact predicates.
 //
-// Bound. Let P be voted outside by an orthographic map, and Q the point of its texel's centre ray of P's
-// depth. The ray is free space up to the surface it meets, and the stored depth is off by at most a quantum
-// q: so a free point lies within |PQ| + q of P, where |PQ| is at most half the texel's diagonal. For a cube,
-// Q has P's radius in the normalised volume; directions within a texel are at most √2/N apart, radii at most
-// √3, and s_max carries that to object units. A point inside the solid and voted outside is therefore at most
-// that deep. For a convex solid every ray through P decides, so points outside and voted inside obey the same
-// bound.
+// Bound: an orthographic map votes that P is outside. Q is the point at P's depth on the centre ray of P's texel. The
+// ray is free up to its hit, and the stored depth has an error of at most one quantum q. So a free point is within |PQ|
+// + q of P, and |PQ| is at most half the texel's diagonal. For a cube map, Q has P's radius in the normalised volume.
+// Directions in a texel differ by at most √2/N, radii are at most √3, and s_max converts to object units. So a point of
+// the solid that is voted outside is at most this deep. For a convex solid every ray through P decides, so the bound
+// also holds for outside points that are voted inside.
 #include <CGAL/AABB_face_graph_triangle_primitive.h>
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
@@ -41,7 +40,7 @@ double boundOf(const Collider& collider) {
         }
         bound = std::max(bound, own);
     }
-    return 1.001 * bound;  // floats
+    return 1.001 * bound;  // plus float errors
 }
 
 struct Tally {
@@ -49,8 +48,8 @@ struct Tally {
     int inside = 0;
     int inside_voted_outside = 0;
     int outside_voted_inside = 0;
-    double deepest = 0.0;   // of the former
-    double farthest = 0.0;  // of the latter
+    double deepest = 0.0;   // of inside points voted outside
+    double farthest = 0.0;  // of outside points voted inside
 };
 
 Tally compare(const TriangleMesh& mesh, const Collider& collider, int count) {
@@ -105,13 +104,12 @@ TEST(Oracle, ConvexSolidsAreWithinTheBound) {
             const double bound = boundOf(collider);
             const Tally tally = compare(mesh, collider, 10000);
             EXPECT_LE(tally.deepest, bound);
-            // A ray may also miss a solid that lies beside its texel's centre, or meet one that does not
-            // reach it.
+            // A ray can also miss a solid beside its texel centre, or hit a solid that does not reach the centre.
             EXPECT_LE(tally.farthest, bound);
             EXPECT_LT(tally.inside_voted_outside + tally.outside_voted_inside, tally.points / 20);
         }
     }
-    // A cube alone, centre inside.
+    // Only a cube map, with its centre inside.
     const TriangleMesh sphere = makeIcosphere({0.3, -0.2, 0.1}, 0.8, 4);
     const Collider cube = bakeSpecs(sphere, {"cube"}, 64);
     const Tally tally = compare(sphere, cube, 10000);
@@ -122,9 +120,9 @@ TEST(Oracle, ConvexSolidsAreWithinTheBound) {
 TEST(Oracle, TorusPenetrationIsWithinTheBound) {
     const TriangleMesh mesh = makeTorusMesh(1.0, 0.35, 90, 45);
     std::vector<std::vector<std::string>> sets = kSets;
-    sets.push_back({"cube"});                                                    // LESS, in the hole
-    sets.push_back({"cube:center=1/0/0"});                                       // GREATER, in the tube
-    sets.push_back({"cube:center=0/0/3,compare=less", "cube:compare=greater"});  // by hand
+    sets.push_back({"cube"});               // LESS, centre in the hole
+    sets.push_back({"cube:center=1/0/0"});  // GREATER, centre in the tube
+    sets.push_back({"cube:center=0/0/3,compare=less", "cube:compare=greater"});  // explicit settings
     for (const std::vector<std::string>& specs : sets) {
         SCOPED_TRACE(specs.front());
         const Collider collider = bakeSpecs(mesh, specs, 96);
@@ -134,7 +132,7 @@ TEST(Oracle, TorusPenetrationIsWithinTheBound) {
 }
 
 TEST(Oracle, SubBoxesNeverLoseTheSolid) {
-    // Volumes that cut the torus, whose rays may start inside it.
+    // Volumes that cut the torus: rays can start inside it.
     const TriangleMesh mesh = makeTorusMesh(1.0, 0.35, 90, 45);
     const SurfaceMesh surface = toCgal(mesh);
     const CGAL::Side_of_triangle_mesh<SurfaceMesh, Kernel> side(surface);
@@ -166,8 +164,8 @@ TEST(Oracle, SubBoxesNeverLoseTheSolid) {
     }
 }
 
-// The truth that accuracy is measured against: side by exact predicates, distance by another tree. Half of the points are
-// anywhere about the box, half within 1 % of its longest side of a vertex.
+// The truth for accuracy: side by exact predicates, distance by another tree. Half of the points are anywhere near the
+// box, half within 1 % of its longest side of a vertex.
 TEST(Oracle, TruthMatchesCgal) {
     const TriangleMesh bunny = required(importMesh("/usr/share/glmark2/models/bunny.obj"));
     for (const TriangleMesh& mesh :
@@ -190,7 +188,7 @@ TEST(Oracle, TruthMatchesCgal) {
             const Kernel::Point_3 point(p.x, p.y, p.z);
             const double distance = std::sqrt(CGAL::to_double(tree.squared_distance(point)));
             EXPECT_NEAR(query.closest(p).distance, distance, 1e-9 * static_cast<double>(longest));
-            // Embree's coordinates are floats: within their grain of the surface either side is right.
+            // Embree uses floats: within their precision of the surface either side is correct.
             if (distance > 2e-7 * static_cast<double>(longest)) {
                 EXPECT_EQ(query.inside(p), side(point) == CGAL::ON_BOUNDED_SIDE)
                     << p.x << " " << p.y << " " << p.z << ", " << distance << " from the surface";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Inside a thick plate the face that is nearer decides, and its normal is exact, however the plate is turned.
+// Inside a thick plate the nearer face decides and has an exact normal, for every rotation of the plate.
 #include "bake/patches/depth_planes.h"
 
 #include <algorithm>
@@ -17,13 +17,13 @@
 namespace relief::test {
 namespace {
 
-/// A plate of 10 by 1 by 10, turned about z, baked at so many bytes.
+/// A plate of 10 by 1 by 10, rotated about z and baked into this many bytes.
 struct Plate {
     static constexpr double kHalf = 5.0;
     static constexpr double kBesideEdges = 0.8;
 
     Plate(double degrees, std::uint64_t bytes) : Plate(degrees, bytes, boxFromTo(-kHalf, kHalf, degrees)) {}
-    /// \param mesh  another one with the same inside.
+    /// \param mesh  another mesh of the same solid
     Plate(double degrees, std::uint64_t bytes, PreparedMesh mesh)
         : turn(turnBy(degrees)), map(bakePatches(queryOf(std::move(mesh)), {.bytes = bytes})->map) {
         EXPECT_TRUE(validateFrame(map) && validateTexels(map));
@@ -33,7 +33,7 @@ struct Plate {
     static glm::dquat turnBy(double degrees) {
         return glm::angleAxis(glm::radians(degrees), glm::dvec3(0.0, 0.0, 1.0));
     }
-    /// The part of the plate with this x.
+    /// The part of the plate between these x.
     static TriangleMesh boxFromTo(double low, double high, double degrees) {
         const glm::dquat turn = turnBy(degrees);
         return makeBoxMesh(turn * glm::dvec3(0.5 * (low + high), 0.0, 0.0), {0.5 * (high - low), 0.5, kHalf},
@@ -45,7 +45,7 @@ struct Plate {
         double depth;
         glm::dvec3 normal;
     };
-    /// A point so deep below the top or the bottom.
+    /// A point at a depth of `least` to `most` below the top or the bottom.
     template <class Random>
     [[nodiscard]] Point pointAt(Random& random, double least, double most) const {
         const auto uniform = [&](double low, double high) {
@@ -67,7 +67,7 @@ double degreesBetween(const glm::dvec3& a, const glm::dvec3& b) {
     return glm::degrees(std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0)));
 }
 
-/// \param beside  least distance from the plane x = 0 of the plate.
+/// \param beside  minimum distance from the plate's plane x = 0
 void expectTheNearerFace(const Plate& plate, double beside = 0.0) {
     std::mt19937 random(7);
     double turned = 0.0;
@@ -104,7 +104,7 @@ TEST_P(PlateTest, PointsBesideAFaceHaveItsSideAndNormal) {
         const Plate::Point point = plate.pointAt(random, -0.05, 0.05);
         const Vote found = vote(plate.map, point.position).value();
         wrong += std::abs(point.depth) > 1e-3 && (found.distance < 0.0F) != (point.depth > 0.0) ? 1 : 0;
-        if (found.distance < kFarOutside) {  // else it is beyond the volume of the map
+        if (found.distance < kFarOutside) {  // otherwise outside the volume of the map
             turned = std::max(turned, degreesBetween(found.normal, point.normal));
         }
     }
@@ -114,7 +114,7 @@ TEST_P(PlateTest, PointsBesideAFaceHaveItsSideAndNormal) {
 
 INSTANTIATE_TEST_SUITE_P(Degrees, PlateTest, testing::Values(0, 20, 35, 50, 60));
 
-// Octants beside a face had the coarse normal of the split cell above them, off by up to 1.6 degrees.
+// A former bug: octants beside a face had the coarse normal of their split parent cell, with errors up to 1.6 degrees.
 TEST(DepthPlanes, FlatFacesHaveExactNormalsOnBothSides) {
     const glm::dquat turn = glm::angleAxis(0.7, glm::normalize(glm::dvec3(1.0, 2.0, 3.0)));
     const glm::dvec3 half(5.0, 1.5, 5.0);
@@ -151,8 +151,8 @@ TEST(DepthPlanes, WindingDoesNotMatter) {
     expectTheNearerFace(Plate(30.0, 128'000, finished(mesh.positions, mesh.triangles)));
 }
 
-// The ends of two boxes lie within the plate that they make up, and are no faces of it. Beside them all samples of a cell are
-// dropped, and it has no depth planes.
+// The ends of two overlapping boxes are inside the plate that they form, and are not part of its surface. Near them all
+// samples of a cell are dropped, so the cell has no depth planes.
 TEST(DepthPlanes, FacesInsideOtherSolidsAreIgnored) {
     const TriangleMesh two =
         joined({Plate::boxFromTo(-Plate::kHalf, 0.5, 30.0), Plate::boxFromTo(-0.5, Plate::kHalf, 30.0)});

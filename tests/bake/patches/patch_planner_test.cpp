@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Trees of patches against closed forms, the mesh's own rays, and their bytes.
+// Trees of patches compared with closed forms, rays through the mesh, and byte counts.
 #include "bake/patches/patch_planner.h"
 
 #include <cmath>
@@ -33,7 +33,7 @@ double wrongPercent(const MeshQuery& query, const DepthMap& map, std::uint32_t p
     return 100.0 * wrong / points;
 }
 
-/// The columns of a whole mesh in a cube about it agree with rays through all of it.
+/// Expects the columns of a cube around a mesh to match rays through the whole mesh.
 void expectColumnsAgree(const MeshQuery& query, int wrong_max) {
     MeshCell cell;
     const Bounds& bounds = query.mesh().bounds;
@@ -68,7 +68,7 @@ void expectColumnsAgree(const MeshQuery& query, int wrong_max) {
                 bool inside = column.inside;
                 double from = column.enters;
                 const auto check = [&](double to) {
-                    // The middle of the stretch, by the inverse of across().
+                    // The middle of the interval; inverts across().
                     const glm::dvec3 zero = frame.across(glm::dvec3(0.0));
                     const glm::dmat3 across(frame.across(glm::dvec3(1, 0, 0)) - zero,
                                             frame.across(glm::dvec3(0, 1, 0)) - zero,
@@ -92,7 +92,7 @@ void expectColumnsAgree(const MeshQuery& query, int wrong_max) {
     EXPECT_LE(wrong, wrong_max);
 }
 
-/// Of a tree, in the box of the mesh and a bit beyond.
+/// Volume of wrong points in the bounds of the mesh, enlarged by a fifth.
 double wrongVolume(const MeshQuery& query, const DepthMap& map, int points) {
     int wrong = 0;
     for (const glm::vec3& p : pointsIn(query.mesh().bounds, points)) {
@@ -112,7 +112,7 @@ TEST(PatchPlanner, CurveMatchesTheErrorsOfBakedTrees) {
         if (curve[i].bytes > 4000.0) {
             const auto bytes = static_cast<std::uint64_t>(curve[i].bytes);
             const double wrong = wrongVolume(query, bakePatches(query, {.bytes = bytes})->map, 400'000);
-            // A tree of its own has other roots, and heights that are fitted anew.
+            // A separate tree has other roots and newly fitted heights.
             EXPECT_NEAR(curve[i].wrong / wrong, 1.0, 0.4) << bytes;
         }
     }
@@ -122,9 +122,9 @@ TEST(PatchPlanner, CurveMatchesTheErrorsOfBakedTrees) {
 
 TEST(CellColumns, MatchRaysThroughTheMesh) {
     expectColumnsAgree(queryOf(makeTorusMesh(1.0, 0.4, 48, 24)), 0);
-    // Even numbers, in whose planes the cells' faces would lie.
+    // Even numbers would put cell faces on the mesh.
     expectColumnsAgree(queryOf(makeBoxMesh({0, 0, 0}, {1, 0.5, 0.25})), 0);
-    // Two balls that overlap are one solid by the winding number.
+    // Two overlapping balls are one solid by the winding number.
     const auto balls =
         windOutwards(joined({makeIcosphere({-0.3, 0, 0}, 1.0, 3), makeIcosphere({0.6, 0.2, 0.1}, 0.8, 3)}));
     expectColumnsAgree(queryOf(required(balls).mesh), 0);
@@ -133,7 +133,7 @@ TEST(CellColumns, MatchRaysThroughTheMesh) {
 TEST(CellColumns, ClippedTrianglesKeepTheirArea) {
     MersenneRandom random(3);
     for (int i = 0; i < 500; ++i) {
-        // Of the cubes of a grid of 3³, which hold all of it.
+        // The 3³ cubes of the grid contain the whole triangle.
         std::array<glm::dvec3, 3> corners;
         for (glm::dvec3& p : corners) {
             p = 0.5 + 1.1 * inCube(random);
@@ -158,7 +158,7 @@ TEST(PatchPlanner, BoxFacesAreExactToQuantization) {
     std::mt19937 random(4);
     std::uniform_real_distribution<double> unit(-1.0, 1.0);
     for (int i = 0; i < 2000; ++i) {
-        const double z = 0.6 * unit(random);  // the same points by every compiler
+        const double z = 0.6 * unit(random);  // the same points with every compiler
         const double y = 1.0 + 0.01 * unit(random);
         const glm::dvec3 local(0.6 * unit(random), y, z);
         const Vote said = vote(map, glm::vec3(axes * local)).value();
@@ -169,7 +169,7 @@ TEST(PatchPlanner, BoxFacesAreExactToQuantization) {
 }
 
 TEST(PatchPlanner, FlatShapesUseOnlyTheBytesTheyNeed) {
-    // Beside a large box a small one, which is judged by its own size.
+    // A small box beside a large one is judged at its own size.
     std::vector<TriangleMesh> parts = {makeBoxMesh({0, 0, 0}, {1, 1, 1}),
                                        makeBoxMesh({1.5, 0, 0}, {0.01, 0.01, 0.01})};
     const MeshQuery query = queryOf(joined(parts));
@@ -186,7 +186,7 @@ TEST(PatchPlanner, FlatShapesUseOnlyTheBytesTheyNeed) {
     }
 }
 
-/// Each triangle as four.
+/// Splits each triangle into four.
 TriangleMesh divided(const TriangleMesh& mesh) {
     TriangleMesh fine;
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -213,7 +213,7 @@ TEST(PatchPlanner, SubdividedFacesCostNoExtraBytes) {
     EXPECT_EQ(wrongPercent(query, map, 20'000), 0.0);
 }
 
-// As exporters write meshes, with six decimals: normals of its 49,152 triangles are up to 2e-4 apart.
+// Rounding to six decimals, as in exported files, changes the normals of the 49,152 triangles by up to 2e-4.
 TEST(FlatFaces, RoundedCoordinatesStayFlat) {
     TriangleMesh box = makeBoxMesh({0, 0, 0}, glm::dvec3(0.5), rotation({1, 2, 3}, 40.0));
     for (int i = 0; i < 6; ++i) {
@@ -228,7 +228,7 @@ TEST(FlatFaces, RoundedCoordinatesStayFlat) {
 }
 
 TEST(PatchPlanner, ThinWallsAndNarrowGapsArePreserved) {
-    // Both sides of a wall lie in one cell, and so thin a wall has too little volume to be worth a cell of its own size.
+    // Both sides of the wall are in one cell. The wall's volume is too small to justify smaller cells.
     const glm::dmat3 axes = rotation({1, 2, 0}, 35.0);
     for (const double half : {0.01, 0.001}) {
         const TriangleMesh plates[] = {
@@ -246,7 +246,7 @@ TEST(PatchPlanner, ThinWallsAndNarrowGapsArePreserved) {
             holes += vote(map, glm::vec3(axes * in_wall))->distance >= 0.0F ? 1 : 0;
             holes += vote(map, glm::vec3(axes * in_gap))->distance <= 0.0F ? 1 : 0;
         }
-        // A wall that cuts a corner of a cell may have too little volume there to be worth a record.
+        // A wall that cuts the corner of a cell can have too little volume there to justify a record.
         EXPECT_LE(holes, 8) << half;
         EXPECT_LT(wrongPercent(query, map, 40'000), 0.1);
     }
@@ -257,8 +257,8 @@ TEST(PatchPlanner, BallsErrorsFallWithBytes) {
     double before = 100.0;
     for (const std::uint64_t bytes : {4'000ULL, 16'000ULL, 64'000ULL, 256'000ULL}) {
         const double wrong = wrongPercent(query, checked(query, bytes), 40'000);
-        // A cell has the square of its size of surface, and a height's error goes by that square: four times the bytes make a
-        // quarter of the errors, until the triangles' edges show.
+        // A cell's surface grows with the square of its size, and so does the error of its heights. So four times the
+        // bytes give a quarter of the errors, until triangle edges dominate.
         EXPECT_LT(wrong, 0.5 * before) << bytes;
         before = wrong;
     }
@@ -273,7 +273,7 @@ DepthMap byTexel(const MeshQuery& query, double texel) {
 }
 
 TEST(PatchTexel, BallErrorsAreBelowTheTexel) {
-    // Of its triangles themselves, which are up to 3e-5 within the ball.
+    // Relative to the sphere; the triangles are up to 3e-5 inside it.
     const MeshQuery query = queryOf(makeIcosphere({0.1, 0.2, 0.3}, 1.0, 7));
     double before = 1.0;
     for (const double texel : {0.08, 0.04, 0.02, 0.01}) {
@@ -287,9 +287,9 @@ TEST(PatchTexel, BallErrorsAreBelowTheTexel) {
             const glm::vec3 p(glm::dvec3(0.1, 0.2, 0.3) + (1.0 + away) * way);
             const bool wrong = (vote(map, p)->distance < 0.0F) != (away < 0.0);
             EXPECT_FALSE(wrong && std::abs(away) > 0.3 * texel) << texel << " " << away;
-            sum += wrong ? texel : 0.0;  // of points in a layer of one texel, that is the mean error
+            sum += wrong ? texel : 0.0;  // in a layer one texel thick, this sums to the mean error
         }
-        // The error goes by the texel; by levels of the octree it does so in steps.
+        // The mean error is proportional to the texel, but changes in steps with octree levels.
         EXPECT_LT(sum / kPoints, 0.65 * before) << texel;
         EXPECT_LT(sum / kPoints, 0.15 * texel) << texel;
         before = sum / kPoints;
@@ -297,7 +297,7 @@ TEST(PatchTexel, BallErrorsAreBelowTheTexel) {
 }
 
 TEST(PatchTexel, ThinHandleOfALargePlateIsPreserved) {
-    // A bar of two texels, on two legs, on a plate a hundred times as long as the bar: its volume is 5e-6 of the plate's.
+    // A bar two texels thick on two legs, on a plate a hundred times as long. The bar has 5e-6 of the plate's volume.
     constexpr double kTexel = 0.01;
     struct Box {
         glm::dvec3 center;
@@ -332,10 +332,10 @@ TEST(PatchTexel, ThinHandleOfALargePlateIsPreserved) {
         }
     }
     EXPECT_GT(inside, 500);
-    // The plate's faces cost nothing: most is along its edges, 48 m and 4800 texels.
+    // The plate's faces cost nothing. Most bytes are along its edges: 48 m, or 4800 texels.
     EXPECT_LT(map.texels.size(), 300'000U);
     const MeshQuery plain = queryOf(makeBoxMesh(boxes[0].center, boxes[0].half));
-    // Half of this are planes of their own: depth planes, and those beside the flat faces of the bars.
+    // About half of this is for depth planes, and for planes beside the flat faces of the bars.
     EXPECT_LT(map.texels.size(), byTexel(plain, kTexel).texels.size() + 55'000);
 }
 
@@ -345,8 +345,8 @@ TEST(PatchTexel, BudgetLimitsTheTexel) {
     const PatchTree tree = required(bakePatches(query, options));
     EXPECT_LE(tree.map.texels.size(), 20'000U);
     EXPECT_GT(tree.texel, 0.001);
-    // A tree that takes less is not coarsened, and one that takes a little more than it may is refused. Without a budget the tree
-    // has the same surface, and maybe more depth planes.
+    // Trees that fit are not coarsened, and trees slightly over the budget are rejected. The tree without a budget has
+    // the same surface and possibly more depth planes.
     const DepthMap whole = byTexel(query, tree.texel);
     EXPECT_GE(whole.texels.size(), tree.map.texels.size());
     MersenneRandom random(5);
@@ -368,7 +368,7 @@ TEST(PatchTexel, BudgetLimitsTheTexel) {
 }
 
 TEST(PatchPlanner, UnseenInteriorsArePreserved) {
-    // A ball in a hollow ball: no ray from outside meets the inner surfaces.
+    // A ball in a hollow ball: rays from outside do not hit the inner surfaces.
     const MeshQuery query =
         queryOf(joined({makeIcosphere({0, 0, 0}, 1.0, 4), reversed(makeIcosphere({0, 0, 0}, 0.8, 4)),
                         makeIcosphere({0.1, 0, 0}, 0.4, 4)}));
@@ -376,7 +376,7 @@ TEST(PatchPlanner, UnseenInteriorsArePreserved) {
 }
 
 TEST(PatchPlanner, SmallPartsBetweenLinesAreFound) {
-    // Of a thousandth of the longest side, where the lines of the largest cells are more than that apart.
+    // The small ball is a thousandth of the longest side, less than the line spacing of the largest cells.
     const MeshQuery query =
         queryOf(joined({makeIcosphere({0, 0, 0}, 1.0, 4), makeIcosphere({40, 0.3, 0.1}, 0.02, 2)}));
     const DepthMap map = checked(query, 100'000);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Trees cut into tiles: their union against the whole tree and against closed forms, at seams as elsewhere.
+// Trees cut into tiles: their union compared with the whole tree and with closed forms, in particular at seams.
 #include "bake/patches/patch_tiles.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ struct Tree {
     DepthMap whole;
     std::vector<PatchTile> tiles;
 
-    /// As a world of the tiles has it.
+    /// Distance in a world of the tiles.
     [[nodiscard]] float distance(const glm::vec3& p) const {
         float least = kFarOutside;
         for (const PatchTile& tile : tiles) {
@@ -30,7 +30,7 @@ struct Tree {
         }
         return least;
     }
-    /// Object space.
+    /// Lower corner in object space.
     [[nodiscard]] glm::vec3 cornerOf(const PatchTile& tile) const {
         glm::vec3 corner;
         for (int i = 0; i < 3; ++i) {
@@ -51,14 +51,13 @@ Tree cut(const TriangleMesh& mesh, const PatchOptions& planned, const PatchTileO
     return made;
 }
 
-/// Anywhere in the box, and within 5 cm of the seams.
+/// Points anywhere in the box, and within 5 cm of seams.
 std::vector<glm::vec3> pointsOf(const Tree& tree, const Bounds& box, std::size_t count) {
     std::mt19937 random(3);
     std::uniform_real_distribution<float> share(0.0F, 1.0F);
     std::vector<glm::vec3> points;
     for (std::size_t i = 0; i < count; ++i) {
-        glm::vec3 p{share(random), share(random),
-                    share(random)};  // braces: the same points by every compiler
+        glm::vec3 p{share(random), share(random), share(random)};  // braces fix the order of the calls
         p = glm::mix(box.min, box.max, p * 1.1F - 0.05F);
         points.push_back(p);
         const glm::vec3 seam = tree.cornerOf(tree.tiles[random() % tree.tiles.size()]);
@@ -73,9 +72,10 @@ std::vector<glm::vec3> pointsOf(const Tree& tree, const Bounds& box, std::size_t
     return points;
 }
 
-/// The union of the tiles has the whole tree's inside. \return the points where it also has its distance.
+/// Expects the union of the tiles to have the same inside as the whole tree. \return the number of points with equal
+/// distances
 std::size_t expectSameField(const Tree& tree, const std::vector<glm::vec3>& points) {
-    // A point's place among the roots is rounded once more in the whole, which has more of them.
+    // The whole tree has more roots, so positions among them have another rounding error.
     const float rounding =
         4e-7F * glm::length(glm::vec3(patchTreeSize(tree.whole.texels).roots)) * tree.whole.object_per_map.x;
     std::size_t near = 0;
@@ -88,7 +88,7 @@ std::size_t expectSameField(const Tree& tree, const std::vector<glm::vec3>& poin
         } else {
             ++near;
         }
-        // In a face between two cells, or two squares of heights, either decides: one of the cells and squares round the point.
+        // On a face between cells or squares of heights, either side can decide. So neighbouring points are tested too.
         constexpr std::array<float, 4> kSteps = {-1.0F, -0.5F, 0.5F, 1.0F};
         bool is_same = false;
         for (unsigned i = 0; i < 64 && !is_same; ++i) {
@@ -123,7 +123,7 @@ TEST(PatchTiles, HillsMatchTheWholeTreeAtSeams) {
     }
     const std::vector<glm::vec3> points = pointsOf(tree, mesh.bounds, 50'000);
     EXPECT_GT(expectSameField(tree, points), points.size() * 9 / 10);
-    // In closed form, but for the share that the tree itself has on the wrong side.
+    // Compare with the closed form, which the tree itself approximates.
     int wrong = 0;
     for (const glm::vec3& p : points) {
         const bool within = std::max(std::abs(p.x), std::abs(p.z)) < kHillsHalf && p.y > -20.0F;
@@ -149,7 +149,7 @@ TEST(PatchTiles, SphereInEightTilesMatchesTheClosedForm) {
         EXPECT_LT(wrong[0], 250);
         EXPECT_LT(wrong[1], 250) << "at seams";
     }
-    // In 4³ tiles the inner 8 have no surface, and stay.
+    // Among 4³ tiles, the inner 8 have no surface, but must be kept.
     const Tree tree = cut(mesh, {.bytes = 1'000'000}, {.bytes = 20'000});
     EXPECT_TRUE(std::ranges::any_of(tree.tiles, [](const PatchTile& tile) {
         const glm::uvec3 roots = patchTreeSize(tile.map.texels).roots;
@@ -167,7 +167,7 @@ TEST(PatchTiles, KeepTheirLimits) {
     const DepthMap whole = bakePatches(queryOf(makeHills(60)), {.bytes = 200'000})->map;
     EXPECT_EQ(cutIntoTiles(whole, {.bytes = 200'000}).size(), 1U);
     EXPECT_EQ(cutIntoTiles(whole, {.bytes = 20'000, .most = 4}).size(), 4U);
-    // Roots beyond a tile's own are bytes, too.
+    // Additional roots of tiles also use bytes.
     EXPECT_EQ(cutIntoTiles(whole, {.bytes = 20'000, .total = whole.texels.size()}).size(), 1U);
     std::uint64_t total = 0;
     const std::vector<PatchTile> some = cutIntoTiles(whole, {.bytes = 20'000, .total = 225'000});
@@ -194,7 +194,7 @@ TEST(PatchTiles, TexelModeHasSmallRoots) {
     EXPECT_GE(roots(other), 256U);
     EXPECT_LT(static_cast<double>(other.texels.size()), 1.1 * static_cast<double>(one.texels.size()));
     EXPECT_TRUE(onThreads(1, [&] { return bake(small); }) == other) << "threads change the tree";
-    // A budget holds with small roots, too.
+    // The budget also holds with small roots.
     small.bytes = one.texels.size() / 2;
     small.coarsen = true;
     EXPECT_LE(bake(small).texels.size(), small.bytes);

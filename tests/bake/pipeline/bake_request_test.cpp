@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A request and its fields: read from words, written as a command line, and read from what containers record.
+// Bake requests: parsed from the command line, written as one, and read from containers.
 #include "bake/pipeline/bake_request.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 namespace relief::test {
 namespace {
 
-/// \param text  a command line without quotes; %XX stands for a byte.
+/// \param text  a command line without quotes; %XX is an escaped byte
 RecordedBake recorded(std::string_view text) {
     std::vector<RecordedOption> options;
     for (std::string_view word = takeWord(text); !word.empty(); word = takeWord(text)) {
@@ -32,7 +32,7 @@ RecordedBake recorded(std::string_view text) {
     return recordedBake(options);
 }
 
-/// The record as a command line without its mesh and output.
+/// The recorded options as a command line, without mesh and output.
 std::string wordsOf(const std::string& options) {
     BakeRequest request = recorded(options).request;
     request.mesh = "m";
@@ -166,7 +166,7 @@ TEST(RecordedBake, IsOneShellCommand) {
     EXPECT_EQ(recorded(many).request.as.size(), kAskedNamesMax);
 }
 
-// In a container and in its text.
+// In a container and as text.
 TEST(RecordedBake, NamesRoundTrip) {
     std::string all;
     for (char c = ' '; c < '\x7f'; ++c) {
@@ -215,7 +215,7 @@ TEST(RecordedBake, RecordsWhetherVoidsAreFilled) {
     };
     EXPECT_EQ(checkedVoids({}, false), 1U);
     EXPECT_EQ(checkedVoids(VoidsAs::kHollow, false), 0U);
-    EXPECT_EQ(checkedVoids({}, true), 0U);  // as older versions baked it
+    EXPECT_EQ(checkedVoids({}, true), 0U);  // baked by an older version
 }
 
 TEST(RecordedBake, ReproducesTheBakedSolid) {
@@ -229,12 +229,12 @@ TEST(RecordedBake, ReproducesTheBakedSolid) {
     const ShapedMesh wrapped =
         required(repairedSolid(recorded("--holes keep --repair wrap=0.1").request, box));
     EXPECT_TRUE(wrapped.mesh.closed());
-    // A record like this must not make a check run for hours.
+    // A record must not make a check run for hours.
     EXPECT_FALSE(repairedSolid(recorded("--repair wrap=0.001").request, box));
 }
 
 TEST(Director, BakesTheRestPoseOfAnAnimatedMesh) {
-    // A cube whose left half is wound inwards, on a node that moves.
+    // A cube on an animated node. Its left half is wound inward.
     const std::string document = R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],)"
                                  R"("nodes":[{"name":"box","mesh":0,"translation":[0,0,5]}],)"
                                  R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],)"
@@ -257,7 +257,7 @@ TEST(Director, BakesTheRestPoseOfAnAnimatedMesh) {
         put(12 * i + 4, i / 2 % 2 == 0 ? 0.0F : 1.0F);
         put(12 * i + 8, i < 4 ? 0.0F : 1.0F);
     }
-    // The first has no area; half of the others are turned.
+    // The first triangle has no area. Half of the others are reversed.
     const std::vector<int> corners = {0, 0, 1, 0, 1, 2, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5,
                                       4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
     std::copy(corners.begin(), corners.end(), bytes.begin() + 96);
@@ -278,7 +278,7 @@ TEST(Director, BakesTheRestPoseOfAnAnimatedMesh) {
     EXPECT_TRUE(again.understood && again.request.animated && settingsOf(again.request));
     const AnimatedMesh mesh = required(readAnimatedMesh(collider.animation));
     ASSERT_EQ(mesh.triangles.size(), 13U);
-    // Outside by the maps is outside where the mesh is drawn too.
+    // The drawn mesh must have the same orientation as the maps.
     double volume = 0.0;
     for (const glm::uvec3& t : mesh.triangles) {
         volume += glm::dot(mesh.positions[t.x], glm::cross(mesh.positions[t.y], mesh.positions[t.z]));
@@ -300,7 +300,7 @@ TEST(Director, BakesAMeshInMemory) {
     EXPECT_LE(made.baked.collider.texelBytes(), 60'000U);
     EXPECT_TRUE(made.patches && made.wrong && made.wrong->total() < 5.0);
     EXPECT_LT(checkOf(made, makeBoxMesh({0, 0, 0}, {1, 1, 1})).wrongPercent(), 5.0);
-    // bakeSolid() makes the same maps of a mesh that needs nothing before.
+    // bakeSolid() makes the same maps from a mesh that needs no preparation.
     EXPECT_EQ(required(bakeSolid(request, made.mesh.mesh)).collider.maps, made.baked.collider.maps);
     request.import.unit = "mm";
     EXPECT_FALSE(bake(request, {}, makeBoxMesh({0, 0, 0}, {1, 1, 1})));
@@ -336,7 +336,7 @@ TEST(Director, AdvisesOnlyMovingTheOriginIfFloatsAreTooCoarse) {
     ASSERT_GT(baked.wrong->total(), 5.0);
     const std::string warning = coarseFloatsWarning(mesh).value();
     EXPECT_NE(warning.find("move it to the origin"), std::string::npos);
-    // The share is stated all the same, without a budget.
+    // The wrong percentage is still reported, without advice on the budget.
     ASSERT_EQ(baked.baked.report.warnings.size(), 2U);
     EXPECT_EQ(baked.baked.report.warnings[0], warning);
     EXPECT_NE(baked.baked.report.warnings[1].find("% wrong near the surface; move it to the origin"),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cache of a recipe: what is up to date is recognised, and every single change is; a file of somebody
-// else's making never passes for one of ours. And depfiles, in both programs' syntax.
+// The cache of a recipe recognises files that are up to date, detects every change, and rejects foreign files. Also
+// depfiles in the syntax of Make and Ninja.
 #include "bake/recipe/bake_cache.h"
 
 #include <gtest/gtest.h>
@@ -76,7 +76,7 @@ TEST_F(BakeCache, EveryChangeIsDetected) {
 
     for (const char* input : {"m.obj", "m.bin"}) {
         const auto time = fs::last_write_time(folder_ / input);
-        put(input, "m.xyz");  // as long as before, and as old
+        put(input, "m.xyz");  // same size and time as before
         fs::last_write_time(folder_ / input, time);
         EXPECT_EQ(why(), std::string("'") + input + "' changed");
         fs::remove(folder_ / input);
@@ -192,7 +192,7 @@ TEST_F(BakeCache, InvalidCachesAreRejected) {
           replaced("\"output_bytes\": 8", "\"output_bytes\": -8"), replaced("\"tool\"", "\"tol\""),
           replaced("\"inputs\": [", "\"inputs\": [1,"), replaced("\"options\": [", "\"options\": [1,"),
           replaced("\"output_hash\"", "\"containers\": {\"a\": 1}, \"output_hash\""),
-          // Without inputs nothing could ever change.
+          // Without inputs, no change would ever be detected.
           std::string(
               R"({"format":"relief-cache","version":1,"outputs":{"a":{"tool":"t","options":[],"inputs":[],)"
               R"("output_hash":"h","output_bytes":1}}})")}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Patterns of file names against what they should and should not match, and no way to make them slow.
+// File patterns: matches, mismatches, and bounded matching time.
 #include "bake/recipe/glob.h"
 
 #include <gtest/gtest.h>
@@ -20,21 +20,21 @@ bool matches(const std::string& pattern, const std::string& path) {
     return parsed && parsed->matches(path);
 }
 
-/// \param pair  a pattern, a space and a path.
+/// \param pair  a pattern and a path, separated by a space
 bool matchesPair(const std::string& pair) {
     const std::size_t space = pair.find(' ');
     return matches(pair.substr(0, space), pair.substr(space + 1));
 }
 
 TEST(Glob, MatchesPartByPart) {
-    // Two stars are any number of folders.
+    // Two stars match any number of folders.
     for (const std::string pair :
          {"a.obj a.obj", "./a.obj a.obj", "*.obj a.obj", ".*.obj .a.obj", "x/?.o*j x/a.obj",
           "[a-c].obj b.obj", "\\[a\\].obj [a].obj", "**/*.obj a.obj", "**/*.obj x/y/a.obj",
           "x/**/a.obj x/a.obj", "x/**/y/**/a.obj x/1/y/2/3/a.obj", "**/**/a.obj a.obj"}) {
         EXPECT_TRUE(matchesPair(pair)) << pair;
     }
-    // * crosses no folder, names with a dot are hidden, and within a part two stars are one.
+    // One star does not cross folders. Names that start with a dot are hidden. Two stars within a part act as one.
     for (const std::string pair :
          {"a.obj b/a.obj", "a.obj A.obj", "*.obj x/a.obj", "*.obj .a.obj", "[!a-c].obj b.obj",
           "[a].obj [a].obj", "x/* x", "x x/y", "x/**/y/**/a.obj x/1/2/3/a.obj", "**/a.obj .git/a.obj",
@@ -43,7 +43,7 @@ TEST(Glob, MatchesPartByPart) {
     }
 }
 
-// 64 times ** against 2,000 folders: by trying one way after the other this would never end.
+// 64 times ** against 2,000 folders: backtracking would never end.
 TEST(Glob, MatchingTimeIsBounded) {
     std::string pattern;
     std::string path;
@@ -84,7 +84,7 @@ TEST(Glob, WalksFoldersOnceInOrder) {
     }
     fs::create_symlink("a.obj", folder / "link.obj");
     fs::create_symlink("gone.obj", folder / "dangling.obj");
-    fs::create_symlink("..", folder / "x/up.d");  // a circle for whoever follows it
+    fs::create_symlink("..", folder / "x/up.d");  // a cycle if links are followed
     const GlobResult found = required(globFiles(folder, *GlobPattern::parse("**/*.obj")));
     EXPECT_EQ(found.files,
               (std::vector<std::string>{"a.obj", "b.obj", "link.obj", "x-/a.obj", "x/a.obj", "x/y/a.obj"}));

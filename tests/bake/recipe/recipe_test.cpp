@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recipes: what is read, merged and found, and that whatever is wrong is told with its place and nothing
-// outside of the folders is reached.
+// Recipes: parsing, merging and file matching. Errors name the place, and paths outside the folders are rejected.
 #include "bake/recipe/recipe.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +34,7 @@ std::string recipe(const std::string& rest) {
 
 using Arguments = std::vector<std::string>;
 
-/// The assets of a recipe that must be right.
+/// The assets of a valid recipe.
 std::vector<RecipeAsset> assetsOf(const std::string& rest) {
     return required(parseRecipe(recipe(rest), keys(), "r.toml"));
 }
@@ -55,11 +54,11 @@ TEST(Recipe, MergesDefaultsKeyByKey) {
     EXPECT_EQ(assets[1].exclude, std::vector<std::string>{"c/d.obj"});
 }
 
-/// Recipes, and each of their assets: whether it is a world, and its arguments.
+/// Each recipe with its expected assets: whether the asset is a world, and its arguments.
 TEST(Recipe, DefaultsThatConflictWithAnAssetAreDropped) {
     const std::string defaults = "[defaults]\noutput = '{stem}.relief'\n";
     const std::vector<std::pair<std::string, std::vector<std::pair<bool, Arguments>>>> recipes = {
-        // Otherwise an asset could not have patches beside defaults that name maps, nor the other way round.
+        // Otherwise an asset with patches could not override defaults with maps, or vice versa.
         {defaults + "map = ['cube:size=8', 'float:size=8']\ndecode = 'projected'\ncompress = 1\n"
                     "[[asset]]\nmesh = 'a'\n[[asset]]\nmesh = 'b'\nbudget = '1MB'\n"
                     "[[asset]]\nmesh = 'c'\npaper = true\n[[asset]]\nmesh = 'd'\npaper = false\n",
@@ -67,7 +66,7 @@ TEST(Recipe, DefaultsThatConflictWithAnAssetAreDropped) {
           {false, {"--budget=1MB", "--compress=1"}},
           {false, {"--compress=1", "--paper"}},
           {false, {"--compress=1"}}}},
-        // Otherwise defaults for meshes would shrink a level to the bytes of one, or be an error beside a height map.
+        // Otherwise defaults for meshes would limit a level to the budget of one mesh, or be errors for a height map.
         {"[defaults]\noutput = '{stem}/world.json'\nmax-error = 1\nmap = 'float'\n"
          "prefer = 'inside'\ncompress = 3\n[[asset]]\nmesh = 'a'\n[[asset]]\nmesh = 'b'\nbudget = '4MB'\n"
          "[[asset]]\nmesh = 'c'\noutput = 'c.relief'\n[[asset]]\nmesh = 'd'\nheights = 'low=0'\n"
@@ -233,7 +232,7 @@ TEST_F(RecipeJobsTest, OutputCollisionsAreErrors) {
     put("mesh.relief");
     fails("[[asset]]\nmesh = 'mesh.relief'\noutput = '{stem}.relief'\n", "is the input");
     fs::create_symlink("rocks", folder_ / "link");
-    fs::create_symlink("later", folder_ / "to_later");  // made by the first bake
+    fs::create_symlink("later", folder_ / "to_later");  // created later by the first bake
     fs::create_symlink("fresh.relief", folder_ / "to_fresh.relief");
     put("one.relief");
     fs::create_hard_link(folder_ / "one.relief", folder_ / "two.relief");
@@ -288,7 +287,7 @@ TEST_F(RecipeJobsTest, ForeignFilesAreNotReplaced) {
         EXPECT_TRUE(result || result.error().code == ErrorCode::kUsage);
         return result ? "" : result.error().message;
     };
-    put("rock.relief");  // as a material library may be called
+    put("rock.relief");  // a material library can have any name
     put("w/world.json");
     fs::create_symlink("rocks/b.mtl", folder_ / "link.relief");
     for (const char* file : {"rock.relief", "link.relief"}) {
@@ -323,7 +322,7 @@ TEST(RecipeShards, EveryOutputIsInExactlyOneShard) {
         }
         EXPECT_GT(*std::ranges::min_element(sizes), static_cast<int>(1000 / count / 4)) << "about as large";
     }
-    // The shards of one array may run on several machines: XXH3-64 of nothing is 2d06800538d394c2.
+    // Shards of one array can run on several machines. XXH3-64 of the empty string is 2d06800538d394c2.
     EXPECT_TRUE(inShard("", {1 + 0xc2 % 4, 4}));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Caps over the holes of nearly closed meshes: promises of hole_caps.h and mesh_edges.h.
+// Caps over the holes of nearly closed meshes: the guarantees of hole_caps.h and mesh_edges.h.
 #include "bake/repair/hole_caps.h"
 
 #include <algorithm>
@@ -31,7 +31,7 @@ double volume(const TriangleMesh& mesh) {
     return sum;
 }
 
-/// A unit ball whose part above y = `height` is cut away, down to the next edges.
+/// A unit ball without the triangles above y = `height`.
 TriangleMesh makeCutBall(double height, int levels = 4) {
     return without(makeIcosphere(glm::dvec3(0.0), 1.0, levels),
                    [&](const glm::dvec3& p) { return p.y > height; });
@@ -48,7 +48,7 @@ void expectClosed(const TriangleMesh& mesh, std::uint64_t holes) {
     for (std::uint32_t i = 0; i < closed.triangles.size(); ++i) {
         EXPECT_NE(planeOf(closed, i).normal, glm::dvec3(0.0)) << "triangle " << i << " has no area";
     }
-    // Wound as their neighbours: no direction of an edge is used more often than the other.
+    // Wound like their neighbours: both directions of an edge are used equally often.
     std::multiset<std::pair<std::uint32_t, std::uint32_t>> directed;
     for (const glm::uvec3& t : closed.triangles) {
         for (int i = 0; i < 3; ++i) {
@@ -72,12 +72,12 @@ TEST(OddEdges, OpenEdgesFollowTheirTriangle) {
     const TriangleMesh box = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0));
     EXPECT_TRUE(oddEdges(edgesOf(box)).empty());
     TriangleMesh open = box;
-    open.triangles.erase(open.triangles.begin());  // 0, 4, 6: its neighbours run the other way
+    open.triangles.erase(open.triangles.begin());  // 0, 4, 6: its neighbours use the opposite directions
     EXPECT_EQ(oddEdges(edgesOf(open)), (std::vector<OddEdge>{{4, 0}, {0, 6}, {6, 4}}));
 }
 
 TEST(OddEdges, EqualPositionsAreOneVertex) {
-    // Zeros of either sign are equal too: the middle of the ball's edges.
+    // Positive and negative zeros are equal; the midpoints of the ball's edges have both.
     TriangleMesh ball = makeIcosphere(glm::dvec3(0.0), 1.0, 2);
     const std::size_t count = ball.positions.size();
     for (std::size_t i = 0; i < count; ++i) {
@@ -95,7 +95,7 @@ TEST(HoleCaps, BallWithoutItsTopBecomesSolid) {
     const TriangleMesh mesh = makeCutBall(0.8);
     expectClosed(mesh, 1);
     const TriangleMesh closed = closedBy(mesh);
-    // A ball less a segment of height 0.2, give or take its facets and the ragged cut.
+    // A ball without a cap of height 0.2, within the error of facets and the jagged cut.
     EXPECT_NEAR(volume(closed), 3.14159265 * (4.0 / 3.0 - 0.04 * (3.0 - 0.2) / 3.0), 0.06);
     const MeshQuery query = queryOf(closed);
     EXPECT_TRUE(query.inside({0.0F, 0.7F, 0.0F}));
@@ -103,7 +103,7 @@ TEST(HoleCaps, BallWithoutItsTopBecomesSolid) {
 }
 
 TEST(HoleCaps, TriangularHolesGetOneTriangle) {
-    // Two triangles of an icosahedron that share only one vertex: two holes.
+    // Two triangles of an icosahedron with one common vertex: two holes.
     TriangleMesh mesh = makeIcosphere(glm::dvec3(0.0), 1.0, 0);
     std::erase_if(mesh.triangles,
                   [](const glm::uvec3& t) { return t == glm::uvec3(0, 11, 5) || t == glm::uvec3(0, 1, 7); });
@@ -112,8 +112,8 @@ TEST(HoleCaps, TriangularHolesGetOneTriangle) {
 }
 
 TEST(HoleCaps, HolesSharingTwoVerticesKeepTheWinding) {
-    // Round both ends of an edge only the edge's own two triangles are left, whose tips then belong to both
-    // holes: a walk may go on from there in either direction.
+    // Only the two triangles of an edge remain at its ends. Their tips belong to both holes, so a walk can continue
+    // there in either direction.
     const TriangleMesh ball = makeIcosphere(glm::dvec3(0.0), 1.0, 4);
     const auto has = [](const glm::uvec3& t, std::uint32_t v) { return t.x == v || t.y == v || t.z == v; };
     for (std::size_t i = 0; i < ball.triangles.size(); i += 397) {
@@ -131,8 +131,8 @@ TEST(HoleCaps, HolesSharingTwoVerticesKeepTheWinding) {
 }
 
 TEST(HoleCaps, CentroidMayBeCollinearWithEdges) {
-    // A shaft whose section is two rectangles side by side, one farther up: point-symmetric, and two edges
-    // lie in line with the centre.
+    // A prism whose section is two adjacent rectangles, one shifted up. It is point-symmetric, and two edges are
+    // collinear with the centre.
     const glm::vec2 section[] = {{-2, -1}, {0, -1}, {0, -3}, {2, -3}, {2, 1}, {0, 1}, {0, 3}, {-2, 3}};
     std::vector<glm::vec3> positions;
     for (const float y : {20.0F, 0.0F}) {
@@ -155,8 +155,8 @@ TEST(HoleCaps, CentroidMayBeCollinearWithEdges) {
 }
 
 TEST(HoleCaps, ClosesTJunctions) {
-    // A box one of whose triangles has a vertex more in the middle of an edge, where its neighbour has none:
-    // a hole without any area.
+    // One triangle of a box has an extra vertex in the middle of an edge, which its neighbour lacks: a hole without
+    // area.
     TriangleMesh mesh = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0));
     const auto middle = static_cast<std::uint32_t>(mesh.positions.size());
     const glm::uvec3 split = mesh.triangles.front();
@@ -174,8 +174,8 @@ TEST(HoleCaps, ClosedMeshesAreUnchanged) {
 }
 
 TEST(HoleCaps, SheetsTerrainsAndBowlsStayOpen) {
-    // Turned any way: the box is no longer flat, and of the seven directions of MeshQuery::inside always more
-    // go to one side.
+    // For any rotation. Rotated bounds are not flat, and one side always has more of the seven directions of
+    // MeshQuery::inside.
     for (const glm::dvec3& axis : {glm::dvec3(1, 0, 0), glm::dvec3(0, 0, 1), glm::dvec3(1, 2, 3)}) {
         for (const double degrees : {0.0, 30.0, 210.0}) {
             expectKept(
@@ -194,7 +194,7 @@ TEST(HoleCaps, SheetsTerrainsAndBowlsStayOpen) {
 }
 
 TEST(HoleCaps, DisconnectedTrianglesAreNotCapped) {
-    // Every triangle of a ball is drawn in a little: caps would be lids upon the triangles themselves.
+    // Every triangle of a ball is shrunk: caps would only cover the triangles themselves.
     const TriangleMesh ball = makeIcosphere(glm::dvec3(0.0), 1.0, 3);
     std::vector<glm::vec3> positions;
     std::vector<glm::uvec3> triangles;
@@ -218,8 +218,8 @@ TEST(HoleCaps, EnclosureMatchesClosedForms) {
     const Enclosure sheet = measureEnclosure(queryOf(makePlane(0.0F, 8)));
     EXPECT_LE(sheet.one_sided, 0.02);
     EXPECT_NEAR(sheet.agreement, 0.5, 0.01);
-    // Of half a ball, a fifth of the directions go out by the opening: the mean solid angle of the disc over
-    // the half sphere, between (1 - √½) / 2 at the bottom and ¼ at the rim.
+    // Half a ball: a fifth of the directions leave through the opening. This is the mean solid angle of the disc from
+    // the hemisphere, between (1 - √½) / 2 at the bottom and ¼ at the rim.
     const Enclosure half = measureEnclosure(queryOf(makeCutBall(0.0, 5)));
     EXPECT_GT(half.one_sided, 0.99);
     EXPECT_NEAR(half.agreement, 0.8, 0.015);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is counted, refused, repaired and turned: promises of mesh_health.h, mesh_repair.h and winding.h.
+// Counted faults, rejection, repair and winding: the guarantees of mesh_health.h, mesh_repair.h and winding.h.
 #include "bake/repair/mesh_health.h"
 
 #include <cmath>
@@ -29,7 +29,7 @@ TriangleMesh withRandomFlips(TriangleMesh mesh, unsigned seed) {
     return mesh;
 }
 
-/// A strip round the z axis that turns over once.
+/// A strip around the z axis with a half twist.
 TriangleMesh makeMoebiusStrip(unsigned around, unsigned across) {
     std::vector<glm::vec3> positions;
     std::vector<glm::uvec3> triangles;
@@ -72,7 +72,7 @@ TEST(MeshHealth, EveryFaultIsCounted) {
     for (const char* const words : {"open.obj: not a closed solid: 3 boundary edges", "-0.5/0/0.5"}) {
         expectError(requireSolid(health, "open.obj"), ErrorCode::kInvalidInput, words);
     }
-    // 4, 7, 6 is gone; of its edges 4–6 has the lowest vertices: its middle.
+    // Triangle 4, 7, 6 is missing. Among its edges, 4–6 has the lowest vertices.
     EXPECT_EQ(health.first_fault->at, glm::vec3(-0.5F, 0.0F, 0.5F));
 
     TriangleMesh turned = unitBox({0, 0, 0});
@@ -89,7 +89,7 @@ TEST(MeshHealth, EveryFaultIsCounted) {
     EXPECT_EQ(health.duplicate_triangles, 1U);
     EXPECT_EQ(health.nonmanifold_edges, 3U);
 
-    // Two boxes that share an edge, and two that share a corner.
+    // Two boxes with a common edge, and two with a common corner.
     health = inspectMesh(joined({unitBox({0, 0, 0}), unitBox({1, 1, 0})}));
     EXPECT_EQ(health.nonmanifold_edges, 1U);
     EXPECT_EQ(health.nonmanifold_vertices, 0U);
@@ -114,7 +114,7 @@ TEST(MeshHealth, EveryFaultIsCounted) {
 
 // --- winding ---
 
-/// The texels of some maps of a mesh, as the tool bakes it.
+/// Some maps of a mesh after windOutwards(), as in a bake.
 Collider bakedOutwards(const TriangleMesh& mesh) {
     Winding winding = required(windOutwards(mesh));
     return bakeSpecs(winding.mesh,
@@ -159,12 +159,12 @@ TEST(Winding, FlippedTrianglesAreRestored) {
         EXPECT_EQ(winding.mesh->triangles, mesh.triangles);
         EXPECT_EQ(bakedOutwards(flipped).maps, truth.maps);
     }
-    // The inner ball, turned as a whole, is a hollow all the same.
+    // An inner ball remains a hollow, even if wound outward.
     const TriangleMesh nested = joined({makeIcosphere({0, 0, 0}, 1, 3), makeIcosphere({0, 0, 0}, 0.5, 3)});
     EXPECT_EQ(required(windOutwards(nested)).mesh->triangles, hollow.triangles);
 }
 
-/// A hollow whose wall was thinner than the step that rays started with, 1e-4 of the longest side, was filled.
+/// A former bug: hollows were filled if their wall was thinner than the ray offset, 1e-4 of the longest side.
 TEST(Winding, ThinWalledHollowStaysHollow) {
     for (const double wall : {1e-3, 1e-4, 1e-5, 1e-6}) {
         SCOPED_TRACE(wall);
@@ -178,7 +178,7 @@ TEST(Winding, ThinWalledHollowStaysHollow) {
     }
 }
 
-/// One line tells of all that it crosses: the rays of each would take the square of their number.
+/// Each ray classifies all surfaces it crosses: separate rays would take quadratic time.
 TEST(Winding, HandlesThousandsOfNestedSurfaces) {
     constexpr int kShells = 2000;
     std::vector<TriangleMesh> shells;
@@ -187,13 +187,13 @@ TEST(Winding, HandlesThousandsOfNestedSurfaces) {
         shells.push_back(i % 3 == 0 ? reversed(box) : box);
     }
     const MeshQuery query = queryOf(required(windOutwards(joined(shells))).mesh);
-    for (int i = 0; i < kShells; i += 37) {  // between a shell and the next
+    for (int i = 0; i < kShells; i += 37) {  // between a shell and the next one
         const auto x = static_cast<float>(1.0 - 0.9 * (i + 0.5) / kShells);
         EXPECT_EQ(query.inside({x, 0.03F, -0.02F}), i % 2 == 0) << i;
     }
 }
 
-/// Where copies lie in one place every edge has thousands of triangles, each a patch of its own.
+/// With coincident copies every edge has thousands of triangles, each of which is a separate patch.
 TEST(Winding, ThousandsOfCopiesStayOutward) {
     const TriangleMesh box = makeBoxMesh({0, 0, 0}, {1, 1, 1});
     std::vector<glm::uvec3> triangles;
@@ -230,7 +230,7 @@ TEST(Winding, OverlapOfSolidsIsInside) {
     EXPECT_TRUE(insideAt(island, {1.0F, 1.0F, 1.0F}));
     const Collider collider = bakedOutwards(crossing);
     for (int i = 0; i < 1000; ++i) {
-        const glm::vec3 p(-0.08F + 0.0005F * static_cast<float>(i), 0.1F, 0.05F);  // through both
+        const glm::vec3 p(-0.08F + 0.0005F * static_cast<float>(i), 0.1F, 0.05F);  // passes through both
         EXPECT_TRUE(evaluate(collider, p).inside()) << p.x;
     }
 }

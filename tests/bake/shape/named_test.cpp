@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What has a name in the mesh file is taken for what its name says; and what options and containers say of that.
+// Parts with names are classified by name. Also the options and container records of names.
 #include "tests/bake/shaped.h"
 
 namespace relief::test {
@@ -16,7 +16,7 @@ bool inside(const ShapedMesh& shape, const glm::vec3& p) {
     return queryOf(shape.mesh).inside(p);
 }
 
-/// Half sides 1; its lid, at y = 1, has the first name, all else the second.
+/// A box of half sides 1. Its lid, at y = 1, has the first name, the rest the second.
 TriangleMesh makeBoxWithLid() {
     TriangleMesh box = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0));
     for (const glm::uvec3& t : box.triangles) {
@@ -26,7 +26,7 @@ TriangleMesh makeBoxWithLid() {
     return box;
 }
 
-/// A box without a lid, named first, and a closed one at x = 4, named second.
+/// A box without a lid, with the first name, and a closed box at x = 4 with the second.
 TriangleMesh makeTwoBoxes() {
     const TriangleMesh tub =
         without(makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0)), [](const glm::dvec3& p) { return p.y > 0.9; });
@@ -49,21 +49,21 @@ TEST(NamedShape, NamesClassifyParts) {
     EXPECT_FALSE(inside(told, block));
     EXPECT_TRUE(inside(told, {4.98F, 0.2F, 0.3F}));
     EXPECT_EQ(asWords(told.report), (std::vector<std::string>{"tub=solid", "block=shell"}));
-    // What has no name goes by the default.
+    // Unnamed parts use the default.
     const ShapedMesh rest = shaped(makeTwoBoxes(), {{"tub", ShapeAs::kAuto}}, ShapeAs::kShell);
     expectKinds(rest.report, 0, 0, 2, 0);
     EXPECT_EQ(asWords(rest.report), (std::vector<std::string>{"shell", "tub=auto"}));
 }
 
 TEST(NamedShape, NamedWallIsCutFromItsSurface) {
-    // Glass: free space on both sides, and so within the box.
+    // A glass lid leaves free space on both sides, so the box is empty.
     const ShapedMesh glass = shaped(makeBoxWithLid(), {{"lid", ShapeAs::kShell}});
     expectKinds(glass.report, 0, 0, 2, 0);
     EXPECT_FALSE(inside(glass, glm::vec3(0.0F)));
     for (const glm::vec3& wall : {glm::vec3(0.0F, 1.04F, 0.0F), {0.0F, 0.96F, 0.0F}, {0.2F, -0.96F, 0.3F}}) {
         EXPECT_TRUE(inside(glass, wall)) << wall.x << " " << wall.y;
     }
-    // Below it, what is said to be full.
+    // Below the lid, a part explicitly made solid.
     for (const auto& [named, as] :
          {std::pair{Named{{"lid", ShapeAs::kShell}}, ShapeAs::kSolid},
           {Named{{"lid", ShapeAs::kShell}, {"box", ShapeAs::kSolid}}, ShapeAs::kAuto}}) {
@@ -89,7 +89,7 @@ TEST(NamedShape, ClosedSurfaceWithoutWallStaysWhole) {
 }
 
 TEST(NamedShape, OpenPartsOfTwoKindsSplitAtSharedEdges) {
-    // A floor of two halves: ground, and a wall that lies flat. Neither is closed.
+    // A floor in two halves: terrain, and a slab as a shell. Neither is closed.
     TriangleMesh floor = makePlane(0.0F, 8);
     for (const glm::uvec3& t : floor.triangles) {
         const float x = floor.positions[t.x].x + floor.positions[t.y].x + floor.positions[t.z].x;
@@ -104,7 +104,7 @@ TEST(NamedShape, OpenPartsOfTwoKindsSplitAtSharedEdges) {
 }
 
 TEST(NamedShape, ShellsDoNotAffectEnclosedParts) {
-    // A ball with a hole, in the dark of a closed box.
+    // A ball with a hole, enclosed by a box.
     const TriangleMesh box = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(2.0));
     TriangleMesh ball = makeIcosphere(glm::dvec3(0.0), 1.0, 2);
     ball.triangles.erase(ball.triangles.begin());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Space that sheets seal off together: promises of sealed_voids.h, on a shape whose inside has a formula.
+// Space sealed off by several sheets: the guarantees of sealed_voids.h, on a shape with a closed-form inside.
 #include "bake/shape/sealed_voids.h"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ ShapedMesh shaped(const TriangleMesh& mesh, ShapeOptions options = {}) {
     return shapedBy(mesh, options);
 }
 
-/// Whether the middle room is full, by its middle.
+/// Whether the middle room is filled, tested at its centre.
 bool isFull(const TriangleMesh& mesh, const ShapeOptions& options = {}) {
     const ShapedMesh shape = shaped(mesh, options);
     const bool full = queryOf(shape.mesh).inside(glm::vec3(0.01F, 0.02F, 0.03F));
@@ -56,7 +56,7 @@ TEST(SealedVoids, AreInsideAndEndNoRay) {
     int of_middle = 0;
     for (const glm::dvec3 p : pointsIn(makeRooms().bounds, 100'000)) {
         const bool inside = inPanel(p) || inMiddle(p);
-        bool clear = true;  // of the surface by more than floats err
+        bool clear = true;  // not within float errors of the surface
         for (int axis = 0; axis < 3; ++axis) {
             glm::dvec3 step(0.0);
             step[axis] = 1e-3;

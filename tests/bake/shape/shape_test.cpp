@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What parts of a mesh are taken for, and the solids that stand for them: promises of shape.h, shell.h and terrain.h.
+// Classification of parts, and the solids that represent them: the guarantees of shape.h and sheet.h.
 #include "bake/shape/shape.h"
 
 #include <algorithm>
@@ -25,13 +25,13 @@ ShapedMesh shaped(const TriangleMesh& mesh, ShapeAs as = ShapeAs::kAuto, double 
     return shapedBy(mesh, {as, thickness});
 }
 
-/// A box of half sides 1 with a face missing: its lid, at y = 1.
+/// A box of half sides 1 without its lid, at y = 1.
 TriangleMesh makeOpenBox() {
     return without(makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0)),
                    [](const glm::dvec3& p) { return p.y > 0.99; });
 }
 
-/// A profile of radii and heights turned round the y axis, open where it does not begin or end on it.
+/// A surface of revolution about the y axis from radii and heights, open where its ends are not on the axis.
 TriangleMesh makeTurned(const std::vector<glm::dvec2>& profile, std::uint32_t sides = 64) {
     std::vector<glm::vec3> positions;
     std::vector<glm::uvec3> triangles;
@@ -50,12 +50,12 @@ TriangleMesh makeTurned(const std::vector<glm::dvec2>& profile, std::uint32_t si
     return finished(positions, triangles);
 }
 
-/// A tube round the y axis, closed below.
+/// A tube around the y axis, closed at the bottom.
 TriangleMesh makeCup() {
     return makeTurned({{0.0, -1.0}, {0.7, -1.0}, {0.7, 1.0}});
 }
 
-/// Open below, at y = −0.3; its brim, from radius 0.7 to 1, has no sight of that hole from within.
+/// Open below, at y = −0.3. The hole cannot be seen from inside the brim, at radii 0.7 to 1.
 TriangleMesh makeToadstool() {
     std::vector<glm::dvec2> profile = {{0.7, -0.3}, {0.7, 0.0}};
     for (int i = 0; i <= 8; ++i) {
@@ -73,7 +73,7 @@ TriangleMesh turned(const TriangleMesh& mesh, const glm::dvec3& axis, double deg
     return moved(mesh, [&](const glm::dvec3& p) { return rotation(axis, degrees) * p; });
 }
 
-/// y = height(x, z) over [−1, 1]².
+/// The graph y = height(x, z) over [−1, 1]².
 template <class Height>
 TriangleMesh makeHeights(const Height& height) {
     return moved(makePlane(0.0F, 24),
@@ -84,8 +84,8 @@ double hills(double x, double z) {
     return 0.15 * std::sin(3.0 * x) * std::cos(2.0 * z);
 }
 
-/// Checks against the distance to the open mesh itself, which knows nothing of shells. Points within `skip` of the
-/// border do not count: the shell ends flat there.
+/// Compares a shell with the distance to the open mesh. Points within `skip` of the border are ignored: the shell has
+/// flat ends there.
 template <class AtBorder>
 void expectShell(const TriangleMesh& sheet, const ShapedMesh& shape, const AtBorder& at_border) {
     const MeshQuery open = queryOf(sheet);
@@ -101,7 +101,7 @@ void expectShell(const TriangleMesh& sheet, const ShapedMesh& shape, const AtBor
         if (distance < 0.48 * kThickness) {
             ++inside;
             ASSERT_TRUE(shell.inside(p)) << p.x << ' ' << p.y << ' ' << p.z << ": " << distance;
-        } else if (distance > 0.5 * std::numbers::sqrt3 * kThickness + 1e-4) {  // a corner's mitre
+        } else if (distance > 0.5 * std::numbers::sqrt3 * kThickness + 1e-4) {  // the mitre at a corner
             ++outside;
             ASSERT_FALSE(shell.inside(p)) << p.x << ' ' << p.y << ' ' << p.z << ": " << distance;
         }
@@ -112,8 +112,8 @@ void expectShell(const TriangleMesh& sheet, const ShapedMesh& shape, const AtBor
 
 struct ShellCount {
     int near = 0;
-    int hollow = 0;  ///< near, and outside
-    int filled = 0;  ///< far, and inside
+    int hollow = 0;  ///< near but outside
+    int filled = 0;  ///< far but inside
 };
 
 /// Counts points nearer to the sheet than `near`, or farther than `far`, by their side of a shell of thickness 0.1.
@@ -140,7 +140,7 @@ double wrongPercent(const ShapedMesh& shape, const Collider& collider) {
     return measureNear(sampleNear(queryOf(shape.mesh), {.samples = 20'000}), fieldOf(collider)).total();
 }
 
-/// Flies straight on from `from`, in steps of this length from a random start. \return whether it was stopped.
+/// Moves straight from `from` with this step length and a random first step. \return whether the particle was stopped
 bool isStopped(const Collider& collider, const glm::dvec3& from, const glm::dvec3& along, double step,
                double start, double length) {
     for (double at = start * step; at < length; at += step) {
@@ -165,7 +165,7 @@ TEST(Shape, SolidIsUnchanged) {
     EXPECT_EQ(holed.mesh->closed_holes, 1U);
 }
 
-// A vessel's mouth faces up, and a bell, a shade or a box turned over shows all of its inside.
+// The mouth of a vessel faces up. A bell, a lampshade or an inverted box shows all of its inside.
 TEST(Shape, BodyOpenBelowIsSolidButVesselIsNot) {
     const TriangleMesh toadstool = makeToadstool();
     const ShapedMesh shape = shaped(toadstool);
@@ -179,7 +179,7 @@ TEST(Shape, BodyOpenBelowIsSolidButVesselIsNot) {
     const glm::dvec3 x(1, 0, 0);
     const TriangleMesh z_up = turned(toadstool, x, 90.0);
     expectKinds(shaped(z_up).report, 0, 1, 0, 0);
-    TriangleMesh in_metres = z_up;  // y is up
+    TriangleMesh in_metres = z_up;  // here y is up
     in_metres.unit = "m";
     const std::vector<TriangleMesh> vessels = {in_metres,
                                                turned(toadstool, x, 180.0),
@@ -195,14 +195,14 @@ TEST(Shape, BodyOpenBelowIsSolidButVesselIsNot) {
         SCOPED_TRACE(i);
         const ShapeReport report = shaped(vessels[i]).report;
         expectKinds(report, 0, 0, 1, 0);
-        EXPECT_EQ(report.closable_sheets, 1U);  // told of --as solid
+        EXPECT_EQ(report.closable_sheets, 1U);  // --as solid is suggested
         expectKinds(shaped(vessels[i], ShapeAs::kSolid).report, 0, 1, 0, 0);
     }
     EXPECT_EQ(shaped(makePlane(0.0F, 1)).report.closable_sheets, 0U);
     EXPECT_EQ(shaped(joined({makeOpenBox(), scaled(makePlane(-1.0F, 2), 9.0)})).report.closable_sheets, 0U);
 }
 
-/// Mugs, bowls, lampshades and pipes of two open shells, whose rims are not joined; radii and heights.
+/// Mugs, bowls, lampshades and pipes of two open shells with separate rims, as radii and heights.
 TEST(Shape, ShellsWithFacingRimsFormAWall) {
     struct Wall {
         TriangleMesh outer;
@@ -226,7 +226,7 @@ TEST(Shape, ShellsWithFacingRimsFormAWall) {
                                       makeTurned({{0.45, 0.0}, {0.45, 4.01}}),
                                       {{0, 2, 0}, {0.4, 0.01, 0}, {0, 3.99, 0.4}},
                                       {{0.475, 2, 0}, {0, 3.9, 0.475}}},
-                                     // Through the gap between their rims many rays lead out.
+                                     // Many rays escape through the gap between the rims.
                                      {makeTurned({{0.37, 0.0}, {0.33, 1.0}}),
                                       makeTurned({{0.31, 0.0}, {0.27, 1.0}}),
                                       {{0, 0.5, 0}, {0.25, 0.98, 0}, {0, 0.02, 0.28}},
@@ -254,11 +254,11 @@ TEST(Shape, ShellsWithFacingRimsFormAWall) {
             EXPECT_FALSE(inside({2.0, 0.5, 0.0}));
         }
     }
-    // A box with a mouth beside another one is no wall.
+    // Two open boxes side by side do not form a wall.
     expectKinds(shaped(joined({makeOpenBox(), scaled(makeOpenBox(), 1.0, {2.1, 0, 0})})).report, 0, 0, 2, 0);
 }
 
-/// Vessels with a narrow mouth, a flared, thick, square or eccentric rim, or a missing triangle; radii and heights.
+/// Vessels with a narrow mouth, a flared, thick, square or eccentric rim, or a missing triangle, as radii and heights.
 TEST(Shape, ShellsWithUnlikeRimsFormAWall) {
     struct Wall {
         TriangleMesh outer;
@@ -304,13 +304,13 @@ TEST(Shape, ShellsWithUnlikeRimsFormAWall) {
         EXPECT_FALSE(query.inside(glm::vec3(walls[i].free)));
         EXPECT_TRUE(query.inside(glm::vec3(walls[i].full)));
     }
-    // A small vessel of a large scene.
+    // A small vessel in a large scene.
     const ShapedMesh scene = shaped(joined({vase, in_vase, scaled(makePlane(-1.0F, 2), 9.0)}));
     expectKinds(scene.report, 0, 1, 1, 0);
     EXPECT_FALSE(queryOf(scene.mesh).inside({0.0F, 0.5F, 0.0F}));
 }
 
-/// An inner shell that ends far below the rim of the outer one leaves the vessel full, which is reported.
+/// If the inner shell ends far below the outer rim, the vessel is filled and a warning reports it.
 TEST(Shape, VesselWithSeparateShellsIsReported) {
     const auto turn = [](const std::vector<glm::dvec2>& profile) { return makeTurned(profile, 16); };
     const TriangleMesh mug = turn({{0.0, 0.0}, {0.5, 0.0}, {0.5, 1.2}});
@@ -327,7 +327,7 @@ TEST(Shape, VesselWithSeparateShellsIsReported) {
     const TriangleMesh liner = turn({{0.0, 0.02}, {0.48, 0.02}, {0.48, 1.2}});
     EXPECT_EQ(unjoined({mug, liner}), 0U);
     EXPECT_EQ(unjoined({mug, scaled(mug, 1.0, {3, 0, 0})}), 0U);
-    // A crate in a crate: both stay open.
+    // An open crate in an open crate: both stay open.
     const auto crate = [](const glm::dvec3& scale, double y) {
         return moved(makeOpenBox(), [&](const glm::dvec3& p) { return p * scale + glm::dvec3(0.0, y, 0.0); });
     };
@@ -338,7 +338,7 @@ TEST(Shape, VesselWithSeparateShellsIsReported) {
     EXPECT_EQ(crates.report.unjoined_shells, 0U);
 }
 
-/// A body in its clothes has the shells of a vessel; only their winding may differ.
+/// A clothed body has the same shells as a vessel, but possibly other winding.
 TEST(Shape, WallThatMayBeAClothedBodyIsReported) {
     const auto turn = [](const std::vector<glm::dvec2>& profile) { return makeTurned(profile, 24); };
     const TriangleMesh torso = turn({{0.3, 0.0}, {0.34, 0.5}, {0.3, 0.9}, {0.12, 1.0}});
@@ -349,7 +349,7 @@ TEST(Shape, WallThatMayBeAClothedBodyIsReported) {
     }
     const TriangleMesh ball = makeIcosphere({2.0, 0.5, 0.0}, 0.2, 1);
     const auto unclear = [&](const TriangleMesh& outer, const TriangleMesh& inner) {
-        // Copies restart the shaper.
+        // Duplicates restart the classification.
         const ShapeReport report = shaped(joined({inner, outer, ball, ball})).report;
         expectKinds(report, 1, 1, 0, 0);
         const ShapeReport alone = shaped(joined({inner, outer})).report;
@@ -378,8 +378,8 @@ TEST(Shape, ShellContainsAllPointsNearItsSheet) {
     }
 }
 
-/// Rods thinner than their shell, a straw, a pin on a block, a pit in one, a thin bar between two ends, and a thin flange about
-/// a hollow body.
+/// Rods thinner than their shell, a straw, a pin on a block, a pit in one, a thin bar between two ends, and a thin
+/// flange around a hollow body.
 TEST(Shape, ShellThickerThanItsPartIsNotHollow) {
     const TriangleMesh rod = makeBoxMesh(glm::dvec3(0.0), {0.5, 0.02, 0.02});
     const std::vector<glm::dvec2> bar = {{0.0, -0.5}, {0.3, -0.4}, {0.3, -0.3}, {0.02, -0.2},
@@ -396,7 +396,7 @@ TEST(Shape, ShellThickerThanItsPartIsNotHollow) {
         makeTurned(flange)};
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         SCOPED_TRACE(i);
-        const double flat_ends = i == 2 ? 0.49 : 9.0;  // of the straw
+        const double flat_ends = i == 2 ? 0.49 : 9.0;  // the straw has flat ends
         const ShellCount count = countAtShell(meshes[i], 0.045, 0.09, flat_ends);
         EXPECT_EQ(count.hollow, 0);
         EXPECT_EQ(count.filled, 0);
@@ -404,8 +404,8 @@ TEST(Shape, ShellThickerThanItsPartIsNotHollow) {
     EXPECT_LT(queryOf(shaped(rod, ShapeAs::kShell, 0.1).mesh).signedDistance(glm::vec3(0.0F)), -0.06);
 }
 
-/// A gable, a needle, a blade, a wedge, two cones and a tapered rod, in a shell of 0.1: at most a twentieth of the points
-/// within 0.04 are outside.
+/// A gable, a needle, a blade, a wedge, two cones and a tapered rod in a shell of 0.1. At most a twentieth of the
+/// points within 0.04 may be outside.
 TEST(Shape, ShellOfASharpWedgeHasFullThickness) {
     const std::vector<glm::uvec3> wedge = {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3},
                                            {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
@@ -445,7 +445,7 @@ TEST(Shape, TwoSidedSheetIsOneSheet) {
     EXPECT_FALSE(query.inside({0.1F, 0.03F, 0.2F}));
 }
 
-// The gap between near copies is thinner than any wall: it is no hollow, and a warning says so.
+// The gap between near copies is thinner than any wall. It is not treated as a hollow, and a warning reports it.
 TEST(Shape, CopiesOfASolidAreOneSolid) {
     const TriangleMesh ball = makeIcosphere(glm::dvec3(0.0), 1.0, 3);
     const TriangleMesh half = finished(
@@ -476,7 +476,7 @@ TEST(Shape, CopiesOfASolidAreOneSolid) {
         EXPECT_EQ(shape.mesh->warnings.size(), c.near > 0 ? 1U : 0U);
         const MeshQuery query = queryOf(shape.mesh);
         for (const glm::vec3& p : pointsIn(ball.bounds, 3000)) {
-            // Of near copies not at the surface.
+            // For near copies, skip points at the surface.
             if (c.near == 0 || truth.inside(0.9998F * p) == truth.inside(1.0002F * p)) {
                 ASSERT_EQ(query.inside(p), truth.inside(p));
             }
@@ -493,9 +493,9 @@ TEST(Shape, DistinctPartsAreNotMerged) {
         EXPECT_EQ(shape.report.near_copies, 0U);
         EXPECT_TRUE(shape.mesh->warnings.empty());
     }
-    // A hollow stays one.
+    // Hollows are kept.
     EXPECT_FALSE(queryOf(shaped(joined({ball, reversed(scaled(ball, 0.99))})).mesh).inside(glm::dvec3(0.0)));
-    // Many parts of one size, near each other, are found apart.
+    // Many adjacent parts of equal size are distinct.
     std::vector<TriangleMesh> many;
     for (int i = 0; i < 50; ++i) {
         many.push_back(makeBoxMesh({0.0, 0.0, double(i)}, glm::dvec3(0.5)));
@@ -510,7 +510,7 @@ TEST(Shape, CopiesOfVoxelSolidsDoNotChangeThem) {
         TriangleMesh mesh = grid.mesh();
         std::mt19937 random(seed);
         const auto below = [&](std::uint32_t n) { return static_cast<std::uint32_t>(random() % n); };
-        // Up to three more of each triangle, or of a half of them; of each way round, from any corner, in any place.
+        // Up to three more copies of all or half of the triangles, with random winding, first corner and position.
         const std::uint32_t most = 2 + below(3);
         const std::size_t copied = below(2) == 0 ? mesh.triangles.size() : mesh.triangles.size() / 2;
         for (std::size_t i = 0; i < copied; ++i) {
@@ -539,7 +539,7 @@ TEST(Shape, CopiesOfVoxelSolidsDoNotChangeThem) {
 }
 
 TEST(Shape, SeparatePanelsEncloseASolid) {
-    // The faces of a cube, each a little smaller than it should be.
+    // The faces of a cube, each slightly too small.
     std::vector<TriangleMesh> panels;
     for (int axis = 0; axis < 3; ++axis) {
         for (const double side : {-1.50075, 1.50075}) {
@@ -558,7 +558,7 @@ TEST(Shape, SeparatePanelsEncloseASolid) {
 }
 
 TEST(Shape, PartsAreAUnion) {
-    // Two boxes that overlap, and a sheet that sticks out of one of them.
+    // Two overlapping boxes, and a sheet that protrudes from one of them.
     const TriangleMesh sheet = scaled(makePlane(0.0F, 2), 1.0, {1.0, 0.0, 0.0});
     const ShapedMesh shape = shaped(joined(
         {makeBoxMesh({0, 0, 0}, glm::dvec3(1.0)), makeBoxMesh({0.5, 0.5, 0}, glm::dvec3(1.0)), sheet}));
@@ -566,7 +566,7 @@ TEST(Shape, PartsAreAUnion) {
     const MeshQuery query = queryOf(shape.mesh);
     EXPECT_TRUE(query.inside({0.2F, 0.2F, 0.1F}));   // in both boxes
     EXPECT_TRUE(query.inside({0.6F, 0.01F, 0.1F}));  // and in the sheet
-    EXPECT_TRUE(query.inside({1.9F, 0.02F, 0.1F}));  // in the sheet alone
+    EXPECT_TRUE(query.inside({1.9F, 0.02F, 0.1F}));  // only in the sheet
     EXPECT_FALSE(query.inside({1.9F, 0.03F, 0.1F}));
 }
 
@@ -589,7 +589,7 @@ TEST(Shape, HeightFieldIsSolidBelow) {
 }
 
 TEST(Shape, SmallOrSlantedSheetIsNotTerrain) {
-    // An overhang, and a sheet whose outline is a disc.
+    // An overhang, and a sheet with a circular outline.
     const TriangleMesh overhang = makeHeights([](double x, double) { return x < 0.0 ? 0.0 : 0.3; });
     const TriangleMesh folded =
         moved(overhang, [](const glm::dvec3& p) { return p - glm::dvec3(p.y > 0.1 ? 0.3 : 0.0, 0.0, 0.0); });
@@ -630,16 +630,16 @@ TEST(Shape, FlatMeshesAreViewedFaceOn) {
     }
 }
 
-/// What takes at least two steps through a shell does not get through it, from either side.
+/// Particles that take at least two steps through a shell never pass it, from either side.
 TEST(Shape, StepsBelowHalfAThicknessNeverPassAShell) {
     constexpr int kParticles = 80'000;
     constexpr double kSpeed = kThickness / 2.0;
     struct Target {
         const char* name;
         TriangleMesh mesh;
-        glm::dvec3 low;  ///< of the points that are aimed at, on the sheet
+        glm::dvec3 low;  ///< lower bound of the targets on the sheet
         glm::dvec3 high;
-        glm::dvec3 through;  ///< the direction of flight, and against it
+        glm::dvec3 through;  ///< the direction of flight; its negative is also tested
     };
     const std::vector<Target> targets = {
         {"sheet", makePlane(0.0F, 1), {-0.97, 0, -0.97}, {0.97, 0, 0.97}, {0, 1, 0}},
@@ -655,7 +655,7 @@ TEST(Shape, StepsBelowHalfAThicknessNeverPassAShell) {
             const glm::dvec3 at = target.low + share * (target.high - target.low);
             const glm::dvec3 slant = 0.3 * random.direction() * (1.0 - glm::abs(target.through));
             glm::dvec3 along = glm::normalize((i % 2 == 0 ? 1.0 : -1.0) * target.through + slant);
-            // Two thicknesses before the sheet to two behind it.
+            // From two thicknesses before the sheet to two behind it.
             passed += isStopped(collider, at - 2.0 * kThickness * along, along, kSpeed, random.uniform(),
                                 4.0 * kThickness)
                           ? 0

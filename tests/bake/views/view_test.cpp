@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The frames of views: right, up and direction by the fixed rule, tight boxes, and rays that the map's own
-// transform agrees with.
+// View frames: axes by the fixed rule, tight bounds, and rays that agree with the map's transform.
 #include "bake/views/view.h"
 
 #include <glm/geometric.hpp>
@@ -31,14 +30,14 @@ TEST(ViewFrame, AxesMatchTheImage) {
         for (int i = 0; i < 3; ++i) {
             EXPECT_EQ(glm::normalize(view.axis[i]), wanted[i]);
         }
-        // Unmirrored: right × up points at the viewer.
+        // Not mirrored: right × up points at the viewer.
         EXPECT_EQ(glm::cross(c.right, c.up), -c.forward);
     }
 }
 
 TEST(ViewFrame, UpRotatesTheImage) {
-    // A box turned by 30° about z, seen along its own second axis with its third upwards: the frame is the
-    // box's, and its tight rectangle the box's side. `up` has a part along dir, which must not count.
+    // A box rotated by 30° about z, seen along its second axis with its third axis up. The frame is that of the box,
+    // and the tight rectangle is a side of the box. The component of `up` along dir must not matter.
     const glm::dmat3 axes = rotation({0, 0, 1}, 30.0) * rotation({1, 0, 0}, 20.0);
     const TriangleMesh mesh = makeBoxMesh({0, 0, 0}, {3, 2, 1}, axes);
     MapSpec spec;
@@ -53,7 +52,7 @@ TEST(ViewFrame, UpRotatesTheImage) {
         EXPECT_LT(glm::length(glm::normalize(view.axis[i]) - wanted[i]), 1e-6) << i;
         EXPECT_NEAR(glm::length(view.axis[i]) * (i < 2 ? 10.0 / 12.0 : 1.0), extent[i], pad) << i;
     }
-    // The rule's own direction changes nothing; a direction along the view is refused.
+    // The default `up` changes nothing. An `up` along the view is rejected.
     const View plain = viewOf(mesh, "float:dir=1/2/3");
     const View told = viewOf(mesh, "float:dir=1/2/3,up=+y");
     for (int i = 0; i < 3; ++i) {
@@ -94,8 +93,8 @@ TEST(ViewFrame, TransformAndRaysAgree) {
 }
 
 TEST(ViewBox, IsTightInTheViewFrame) {
-    // Along a cube's diagonal: the hexagon is 2·√2 wide but 2·√(8/3) high, and the depth is 2·√3. The mesh's
-    // axis-aligned box is the cube itself; a sphere shows that vertices count, not the box round them.
+    // Along the diagonal of a cube, the hexagon is 2·√2 wide and 2·√(8/3) high; the depth is 2·√3. The mesh's
+    // axis-aligned box is the cube itself. A sphere shows that vertices count, not the axis-aligned box.
     const View cube = viewOf(makeBoxMesh({0, 0, 0}, {1, 1, 1}), "float:dir=1/1/1,size=102x52");
     const double pad = 2.0 * 1.01e-4 * 2.0;
     EXPECT_NEAR(cube.object_per_map.z, 2.0 * std::sqrt(3.0), pad);

@@ -62,7 +62,7 @@ TEST(LevelSet, MatchesASphere) {
     EXPECT_NEAR(grid->voxelSize().x(), kVoxel, 1e-3 * kVoxel);
     EXPECT_NEAR(grid->background(), 3.0 * kVoxel, 1e-2 * kVoxel);
 
-    // Planes of texels, of facets that lie up to 0.01 voxels within the sphere; the farther, the coarser the search.
+    // Facets are up to 0.01 voxels inside the sphere, and texel planes add errors. The search is coarser far away.
     double worst = 0.0;
     double sum = 0.0;
     for (auto value = grid->cbeginValueOn(); value; ++value) {
@@ -72,7 +72,7 @@ TEST(LevelSet, MatchesASphere) {
     }
     EXPECT_LT(worst, 0.15 * kVoxel);
     EXPECT_LT(sum / static_cast<double>(grid->activeVoxelCount()), 0.02 * kVoxel);
-    // Wherever the sign changes, both voxels are active: the band is whole.
+    // The band has no gaps: voxels on both sides of every sign change are active.
     const auto all = grid->getConstAccessor();
     std::size_t torn = 0;
     for (auto leaf = grid->tree().cbeginLeaf(); leaf; ++leaf) {
@@ -87,7 +87,7 @@ TEST(LevelSet, MatchesASphere) {
     }
     EXPECT_EQ(torn, 0U);
     const auto wanted = static_cast<double>(grid->activeVoxelCount());
-    // A shell of six voxels.
+    // The band is six voxels thick.
     EXPECT_NEAR(wanted * kVoxel * kVoxel * kVoxel, 4.0 * std::numbers::pi * kRadius * kRadius * 6.0 * kVoxel,
                 0.03 * 4.0 * std::numbers::pi * kRadius * kRadius * 6.0 * kVoxel);
     const auto at = grid->getConstAccessor();
@@ -108,7 +108,7 @@ TEST(LevelSet, IsDeterministic) {
     EXPECT_NE(*bytes, *levelSetOf(collider, kVoxels + 1));
 }
 
-/// Vertices and faces of encodeGrids()'s PLY.
+/// Vertices and faces of the PLY written by encodeGrids().
 struct Surface {
     std::vector<glm::vec3> vertices;
     std::vector<std::vector<std::uint32_t>> faces;
@@ -182,7 +182,7 @@ TEST(LevelSet, SheetThinnerThanAVoxelIsRejected) {
     EXPECT_EQ(levelSetOf(sheet, 4).error().code, ErrorCode::kLimit);
 }
 
-// A thick box, and a plate that no voxel's centre lies in: the box alone remains, and the rest is told of.
+// A thick box, and a plate that contains no voxel centre: only the box remains, and the missing fraction is reported.
 TEST(LevelSet, WarnsOfMissingThinParts) {
     const Collider collider = test::bakeSpecs(
         test::joined({test::makeBoxMesh({0.0, -0.25, 0.0}, {0.2, 0.25, 0.2}),
@@ -197,10 +197,11 @@ TEST(LevelSet, WarnsOfMissingThinParts) {
     EXPECT_LT(encodeGrids(sphere(), {kVoxels})->missing, 1e-5);
 }
 
-// The bounds are those of the mesh; what is inside may go deeper, as ground does.
+// The bounds are those of the mesh. The inside can extend beyond them, as for ground.
 TEST(LevelSet, CoversAllInsidePoints) {
     Collider collider = sphere();
-    collider.bounds.max.y = static_cast<float>(kCenter.y);  // voxels stay the same: x and z are as long
+    collider.bounds.max.y =
+        static_cast<float>(kCenter.y);  // the voxel size is unchanged: x and z are equally long
     const auto grid = gridOf(*levelSetOf(collider, kVoxels));
     EXPECT_NEAR(openvdb::tools::levelSetVolume(*grid), 4.0 / 3.0 * std::numbers::pi * std::pow(kRadius, 3),
                 0.01);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bytes of a level, shared.
+// Budgets of a level shared among its meshes.
 #include "bake/world/budget_share.h"
 
 #include <gtest/gtest.h>
@@ -38,14 +38,14 @@ std::vector<std::uint64_t> byArea(std::uint64_t budget, const std::vector<double
     return bytesOf(shares);
 }
 
-/// Errors against bytes in closed form.
+/// Errors as a function of bytes.
 using Errors = std::function<double(double bytes)>;
 
 Errors powerLaw(double errors, double power) {
     return [=](double bytes) { return errors * std::pow(bytes, -power); };
 }
 
-/// Shares by curves, of which plans have some points; and what was planned.
+/// Shares by error curves, and the bytes of each plan.
 struct Shared {
     std::vector<std::uint64_t> bytes;
     std::vector<std::vector<std::uint64_t>> planned;
@@ -57,7 +57,7 @@ Shared byErrors(std::uint64_t budget, const std::vector<Errors>& meshes, std::ve
     shared.planned.resize(meshes.size());
     EXPECT_TRUE(
         shareByErrors(budget, shares, [&](std::size_t mesh, std::uint64_t bytes) -> Result<ErrorCurve> {
-            shared.planned[mesh].push_back(bytes);  // each mesh by one thread at a time
+            shared.planned[mesh].push_back(bytes);  // one thread at a time per mesh
             if (!meshes[mesh]) {
                 return fail(ErrorCode::kFailure, "no solid");
             }
@@ -100,7 +100,7 @@ TEST(BudgetShares, SmallPartsOfALargeLevelKeepTheEvenHalf) {
     EXPECT_GT(bytes[1], 140'000U);
     EXPECT_GT(bytes[0], 7'000'000U);
     EXPECT_LE(sumOf(bytes), 16'000'000U);
-    // A prop that grows leaves the others theirs.
+    // A growing prop leaves the shares of the others unchanged.
     weights[7] = 16.0;
     std::vector<std::uint64_t> after = byArea(16'000'000, weights);
     after[7] = bytes[7];
@@ -108,7 +108,7 @@ TEST(BudgetShares, SmallPartsOfALargeLevelKeepTheEvenHalf) {
 }
 
 TEST(BudgetShares, ErrorCurvesEqualizeTheGainPerByte) {
-    // Of the least w·c·b^-p in sum, with one power, shares are as (w·c)^(1 / (1 + p)).
+    // For equal p, the sum of w·c·b^-p is minimal if shares are proportional to (w·c)^(1 / (1 + p)).
     const std::vector<double> errors = {1.0, 2.0, 4.0, 1.0};
     const std::vector<double> weights = {1.0, 1.0, 1.0, 8.0};
     for (const double power : {0.5, 0.73, 1.0}) {
@@ -121,7 +121,8 @@ TEST(BudgetShares, ErrorCurvesEqualizeTheGainPerByte) {
         const std::vector<std::uint64_t> bytes = byErrors(4'000'000, meshes, weights).bytes;
         for (std::size_t i = 0; i < bytes.size(); ++i) {
             const double best = 4e6 * std::pow(weights[i] * errors[i], 1.0 / (1.0 + power)) / sum;
-            // Half of an eighth of an octave below, on the mean, and half of one for the curves.
+            // Rounding down to eighths of an octave costs half a step on average. The curves may cost another half
+            // step.
             EXPECT_NEAR(std::log2(static_cast<double>(bytes[i]) / best), -1.0 / 16.0, 1.0 / 8.0)
                 << power << " " << i;
         }
@@ -150,7 +151,7 @@ TEST(BudgetShares, EveryMeshGetsAShare) {
 }
 
 TEST(BudgetShares, LargeIncreasesAreReplanned) {
-    // From 50 kB on, more bytes mend next to nothing, which a plan of an eighth of an even share does not see.
+    // Beyond 50 kB more bytes hardly reduce the errors. A plan with an eighth of an even share does not show this.
     const Errors knee = [](double bytes) {
         return 1e3 * std::pow(std::min(bytes, 5e4), -0.7) - 1e-9 * bytes;
     };

@@ -34,7 +34,7 @@ TEST(CoarseCollider, IsTheSameShapeInASixteenthOfTheBytes) {
             EXPECT_TRUE(contains(insideBox(coarse).value(), insideBox(fine.baked.collider).value()));
             EXPECT_EQ(coarse.bounds, fine.baked.collider.bounds);
             EXPECT_EQ(required(bakeCoarse(request, of, by_mesh)), coarse);
-            // Some nine thousand bytes leave slivers of a ball that no patch holds, up to a fiftieth of its radius thick.
+            // About nine thousand bytes leave slivers of a ball without patches, up to a fiftieth of the radius thick.
             int known = 0;
             int wrong = 0;
             for (int i = 0; i < 4000; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The file of the curves that a level's bytes are shared by.
+// The file of error curves that determine the shares of a level.
 #include "bake/world/error_curves.h"
 
 #include <gtest/gtest.h>

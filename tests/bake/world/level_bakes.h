@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Levels written as OBJ into a folder of a test's own, and baked into worlds beside them.
+// Levels written as OBJ into a temporary folder and baked into worlds there.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ class LevelBakes : public testing::Test {
         glm::vec3 at{0.0F};
     };
 
-    /// \param material_of  the material of an object's triangle; by default none has any.
+    /// \param material_of  the material of a triangle of an object; default: none
     void write(
         const std::vector<Object>& objects,
         const std::function<std::string(const Object&, std::size_t triangle)>& material_of = {}) const {
@@ -66,7 +66,7 @@ class LevelBakes : public testing::Test {
         return WorldField(required(loadWorld(folder_.path() / from / kWorldFileName, {}, detail)));
     }
 
-    /// Against the level.
+    /// Compares the world with its level.
     [[nodiscard]] WorldAccuracy check(const WorldField& field, std::uint64_t samples) const {
         WorldCheckRequest request;
         request.check.mesh = (folder_.path() / "level.obj").string();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the bytes of a level are shared, in whole bakes of it.
+// How whole bakes share the budget of a level.
 #include "bake/world/budget_share.h"
 
 #include <glm/geometric.hpp>
@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kBudget = 160'000;
 
-/// A ball with bumps, as large in area as a box of 4 × 4 × 0.5: 40 square units.
+/// A ball with bumps, with the area of a box of 4 × 4 × 0.5: 40 square units.
 TriangleMesh makeBumpyBall(double bumps) {
     TriangleMesh mesh = makeIcosphere(glm::dvec3(0.0), 1.0, 4);
     double area = 0.0;
@@ -84,7 +84,7 @@ TEST_F(LevelShares, SecondRunPlansAndBakesOnlyChanges) {
     const Files files = filesOf("w");
     EXPECT_EQ(bake("w").countOf(WorldColliderState::kUpToDate), 4U);
     EXPECT_TRUE(filesOf("w") == files);
-    // It shares by the curves that are there: with all of them alike, evenly but for the meshes' areas.
+    // Existing curves are used. If all are equal, only the areas of the meshes affect the shares.
     ErrorCurves curves = required(loadErrorCurves(folder_.path() / "w"));
     EXPECT_GE(curves.size(), 4U);
     for (auto& [key, curve] : curves) {
@@ -93,7 +93,7 @@ TEST_F(LevelShares, SecondRunPlansAndBakesOnlyChanges) {
     ASSERT_TRUE(saveErrorCurves(folder_.path() / "w", curves));
     std::map<std::string, std::uint64_t> alike = sharesOf(bake("w"));
     EXPECT_EQ(alike["box"], alike["ball"]);
-    // Without them, or with others than curves, they are planned again, to the same bytes.
+    // Missing or invalid curves are planned again, with equal results.
     for (const char* text : {"", "{}"}) {
         if (*text == '\0') {
             fs::remove(folder_.path() / "w" / kErrorCurvesName);
@@ -105,7 +105,7 @@ TEST_F(LevelShares, SecondRunPlansAndBakesOnlyChanges) {
         EXPECT_EQ(again.warnings.empty(), *text == '\0');
         EXPECT_TRUE(filesOf("w")[kErrorCurvesName] == files.at(kErrorCurvesName));
     }
-    // A mesh that changes is baked, and few others.
+    // A changed mesh is baked again, and few others.
     writeLevel(0.203);
     const WorldBakeResult result = bake("w");
     EXPECT_LE(result.countOf(WorldColliderState::kBaked), 2U);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Worlds measured against their levels, of which a thin part is lost.
+// Worlds with lost thin parts, compared with their levels.
 #include "bake/world/world_check.h"
 
 #include "bake/report/world_report.h"
@@ -36,7 +36,7 @@ TEST_F(WorldCheck, AdvisesNoBudgetIfFloatsAreTooCoarse) {
 }
 
 TEST_F(WorldCheck, NamesMeshesWithLostThinParts) {
-    // 20 posts of 0.5 m on a slab of 20 m, which most points near the mesh are far from.
+    // 20 posts of 0.5 m on a slab of 20 m; most points near the mesh are far from the posts.
     const auto accuracyOf = [&](double half, std::uint64_t budget) {
         std::vector<TriangleMesh> house = {makeBoxMesh({0, 0, 0}, {10, 0.25, 10})};
         for (int i = 0; i < 20; ++i) {

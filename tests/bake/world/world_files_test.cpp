@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values written into a world.json by hand are there after the next bake.
+// Manual edits of a world.json survive the next bake.
 #include "bake/world/world_files.h"
 
 #include <array>
@@ -25,7 +25,7 @@ class WrittenByHand : public LevelBakes {
         writeLevel({{"door", "oak"}, {"floor", "stone"}});
     }
 
-    /// A cube of half side 0.5 for each: its object, and its material.
+    /// Writes a cube of half side 0.5 for each pair of an object name and a material.
     void writeLevel(const std::vector<std::array<std::string, 2>>& cubes) const {
         std::vector<Object> objects;
         for (const auto& [name, material] : cubes) {
@@ -41,7 +41,7 @@ class WrittenByHand : public LevelBakes {
 
     [[nodiscard]] fs::path worldFile() const { return folder_.path() / "w" / kWorldFileName; }
 
-    /// As people do in an editor.
+    /// Edits world.json as with a text editor.
     void edit(const std::function<void(World&)>& change) const {
         World world = *loadWorldFile(worldFile());
         change(world);
@@ -61,13 +61,13 @@ Bodies frictionOf(const World& world) {
     return bodies;
 }
 
-/// The x of a node's place, and the side of its mesh's box.
+/// The x of a node's position, and the side of its mesh.
 struct Node {
     std::string name;
     float x = 0.0F;
     float side = 1.0F;
 };
-/// A world as a bake makes it, with a body and a collider for each node.
+/// A baked world with a body and a collider for each node.
 World placed(const std::vector<Node>& nodes) {
     World world;
     for (const Node& node : nodes) {
@@ -80,7 +80,7 @@ World placed(const std::vector<Node>& nodes) {
         body.collider = number;
         body.node = node.name;
         body.position.x = node.x;
-        body.rotation = {0.1F, 0.2F, 0.3F, 0.9273618F};  // of length 1, but for rounding
+        body.rotation = {0.1F, 0.2F, 0.3F, 0.9273618F};  // normalized, except for rounding
     }
     return world;
 }
@@ -117,21 +117,21 @@ TEST_F(WrittenByHand, BodyResponsesAreKeptByNode) {
         }
         edited.bodies[3].restitution = 0.5F;
     });
-    // One after the other, wherever they are now.
+    // Matched by order within each name, at any position.
     world = placed({{"roof"}, {"floor"}, {"gate"}, {"gate"}, {"door"}});
     EXPECT_TRUE(replace(world).empty());
     EXPECT_EQ(frictionOf(world),
               (Bodies{{"roof", 0.0F}, {"floor", 0.75F}, {"gate", 0.25F}, {"gate", 0.5F}, {"door", 0.0F}}));
     EXPECT_EQ(world.bodies[1].restitution, 0.5F);
     EXPECT_EQ(frictionOf(*loadWorldFile(worldFile())), frictionOf(world));
-    // Of three gates nobody knows which are those two; a node that never had a response is not missed.
+    // Three gates cannot be matched with two. A removed node without a response causes no warning.
     world = placed({{"gate"}, {"gate"}, {"gate"}});
     const std::vector<std::string> warnings = replace(world);
     EXPECT_EQ(frictionOf(world), (Bodies{{"gate", 0.0F}, {"gate", 0.0F}, {"gate", 0.0F}}));
     EXPECT_EQ(warnings, std::vector<std::string>{
                             "world.json: the bodies of 'floor', 'gate' are missing or ambiguous; their "
                             "restitution and friction are dropped"});
-    // Alike, they are those of any number, such as tiles.
+    // Equal responses apply to any number of bodies, such as tiles.
     edit([](World& edited) {
         for (WorldBody& body : edited.bodies) {
             body.friction = 0.125F;
@@ -142,7 +142,7 @@ TEST_F(WrittenByHand, BodyResponsesAreKeptByNode) {
     EXPECT_EQ(frictionOf(world), (Bodies{{"gate", 0.125F}, {"gate", 0.125F}}));
 }
 
-// Each list of nodes is baked over the first, whose frictions were written by hand.
+// Each list of nodes replaces the first one, whose frictions were edited.
 TEST_F(WrittenByHand, ResponsesFollowTheMatchingBody) {
     fs::create_directories(worldFile().parent_path());
     const std::vector<Node> before = {

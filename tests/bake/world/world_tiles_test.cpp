@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A level whose terrain is cut into tiles: against its closed form and its mesh, and what is baked again.
+// A level with tiled terrain: compared with its closed form and its mesh, and rebuilt incrementally.
 #include "bake/world/world_tiles.h"
 #include "bake/world/coarse_collider.h"
 
@@ -14,9 +14,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kBudget = 800'000;
-constexpr std::uint64_t kTileBytes = 205'000;  ///< more than the share of the box
+constexpr std::uint64_t kTileBytes = 205'000;  ///< larger than the share of the box
 
-/// Stripes of 25 units, which rows of squares keep to where there are eight of them, or a multiple.
+/// Stripes of 25 units. Their borders match rows of squares if the number of rows is a multiple of eight.
 const char* stripeAt(float x) {
     return static_cast<int>(std::floor((x + kHillsHalf) / 25.0F)) % 2 == 0 ? "grass" : "rock";
 }
@@ -30,7 +30,7 @@ class WorldTiles : public LevelBakes {
     }
 
     /// Hills, and a box beside them.
-    /// \param striped  of two materials, by stripeAt().
+    /// \param striped  use the two materials of stripeAt()
     void writeLevel(double high, std::uint32_t squares, bool striped = false) const {
         const auto material = [](const Object& object, std::size_t triangle) {
             const glm::uvec3& t = object.mesh.triangles[triangle];
@@ -41,7 +41,7 @@ class WorldTiles : public LevelBakes {
                {"box", makeBoxMesh(glm::dvec3(150.0, 0.0, 0.0), glm::dvec3(2.0, high, 3.0))}},
               striped ? std::function(material) : nullptr);
     }
-    /// Without those that are hidden.
+    /// Files that are not hidden.
     [[nodiscard]] Files filesOf(const char* folder) const {
         Files files = LevelBakes::filesOf(folder);
         std::erase_if(files, [](const auto& file) { return file.first.front() == '.'; });
@@ -57,7 +57,7 @@ class WorldTiles : public LevelBakes {
         return names;
     }
 
-    /// The shares of points on the wrong side, of those anywhere within so far of the hills, and of those within 5 cm of a seam.
+    /// The fractions of wrong points within this distance of the hills, and within 5 cm of a seam.
     static std::pair<double, double> wrongAmong(const WorldField& field, const WorldBakeResult& result,
                                                 float within) {
         std::mt19937 random(11);
@@ -68,7 +68,7 @@ class WorldTiles : public LevelBakes {
             glm::vec3 p((2.0F * share(random) - 1.0F) * kHillsHalf, 0.0F,
                         (2.0F * share(random) - 1.0F) * kHillsHalf);
             if (i % 2 == 1) {
-                // Tiles' boxes end in their seams, but where the hills end.
+                // Boxes of tiles end at seams, except at the border of the hills.
                 const Bounds& tile = result.colliders[random() % (result.colliders.size() - 1)].box;
                 const int axis = i % 4 == 1 ? 0 : 2;
                 const float seam = tile.min[axis] > 0.1F - kHillsHalf ? tile.min[axis] : tile.max[axis];
@@ -108,7 +108,7 @@ TEST_F(WorldTiles, HillsKeepPlaceMaterialsAndBudget) {
     }
     EXPECT_GT(coarse_bytes, 0U);
     EXPECT_LT(coarse_bytes, result.gpuBytes() / 8);
-    // The mesh's facets are up to 3 cm off the formula.
+    // The facets deviate from the formula by up to 3 cm.
     const auto [wrong, at_seams] = wrongAmong(fine, result, 1.0F);
     EXPECT_LT(wrong, 0.02);
     EXPECT_LT(at_seams, 0.02);
@@ -126,11 +126,11 @@ TEST_F(WorldTiles, HillsKeepPlaceMaterialsAndBudget) {
             if (std::abs(x / 25.0F - std::round(x / 25.0F)) * 25.0F < 0.5F) {
                 continue;
             }
-            // The place in which a drop from above stops.
+            // The position at which a drop from above stops.
             const glm::vec3 p(x, hillsAt(x, z) - 0.05F, z);
             const WorldSample sample = field->evaluate(p);
             if (!sample.inside()) {
-                continue;  // the coarse ones have their surface below
+                continue;  // the surface of coarse tiles is lower here
             }
             const auto body = static_cast<std::size_t>(sample.body);
             const Materials& materials = field->colliderOf(body).materials;
@@ -143,7 +143,7 @@ TEST_F(WorldTiles, HillsKeepPlaceMaterialsAndBudget) {
                          : 0;
         }
         EXPECT_GT(asked, 15'000);
-        // A coarse tile decides beyond its own part of the hills, too, whose materials alone it has.
+        // A coarse tile also decides beyond its own part of the hills, but has only the materials of that part.
         EXPECT_LE(other, field == &fine ? asked / 100 : asked / 20) << (field == &fine ? "fine" : "coarse");
     }
 }
@@ -157,15 +157,15 @@ TEST_F(WorldTiles, ChecksAndMovesTreatTilesAsOneMesh) {
     EXPECT_LT(accuracy.all.total(), 0.5);
     EXPECT_EQ(accuracy.bodies[0].tiles, field.world().bodies.size() - 1);
     EXPECT_EQ(accuracy.bodies[1].tiles, 1U);
-    // Without one of the tiles, what was in it is missing.
+    // If a tile is missing, its part is missing.
     LoadedWorld broken = field.loaded();
     broken.world.bodies.erase(broken.world.bodies.begin() + 2);
     EXPECT_GT(check(WorldField(std::move(broken)), 20'000).bodies[0].wrong.false_outside, 2.0);
-    // And a tile elsewhere is no part of its node any more.
+    // A moved tile no longer belongs to its node.
     LoadedWorld moved = field.loaded();
     moved.world.bodies[2].position.y += 5.0F;
     EXPECT_EQ(check(WorldField(std::move(moved)), 20'000).warnings.size(), 1U);
-    // A node moves by all its bodies.
+    // Moving a node moves all its bodies.
     LoadedWorld hills = field.loaded();
     ASSERT_EQ(findBodies(hills.world, "box").size(), 1U);
     hills.world.bodies.erase(hills.world.bodies.begin() +
@@ -207,7 +207,7 @@ TEST_F(WorldTiles, OnlyChangesAreBakedDeterministically) {
     static_cast<void>(bake("one"));
     request_.bake.threads.reset();
     EXPECT_TRUE(filesOf("one") == before);
-    // A cache that is made up costs a bake.
+    // A forged cache only causes a new bake.
     const fs::path cache = folder_.path() / "w" / kBakeCacheName;
     const std::vector<std::byte> bytes = required(readFile(cache));
     const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -220,7 +220,7 @@ TEST_F(WorldTiles, OnlyChangesAreBakedDeterministically) {
         EXPECT_EQ(bake("w").countOf(WorldColliderState::kBaked), all - 1) << tiles;
         EXPECT_TRUE(filesOf("w") == before);
     }
-    // Without one of its tiles, a mesh is baked again, to the same bytes.
+    // If a tile is missing, its mesh is baked again to the same bytes.
     const auto tile = std::find_if(before.begin(), before.end(),
                                    [](const auto& file) { return file.first.starts_with("hills-1-"); });
     ASSERT_NE(tile, before.end());
@@ -232,7 +232,7 @@ TEST_F(WorldTiles, OnlyChangesAreBakedDeterministically) {
     again = bake("w");
     EXPECT_EQ(namesOf(again, WorldColliderState::kBaked), std::vector<std::string>{"box"});
     EXPECT_EQ(again.removed.size(), 1U);
-    // Of another budget there are other tiles, and those from before go.
+    // Another budget gives other tiles, and the old ones are removed.
     request_.bake.budget = kBudget / 2;
     again = bake("w");
     const auto coarse = std::ranges::count_if(
