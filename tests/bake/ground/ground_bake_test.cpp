@@ -104,7 +104,7 @@ TEST_F(GroundBakes, CoarseTilesMatchEveryFourthSample) {
             EXPECT_EQ(insideBox(coarse.colliderOf(i)), insideBox(fine.colliderOf(i)));
         }
     }
-    EXPECT_EQ(smaller, 6U) << "the last row is too small for any";
+    EXPECT_EQ(smaller, 6U) << "tiles of the last row are too small";
     std::mt19937 random(seedFrom(34));
     std::uniform_real_distribution<double> share(0.0, 1.0);
     int below = 0;
@@ -195,7 +195,7 @@ TEST_F(GroundBakes, WrongSampleFormatsGetAdvice) {
     const std::string right = "low=0,high=65535";
     expectHas(tooFar(right + ",order=big"),
               "; its samples look like those of another format; try --heights order=little");
-    EXPECT_EQ(tooFar(right).find("order"), std::string::npos) << "smooth as they are";
+    EXPECT_EQ(tooFar(right).find("order"), std::string::npos) << "already smooth";
     EXPECT_NE(warned("low=-2000,high=4400")
                   .find("h.raw: most of its squares are steep; check --heights spacing, low "),
               std::string::npos);

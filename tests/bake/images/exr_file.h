@@ -56,7 +56,7 @@ class ExrFile {
   private:
     static std::string writtenPath(const TemporaryFolder& folder, const ExrImage& image) {
         const std::vector<std::byte> bytes = required(encodeExr(image));
-        EXPECT_EQ(bytes, *encodeExr(image)) << "the same bytes each time";
+        EXPECT_EQ(bytes, *encodeExr(image)) << "encoding is deterministic";
         const std::filesystem::path path = folder.path() / "image.exr";
         EXPECT_TRUE(writeFile(path, bytes));
         return path.string();

@@ -71,7 +71,7 @@ TEST(ExrExport, ContainsTheMapAndItsCamera) {
                     ASSERT_NEAR(at.y, static_cast<float>(pixel / map.width) + 0.5F, 2e-3);
                     Imath::V3f in_camera;
                     camera.multVecMatrix(world, in_camera);
-                    ASSERT_GT(in_camera.z, 0.0F) << "in front of the camera";
+                    ASSERT_GT(in_camera.z, 0.0F) << "not in front of the camera";
                     ASSERT_NEAR(cube ? in_camera.length() : in_camera.z, z[pixel], 1e-4);
                 }
             }

@@ -78,7 +78,7 @@ TEST(ViewImage, ShowsABox) {
             ASSERT_NEAR(image.back[pixel], extent, texel);
             flat += std::abs(image.normalAt(pixel)[axis] + image.grid.sign()) < 0.01 ? 1 : 0;
         });
-        EXPECT_GT(flat, 0.85 * image.grid.width * image.grid.height) << "patches round the edges a little";
+        EXPECT_GT(flat, 0.85 * image.grid.width * image.grid.height) << "patches round edges";
         EXPECT_EQ(image.file.text("relief.direction"), kDirectionNames[static_cast<std::size_t>(view)]);
         EXPECT_EQ(image.file.text("relief.bounds_min"), "-0.4 -0.1 -0.5");
     }
@@ -155,7 +155,7 @@ TEST(ViewImage, ShowsTheFieldFromOppositeSides) {
                     if (before < view.front[pixel] - 1e-5F * longest) {
                         ASSERT_GT(evaluate(collider, view.hit(p, before)).distance,
                                   -finestTexel(collider) / 8.0F)
-                            << "missed, and no thin wall";
+                            << "missed a wall that is not thin";
                     }
                 }
             });

@@ -107,14 +107,16 @@ TEST(AnimatedImport, KeepsAnimatedParts) {
     EXPECT_EQ(mesh.nodes[2].parent, 1);
     const std::vector<glm::vec3> rest = posed(mesh, restPose(mesh));
     for (std::size_t part = 0; part < 3; ++part) {
-        EXPECT_NEAR(volumeOf(mesh, rest, 12 * part, 12), 36.0, 1e-4) << "also of the mirrored hand: " << part;
+        EXPECT_NEAR(volumeOf(mesh, rest, 12 * part, 12), 36.0, 1e-4)
+            << "including the mirrored hand; part " << part;
     }
     EXPECT_EQ(mesh.clips[0].seconds, 3.5F);
     EXPECT_EQ(import.rest.positions.size(), 24U);
     EXPECT_EQ(import.rest.bounds.max, glm::vec3(2, 6, 3));
     const AnimatedMesh cube = loaded(morphingCube()).mesh;
-    ASSERT_EQ(cube.weights, (std::vector<float>{0.5F, 0.0F})) << "the node's, not the mesh's";
-    EXPECT_EQ(cube.deltas.size(), 4U) << "those that are 0 are dropped";
+    ASSERT_EQ(cube.weights, (std::vector<float>{0.5F, 0.0F}))
+        << "weights of the node override those of the mesh";
+    EXPECT_EQ(cube.deltas.size(), 4U) << "zero deltas are dropped";
 }
 
 // Materials with equal names are one material. A missing name is "". Nothing is kept if no material has a name.
@@ -138,7 +140,7 @@ TEST(AnimatedImport, KeepsMaterialNames) {
     scribe.json["materials"] = Json::array({Json::object(), Json::object(), Json::object()});
     EXPECT_TRUE(loaded(scribe).mesh.materials.empty());
     primitives[3]["material"] = 3;
-    EXPECT_FALSE(load(scribe)) << "there is none";
+    EXPECT_FALSE(load(scribe)) << "no such material";
 }
 
 TEST(AnimatedImport, UnitAndAxisApplyAboveTheRoot) {
@@ -291,7 +293,7 @@ TEST(AnimatedImport, ClipsOfOtherFilesAnimateNodesByName) {
     const fs::path strange = writeGltf(moves.file(), folder, "strange");
     expectRefused(importAnimatedInWorker(file, {strange}),
                   "strange.glb': none of its animated nodes has the name of a node of the mesh");
-    EXPECT_FALSE(importAnimatedInWorker(file, {file})) << "no animation";
+    EXPECT_FALSE(importAnimatedInWorker(file, {file})) << "the clip file has no animation";
 }
 
 TEST(AnimatedImport, ClipNamesAreUnique) {
@@ -466,7 +468,7 @@ TEST(AnimatedImport, InvalidWorkerResultsAreRejected) {
     TriangleMesh honest;
     honest.animation = writeAnimatedMesh(mesh);
     EXPECT_TRUE(source.finishAnimated(TriangleMesh(honest), ImportKind::kClips)->mesh.positions.empty());
-    EXPECT_FALSE(source.finish(honest)) << "an animation that nobody wanted";
+    EXPECT_FALSE(source.finish(honest)) << "an animation that was not requested";
     EXPECT_FALSE(source.finishLevel(honest));
     const auto changed = [&](const std::function<void(AnimatedMesh&)>& change) {
         return [mesh, change](TriangleMesh& raw) {

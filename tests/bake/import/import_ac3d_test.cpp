@@ -84,7 +84,7 @@ TEST(Ac3d, OddFilesWarnOrFailWithTheLine) {
     EXPECT_TRUE(warns(fewer, "it has 2 objects fewer than its 'kids' declare"));
     EXPECT_TRUE(warns(fewer, "1 of its objects use subdivision"));
     for (std::size_t length = kHead.size(); length + 8 < one.size(); length += 7) {
-        ASSERT_FALSE(importText("a.ac", one.substr(0, length))) << "of " << length << " bytes";
+        ASSERT_FALSE(importText("a.ac", one.substr(0, length))) << "truncated to " << length << " bytes";
     }
     std::string deep = kHead;
     for (int i = 0; i < 1100; ++i) {

@@ -89,7 +89,7 @@ TEST(ImportFormat, TextCanStartWithAByteOrderMark) {
     const TriangleMesh plain = imported("a.obj", tetrahedronObj());
     const TriangleMesh marked = imported("a.obj", mark + tetrahedronObj());
     EXPECT_EQ(marked.positions, plain.positions);
-    EXPECT_NE(marked.content_hash, plain.content_hash) << "of the file's bytes";
+    EXPECT_NE(marked.content_hash, plain.content_hash) << "the hash covers all bytes of the file";
     EXPECT_TRUE(importText("a.gltf", mark + tetrahedronGltf()));
 }
 

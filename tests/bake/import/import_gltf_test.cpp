@@ -105,21 +105,22 @@ void compare(const GltfCase& gltf, const fs::path& file, bool right, Verdicts& v
         verdicts.stricter += visible ? 1 : 0;
         EXPECT_FALSE(right && visible) << mesh.error().message;
         EXPECT_NE(mesh.error().message.find(file.filename().string()), std::string::npos);
-        EXPECT_NE(mesh.error().message.find("; "), std::string::npos) << "no cure: " << mesh.error().message;
+        EXPECT_NE(mesh.error().message.find("; "), std::string::npos)
+            << "no advice: " << mesh.error().message;
         return;
     }
     ++verdicts.read;
-    ASSERT_TRUE(book) << "read, but the book says: " << why;
+    ASSERT_TRUE(book) << "read, but the reference reader fails: " << why;
     const std::vector<Corners> triangles = trianglesOf(*mesh);
     std::size_t at = 0;
     for (const Corners& t : *book) {
         if (at < triangles.size() && sameSurface(triangles[at], t)) {
             ++at;
         } else {
-            ASSERT_TRUE(isThin(t)) << "another triangle than number " << at;
+            ASSERT_TRUE(isThin(t)) << "differs from triangle " << at;
         }
     }
-    ASSERT_EQ(at, triangles.size()) << "triangles that are not in the file";
+    ASSERT_EQ(at, triangles.size()) << "more triangles than in the file";
 }
 
 /// Compares files of a range of seeds. \param change  modifies a file and returns a description
@@ -142,7 +143,7 @@ Verdicts compareMany(std::uint32_t first, std::uint64_t count, bool right,
 
 TEST(ImportGltf, ValidFilesAreRead) {
     const Verdicts verdicts = compareMany(0, 150, true, [](GltfCase&, Dice&) { return ""; });
-    EXPECT_GT(verdicts.read, 135) << "some are thin all over";
+    EXPECT_GT(verdicts.read, 135) << "some files contain only thin triangles";
 }
 
 TEST(ImportGltf, MutantsAreReadCorrectlyOrRejected) {
@@ -150,7 +151,7 @@ TEST(ImportGltf, MutantsAreReadCorrectlyOrRejected) {
         1000, 350, false, [](GltfCase& gltf, Dice& dice) { return mutateGltf(gltf.document, dice); });
     EXPECT_GT(verdicts.read, 70);
     EXPECT_GT(verdicts.refused, 125);
-    EXPECT_LT(verdicts.stricter, 50) << "names that are none, say";
+    EXPECT_LT(verdicts.stricter, 50) << "for example, for invalid names";
 }
 
 TEST(ImportGltf, BufferBytesMayBeInvalidIndices) {
@@ -270,7 +271,7 @@ TEST(ImportGltf, InstancesAreRepeated) {
 
 TEST(ImportGltf, DuplicateKeysAndInvalidJson) {
     EXPECT_TRUE(loadParts({.more = R"("extras":{"a":[{"b":1},{"b":1}]},)"}));
-    EXPECT_TRUE(load(tetrahedronGltf() + std::string("\n\0\0", 3))) << "filled up";
+    EXPECT_TRUE(load(tetrahedronGltf() + std::string("\n\0\0", 3))) << "padded";
     expectWrong({node(R"("scale":[1,1,1],"scale":[2,2,2])", "the key 'scale' twice"),
                  node(R"("me\u0073h":0)", "the key 'mesh' twice"),
                  parts({.more = R"("extras":{"a":[{"b":1},{"b":1,"b":1}]},)"}, "the key 'b' twice"),
@@ -358,7 +359,7 @@ TEST(ImportGltf, DataUris) {
                      : "error: " + bytes.error().message;
     };
     EXPECT_EQ(decoded("data:application/octet-stream;base64,aGVsbG8="), "hello");
-    EXPECT_EQ(decoded("data:;base64,aGVsbG8"), "hello") << "without padding, as browsers take it";
+    EXPECT_EQ(decoded("data:;base64,aGVsbG8"), "hello") << "padding is optional, as in browsers";
     EXPECT_EQ(decoded("DATA:application/gltf-buffer;BASE64,aGVsbG8%3D"), "hello");
     EXPECT_EQ(decoded("data:;base64,"), "");
     for (const char* wrong :

@@ -32,7 +32,8 @@ TEST(ImportMaterials, PhysicsMaterialsGiveNamesAndResponses) {
     const auto mesh = required(importMesh(path));
     ASSERT_EQ(mesh.surface_names.size(), 3U);
     EXPECT_EQ(mesh.surface_names[0], (SurfaceName{0, "", "rubber", 0.75F, 1.0F}));
-    EXPECT_EQ(mesh.surface_names[1], (SurfaceName{1, "", "ice", 0.25F, 0.6F})) << "the schema's friction";
+    EXPECT_EQ(mesh.surface_names[1], (SurfaceName{1, "", "ice", 0.25F, 0.6F}))
+        << "the default friction of the schema";
     EXPECT_EQ(mesh.surface_names[2], (SurfaceName{2, "", "", 1.0F, 0.0F}));
     // In a level, the three nodes are three meshes. Each has one surface, which keeps its name.
     const auto level = required(importLevel(path));

@@ -168,8 +168,8 @@ TriangleMesh imported(const std::string& name, std::string_view contents, const 
 
 void expectFault(const Error& error, const std::string& words, ErrorCode code) {
     EXPECT_EQ(error.code, code) << error.message;
-    EXPECT_NE(error.message.find(words), std::string::npos) << error.message << "\ninstead of " << words;
-    EXPECT_NE(error.message.find("; "), std::string::npos) << "no cure: " << error.message;
+    EXPECT_NE(error.message.find(words), std::string::npos) << error.message << "\nexpected: " << words;
+    EXPECT_NE(error.message.find("; "), std::string::npos) << "no advice: " << error.message;
     EXPECT_EQ(error.message.find_first_of("\n\r\x1b"), std::string::npos) << error.message;
 }
 
@@ -189,7 +189,7 @@ void expectLiesRefused(const TriangleMesh& honest,
     for (std::size_t i = 0; i < lies.size(); ++i) {
         TriangleMesh answer = honest;
         lies[i](answer);
-        EXPECT_FALSE(accepts(std::move(answer))) << "lie " << i;
+        EXPECT_FALSE(accepts(std::move(answer))) << "invalid result " << i;
     }
 }
 

@@ -125,7 +125,7 @@ TEST(ImportSource, WorkerClaimsAreValidated) {
             EXPECT_TRUE(mesh || mesh.error().message.find("t.obj") != std::string::npos);
             return mesh.has_value();
         });
-    EXPECT_FALSE(source.finish(rawTriangle())) << "marks that nobody asked for";
+    EXPECT_FALSE(source.finish(rawTriangle())) << "marks that were not requested";
 }
 
 TEST(ImportSource, FileNamesAreOpenableAndSorted) {

@@ -37,7 +37,7 @@ void expectRead(const std::vector<Expected>& cases) {
         EXPECT_EQ(warnings, c.warnings);
         EXPECT_EQ(mesh.unused_vertices, c.unused_vertices);
         EXPECT_EQ(mesh.triangles.size(), c.triangles);
-        EXPECT_LE(mesh.bounds.max.z, 3.0F) << "an unused vertex widens the box";
+        EXPECT_LE(mesh.bounds.max.z, 3.0F) << "unused vertices must not extend the bounds";
     }
 }
 
@@ -70,9 +70,9 @@ TEST(ImportParts, ObjStatementsAreCounted) {
     EXPECT_EQ(parts.unused, 3U);
     EXPECT_EQ(parts.loose, 1U);  // vertex 5; the line has 4 and 6, and the faces have 1, 2 and 3
     EXPECT_EQ(parts.polygons, 3U);
-    EXPECT_EQ(parts.lines, 2U) << "a face of two corners is one";
+    EXPECT_EQ(parts.lines, 2U) << "a face with two corners is a line";
     EXPECT_EQ(parts.free_forms, 2U);
-    EXPECT_EQ(obj("f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n").unused, 0U) << "faces may come first";
+    EXPECT_EQ(obj("f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n").unused, 0U) << "faces can precede vertices";
     EXPECT_EQ(obj("").vertices, 0U);
     EXPECT_EQ(obj("v 1 2 3\\").vertices, 1U);
 }

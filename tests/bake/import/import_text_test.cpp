@@ -153,7 +153,7 @@ TEST(ImportText, Stl) {
     std::transform(stl.begin(), stl.end(), capitals.begin(), [](unsigned char c) { return std::toupper(c); });
     ImportOptions options;
     options.names = {"T"};
-    EXPECT_TRUE(importText("a.stl", capitals, options)) << "its name keeps its capitals";
+    EXPECT_TRUE(importText("a.stl", capitals, options)) << "names are case-sensitive";
     for (const char* first : {"SOLID T\n", "Solid T\n", "solid T\n"}) {
         expectTetrahedron("a.stl", capitals.replace(0, 8, first));
     }

@@ -34,8 +34,7 @@ void expectPlaced(const std::vector<Placed>& cases) {
         EXPECT_LT(glm::distance(mesh.bounds.max, c.high), tolerance);
         EXPECT_EQ(mesh.unit, c.unit);
         EXPECT_EQ(mesh.warnings.size(), c.warnings);
-        EXPECT_NEAR(signedVolume(mesh) / double{size.x * size.y * size.z / 6.0F}, 1.0, 1e-4)
-            << "turned inside out";
+        EXPECT_NEAR(signedVolume(mesh) / double{size.x * size.y * size.z / 6.0F}, 1.0, 1e-4) << "inverted";
     }
 }
 

@@ -163,7 +163,7 @@ TEST(ImportWorker, EveryModelOfThePackageIsReadOrRejected) {
             files.insert(entry.path());
         }
     }
-    ASSERT_GT(files.size(), 400U) << "the package assimp-testmodels is not there";
+    ASSERT_GT(files.size(), 400U) << "the package assimp-testmodels is not installed";
     std::size_t tried = 0;
     std::size_t read = 0;
     std::size_t number = 0;
@@ -195,7 +195,7 @@ TEST(ImportWorker, EveryModelOfThePackageIsReadOrRejected) {
     RecordProperty("tried", static_cast<int>(tried));
     RecordProperty("read", static_cast<int>(read));
     EXPECT_GT(tried, all ? 400U : 60U);
-    EXPECT_GT(4 * read, tried) << "hardly any is read";
+    EXPECT_GT(4 * read, tried) << "too few models are read";
 }
 
 TEST(ImportWorker, TrianglesAreCountedBeforeAllocation) {

@@ -90,9 +90,9 @@ TEST_F(Levels, NonRigidInstancesAreSeparateMeshes) {
         R"({"mesh":0,"matrix":[1,0,0,0, 0.5,1,0,0, 0,0,1,0, 4,0,0,1]})",
         "0,1,2,3,4,5");
     ASSERT_EQ(read.bodies.size(), 6U);
-    EXPECT_EQ(read.meshes.size(), 4U) << "plain, stretched, mirrored, sheared";
-    EXPECT_EQ(read.bodies[1].mesh, read.bodies[2].mesh) << "a shift is a pose";
-    EXPECT_EQ(read.bodies[3].mesh, read.bodies[4].mesh) << "all mirrors are one and a turn";
+    EXPECT_EQ(read.meshes.size(), 4U) << "original, stretched, mirrored and sheared";
+    EXPECT_EQ(read.bodies[1].mesh, read.bodies[2].mesh) << "a translation is a pose";
+    EXPECT_EQ(read.bodies[3].mesh, read.bodies[4].mesh) << "mirrored instances differ only by a rotation";
     EXPECT_NEAR(read.bodies[4].scale, 2.0, 1e-9);
     expectSameCorners(read, folder_ / "l.gltf");
 }
@@ -115,7 +115,7 @@ TEST_F(Levels, ObjObjectsAreMeshesWithOneBody) {
     ASSERT_EQ(read.bodies.size(), 2U);
     EXPECT_EQ(read.bodies[0].node, "one");
     EXPECT_EQ(read.bodies[1].node, "two");
-    EXPECT_EQ(read.meshes[1].triangles.size(), 5U) << "both materials are of one object";
+    EXPECT_EQ(read.meshes[1].triangles.size(), 5U) << "one object has both materials";
     EXPECT_EQ(read.meshes[1].surface_names.size(), 2U);
 }
 
@@ -145,7 +145,8 @@ TEST_F(Levels, EachFileOfAFolderIsAMesh) {
     ImportOptions options;
     options.names = {"a"};
     EXPECT_EQ(importLevel(folder_, options).error().code, ErrorCode::kUsage);
-    EXPECT_EQ(importLevel(folder_, {}, {.triangles = 9}).error().code, ErrorCode::kLimit) << "12 together";
+    EXPECT_EQ(importLevel(folder_, {}, {.triangles = 9}).error().code, ErrorCode::kLimit)
+        << "12 triangles in total";
     write("e.gltf", tetrahedronGltf());
     expectRefused(importLevel(folder_), "has a unit, unlike earlier files; give --unit");
     options.names.clear();
@@ -196,7 +197,7 @@ TEST_F(Levels, NamesMarkTrianglesOfNodes) {
     options.names = {"a"};
     const Level read =
         gltf(R"({"mesh":0,"name":"a"},{"mesh":0,"name":"b"},{"mesh":0,"name":"a"})", "0,1,2", options);
-    ASSERT_EQ(read.meshes.size(), 2U) << "by one mesh, but one of them is named";
+    ASSERT_EQ(read.meshes.size(), 2U) << "one mesh, split because one node is named";
     EXPECT_EQ(read.meshes[0].marks, std::vector<std::uint8_t>(4, 1));
     EXPECT_EQ(read.meshes[1].marks, std::vector<std::uint8_t>(4, 0));
     EXPECT_EQ(read.bodies[2].mesh, 0U);
@@ -209,7 +210,7 @@ TEST_F(Levels, InvalidWorkerResultsAreRejected) {
     honest.level_meshes = {{"m", 3, 1}};
     honest.level_bodies = {{0, "n", {0, 0, 0}, {0, 0, 0, 1}, 1.0}};
     const ImportSource source = required(ImportSource::open(write("l.obj", "v 0 0 0\n")));
-    EXPECT_FALSE(source.finish(honest)) << "a level that nobody wanted";
+    EXPECT_FALSE(source.finish(honest)) << "a level that was not requested";
     const double nan = std::numeric_limits<double>::quiet_NaN();
     expectLiesRefused(honest,
                       {

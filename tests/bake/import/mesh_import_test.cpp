@@ -26,7 +26,7 @@ TEST(MeshImport, ObjWithQuads) {
     EXPECT_EQ(mesh.name, "box.obj");
     EXPECT_EQ(mesh.unit, "");
     EXPECT_EQ(mesh.content_hash, xxh3_128Hex(std::as_bytes(std::span(kBoxObj, std::strlen(kBoxObj)))));
-    EXPECT_TRUE(importText("BOX.OBJ", kBoxObj)) << "the extension's case";
+    EXPECT_TRUE(importText("BOX.OBJ", kBoxObj)) << "extensions are not case-sensitive";
     EXPECT_EQ(imported("h\xc3\xa4se\xff \x1b.obj", kBoxObj).name, "h\xc3\xa4se\xef\xbf\xbd \xef\xbf\xbd.obj");
 }
 

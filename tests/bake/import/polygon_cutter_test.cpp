@@ -36,7 +36,7 @@ void expectWhole(const std::vector<glm::vec3>& corners, const std::string& what,
         areas += length(plane.normal);
         sum += plane.normal;
     }
-    EXPECT_NEAR(areas, length(sum), tolerance * areas) << what << ": some are turned over";
+    EXPECT_NEAR(areas, length(sum), tolerance * areas) << what << ": some triangles are reversed";
     EXPECT_NEAR(areas, areaOf(corners), tolerance * areas) << what;
 }
 

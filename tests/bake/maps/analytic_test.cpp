@@ -239,7 +239,7 @@ TEST(BakeSubBox, VolumesThatCutTheObjectAbstain) {
     const DepthMap window = bakeMap(mesh, "fixed8:dir=-y,box=-0.5/-2/-0.5/0.5/2/0.5");
     EXPECT_FALSE(window.encloses);
     EXPECT_TRUE(window.empty_is_outside);
-    EXPECT_FALSE(vote(window, {0.75F, 1.5F, 0})) << "outside the volume it abstains";
+    EXPECT_FALSE(vote(window, {0.75F, 1.5F, 0})) << "must abstain outside the volume";
     EXPECT_NEAR(vote(window, {0.25F, 1.5F, 0})->distance, 0.5F, 1e-3);
     EXPECT_NEAR(vote(window, {0.25F, 0.5F, 0})->distance, -0.5F, 1e-3);
 
@@ -309,7 +309,7 @@ TEST(BakeErrors, HaveTheRightCodes) {
     EXPECT_EQ(code({}, 0), ErrorCode::kUsage);
     EXPECT_EQ(code({}, 16385), ErrorCode::kLimit);
     EXPECT_EQ(code(std::vector<MapSpec>(1025), 8), ErrorCode::kLimit);
-    EXPECT_EQ(code({}, 16384), ErrorCode::kLimit) << "2 GiB of texels";
+    EXPECT_EQ(code({}, 16384), ErrorCode::kLimit) << "the texels would need 2 GiB";
     EXPECT_EQ(code({*parseMapSpec("float:box=5/5/5/6/6/6")}, 8), ErrorCode::kFailure);
 }
 

@@ -73,7 +73,7 @@ TEST(BudgetSearch, ReportsTheBestIfTheTargetIsUnreachable) {
     ASSERT_FALSE(found);
     EXPECT_EQ(found.error().code, ErrorCode::kDifference);
     ASSERT_EQ(tries.size(), 2U);
-    EXPECT_EQ(tries[1].budget, 50'000U) << "the limit itself is tried";
+    EXPECT_EQ(tries[1].budget, 50'000U) << "the limit itself must be tried";
     // The best budget is not always the largest: rounding can favour fewer texels.
     const BudgetTry& best = tries[0].wrong_percent <= tries[1].wrong_percent ? tries[0] : tries[1];
     EXPECT_NE(found.error().message.find(std::to_string(best.bytes) + " bytes"), std::string::npos)
@@ -86,7 +86,7 @@ TEST(BudgetSearch, ReportsTheBestIfTheTargetIsUnreachable) {
     EXPECT_EQ(tries[0].budget, 20'000U);
     options.budget_max = 10;
     EXPECT_EQ(bakeForError(query, query, options).error().code, ErrorCode::kUsage)
-        << "too small for any plan";
+        << "too small for any tree";
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ TEST(BakeBunny, DefaultMapsClassifyPoints) {
     const TruthSamples truth = sampleTruth(queryOf(bunny()), {.samples = 2000});
     EXPECT_GT(std::ranges::count_if(truth.uniform, &TruthPoint::inside), 400);
     EXPECT_LE(measureField(truth, fieldOf(baked.collider)).uniform.total(), 2.0)
-        << "concavities that no map sees are told inside";
+        << "only concavities that no map sees are wrongly inside";
 }
 
 /// The search on three maps of planes, at 0.5 % of the longest side from the surface (one texel) and at 5 %.
@@ -110,7 +110,7 @@ TEST(BakeBunny, NearestSurfaceIsTheNearestTriangle) {
                 astray += from_mesh > 0.1 * off ? 1 : 0;
             }
         }
-        EXPECT_LT(astray, 10) << "of 20,000";
+        EXPECT_LT(astray, 10) << "out of 20,000";
     }
 }
 

@@ -131,7 +131,7 @@ void expectNothingDeepOutside(const VoxelGrid& grid, const Collider& collider, s
         const double bound = boundAt(map, p, quality == Quality::kFast ? cosineAt(map, sample, p) : 1.0);
         if (depth > bound) {
             ADD_FAILURE() << "(" << text(p) << ") is " << depth << " deep, " << depth / bound
-                          << " of the bound, and outside for map " << sample.map;
+                          << " times the bound, but outside by map " << sample.map;
             if (++deep == 3) {
                 return;
             }

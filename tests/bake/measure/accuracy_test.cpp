@@ -310,7 +310,7 @@ TEST(DistanceVolume, LinearFieldIsExact) {
         DistanceGrid grid{makeLattice(box, 3000, fit), {}};
         const Lattice& lattice = grid.lattice;
         EXPECT_LE(lattice.count(), 3000U);
-        EXPECT_GT(lattice.count(), 2400U) << "the budget is used";
+        EXPECT_GT(lattice.count(), 2400U) << "the budget must be used";
         for (std::uint32_t z = 0; z < lattice.nodes.z; ++z) {
             for (std::uint32_t y = 0; y < lattice.nodes.y; ++y) {
                 for (std::uint32_t x = 0; x < lattice.nodes.x; ++x) {

@@ -85,7 +85,8 @@ TEST(BrickVolume, BudgetIsUsedDeterministically) {
             // With a few dozen large bricks, sizes change in large steps.
             EXPECT_GE(volume.bytes(), bytes - (volume.bricks() < 100 ? bytes / 2 : bytes / 10))
                 << volume.text();
-            EXPECT_NEAR(volume.at({2.3F, 0.0F, 0.0F}).distance, 1.0, 1e-2) << "beyond the box, by the way";
+            EXPECT_NEAR(volume.at({2.3F, 0.0F, 0.0F}).distance, 1.0, 1e-2)
+                << "beyond the box, distance to the box is included";
         }
         const auto build = [&] { return BrickVolume::build(query, layout, 20'000); };
         const BrickVolume single = onThreads(1, build);

@@ -65,7 +65,7 @@ TEST(PartAccuracy, MissingPillarIsLostDespiteItsSmallArea) {
     PartOptions options;
     options.detail = 9.5;
     const PartsAccuracy coarse = measured(shape, fieldOfBoxes({slab.bounds}), options);
-    EXPECT_EQ(coarse.countOf(PartVerdict::kLost), 0U) << "below the detail";
+    EXPECT_EQ(coarse.countOf(PartVerdict::kLost), 0U) << "smaller than the detail";
     EXPECT_EQ(coarse.countOf(PartVerdict::kMinor), 1U);
     EXPECT_EQ(coarse.ignored.lost, 1U);
     EXPECT_EQ(coarse.ignored.size, 9.0);

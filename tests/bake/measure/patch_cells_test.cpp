@@ -63,9 +63,9 @@ TEST(PatchCells, CountsCellsWithHeights) {
 
 TEST(PatchCells, SpacingDependsOnTheLeaf) {
     const DepthMap map = handMade();
-    EXPECT_EQ(patchSpacingAt(map, {3.0F, 1.0F, 1.0F}), 1.0) << "half of a cell of 2";
+    EXPECT_EQ(patchSpacingAt(map, {3.0F, 1.0F, 1.0F}), 1.0) << "half a cell of 2";
     EXPECT_EQ(patchSpacingAt(map, {0.5F, 2.5F, 2.5F}), 0.25) << "a quarter of a cell of 1";
-    EXPECT_EQ(patchSpacingAt(map, {0.5F, 3.5F, 2.5F}), 1.0) << "beside it, without heights";
+    EXPECT_EQ(patchSpacingAt(map, {0.5F, 3.5F, 2.5F}), 1.0) << "a neighbour without heights";
     EXPECT_EQ(patchSpacingAt(map, {1.0F, 1.0F, 1.0F}), 2.0) << "an octant without a record";
     EXPECT_EQ(patchSpacingAt(map, {6.0F, 1.0F, 1.0F}), 4.0) << "a root without heights";
     // Points beyond the roots and on their last faces use the nearest cell.

@@ -160,7 +160,7 @@ TEST(Oracle, SubBoxesNeverLoseTheSolid) {
             }
         }
         EXPECT_GT(votes, 100);
-        EXPECT_LT(votes, 10000) << "outside its volume it abstains";
+        EXPECT_LT(votes, 10000) << "must abstain outside the volume";
     }
 }
 

@@ -119,7 +119,7 @@ TEST(PatchTiles, HillsMatchTheWholeTreeAtSeams) {
     ASSERT_GE(tree.tiles.size(), 8U);
     for (const PatchTile& tile : tree.tiles) {
         EXPECT_LE(tile.map.texels.size(), 60'000U);
-        EXPECT_EQ(tile.place.y, 0U) << "flat ground is cut along its long sides alone";
+        EXPECT_EQ(tile.place.y, 0U) << "flat ground is cut only along its long sides";
     }
     const std::vector<glm::vec3> points = pointsOf(tree, mesh.bounds, 50'000);
     EXPECT_GT(expectSameField(tree, points), points.size() * 9 / 10);
@@ -147,7 +147,7 @@ TEST(PatchTiles, SphereInEightTilesMatchesTheClosedForm) {
             wrong[i % 2] += truth != (tree.distance(points[i]) < 0.0F) ? 1 : 0;
         }
         EXPECT_LT(wrong[0], 250);
-        EXPECT_LT(wrong[1], 250) << "at seams";
+        EXPECT_LT(wrong[1], 250) << "near seams";
     }
     // Among 4³ tiles, the inner 8 have no surface, but must be kept.
     const Tree tree = cut(mesh, {.bytes = 1'000'000}, {.bytes = 20'000});

@@ -271,7 +271,7 @@ TEST(Director, BakesTheRestPoseOfAnAnimatedMesh) {
     request.resolution = 32;
     const BakeResult baked = required(bake(request));
     const Collider& collider = baked.baked.collider;
-    EXPECT_EQ(collider.bounds.min, glm::vec3(0, 0, 5)) << "where it is at rest";
+    EXPECT_EQ(collider.bounds.min, glm::vec3(0, 0, 5)) << "the bounds of the rest pose";
     EXPECT_EQ(collider.maps.size(), 3U);
     EXPECT_EQ(collider.provenance.optionsText(), "--quality normal --resolution 32 --animated");
     const RecordedBake again = recordedBake(collider.provenance.options);

@@ -63,7 +63,7 @@ TEST_F(BakeCache, LinksAreNotFollowed) {
         expectError(loadBakeCache(folder_), ErrorCode::kInvalidInput);
         ASSERT_TRUE(updateBakeCache(folder_, {{"m.relief", entry_}}));
         EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(folder_ / kBakeCacheName)))
-            << "the link is replaced";
+            << "must replace the link";
         EXPECT_EQ(hash("elsewhere/precious"), dangling ? "none" : before);
         EXPECT_EQ(loadBakeCache(folder_)->size(), 1U);
     }
@@ -72,7 +72,7 @@ TEST_F(BakeCache, LinksAreNotFollowed) {
 TEST_F(BakeCache, EveryChangeIsDetected) {
     EXPECT_EQ(why(), "up to date");
     fs::last_write_time(folder_ / "m.obj", fs::file_time_type::clock::now() + std::chrono::hours(1));
-    EXPECT_EQ(why(), "up to date") << "times are not looked at";
+    EXPECT_EQ(why(), "up to date") << "modification times do not matter";
 
     for (const char* input : {"m.obj", "m.bin"}) {
         const auto time = fs::last_write_time(folder_ / input);
@@ -102,7 +102,7 @@ TEST_F(BakeCache, EveryChangeIsDetected) {
 TEST_F(BakeCache, PipesAreNotInputs) {
     fs::remove(folder_ / "m.bin");
     ASSERT_EQ(::mkfifo((folder_ / "m.bin").c_str(), 0600), 0);
-    EXPECT_EQ(why(), "'m.bin' changed") << "and nobody waits for its writer";
+    EXPECT_EQ(why(), "'m.bin' changed") << "must not wait for a writer";
     EXPECT_FALSE(hashOfFile("/dev/zero"));
 }
 
@@ -115,7 +115,7 @@ TEST_F(BakeCache, WorldIsUpToDateOnlyWithAllContainers) {
     job_.output_path = folder_ / job_.output;
     job_.world = true;
     entry_.output_hash = hash("w/world.json");
-    EXPECT_EQ(why(), "the output is not in the cache") << "a world has containers";
+    EXPECT_EQ(why(), "the output is not in the cache") << "a world needs containers";
     entry_.containers = {{"a.relief", hash("w/a.relief")}, {"b.relief", hash("w/b.relief")}};
     EXPECT_EQ(why(), "up to date");
     put("w/b.relief", "w/B.relief");
@@ -138,7 +138,8 @@ TEST_F(BakeCache, FolderHashCoversFileNames) {
     for (const char* file :
          {"parts/a.obj", "parts/x.relief", "parts/world.json", "parts/.relief-cache.json"}) {
         put(file, "b");
-        EXPECT_EQ(now(), before) << file << ": contents are inputs of their own, and a bake may write there";
+        EXPECT_EQ(now(), before) << file
+                                 << ": contents are separate inputs, and outputs may be in the folder";
     }
     put("parts/b.obj", "a");
     EXPECT_NE(now(), before);
@@ -159,7 +160,7 @@ TEST_F(BakeCache, RoundTrips) {
     ASSERT_TRUE(updateBakeCache(folder_, {{"n.relief", other}, {"gone.relief", other}}));
     const auto read = required(loadBakeCache(folder_));
     EXPECT_EQ(read, (BakeCacheEntries{{"m.relief", entry_}, {"n.relief", other}}))
-        << "both runs' entries, without the output that is gone";
+        << "entries of both runs, without the removed output";
 }
 
 TEST_F(BakeCache, ConcurrentWritersLoseNothing) {
@@ -203,7 +204,7 @@ TEST_F(BakeCache, InvalidCachesAreRejected) {
     const auto loaded = loadBakeCache(folder_);
     ASSERT_FALSE(loaded);
     EXPECT_NE(loaded.error().message.find(kBakeCacheName), std::string::npos);
-    ASSERT_TRUE(updateBakeCache(folder_, {{"m.relief", entry_}})) << "it is replaced";
+    ASSERT_TRUE(updateBakeCache(folder_, {{"m.relief", entry_}})) << "must replace the invalid cache";
     EXPECT_EQ(loadBakeCache(folder_)->size(), 1U);
 }
 
@@ -217,7 +218,7 @@ TEST(Depfile, EscapesForMakeAndNinja) {
         expectError(depfileText({"o"}, {name}), ErrorCode::kUnsupported);
         EXPECT_FALSE(depfileText({name}, {"a"})) << name;
     }
-    EXPECT_FALSE(depfileText({"50%"}, {"a"})) << "a pattern rule";
+    EXPECT_FALSE(depfileText({"50%"}, {"a"})) << "'%' would make a pattern rule";
     EXPECT_TRUE(depfileText({"o"}, {"50%"}));
 }
 

@@ -90,9 +90,9 @@ TEST(Glob, WalksFoldersOnceInOrder) {
               (std::vector<std::string>{"a.obj", "b.obj", "link.obj", "x-/a.obj", "x/a.obj", "x/y/a.obj"}));
     EXPECT_EQ(found.folders, (std::vector<std::string>{"", "x", "x-", "x.obj", "x/y"}));
     EXPECT_EQ(required(globFiles(folder, *GlobPattern::parse("x/up.d/*.obj"))).files.size(), 3U)
-        << "a link that is named is followed";
+        << "must follow a link that is named";
     const GlobResult folders = required(globFiles(folder, *GlobPattern::parse("**/x*/")));
-    EXPECT_EQ(folders.files, (std::vector<std::string>{"x", "x-", "x.obj"})) << "a slash at the end";
+    EXPECT_EQ(folders.files, (std::vector<std::string>{"x", "x-", "x.obj"})) << "with a trailing slash";
     EXPECT_TRUE(globFiles(folder, *GlobPattern::parse("a.obj/"))->files.empty());
     EXPECT_EQ(globFiles(folder / "gone", *GlobPattern::parse("*")).error().code, ErrorCode::kIo);
 }

@@ -190,7 +190,7 @@ TEST_F(RecipeJobsTest, FindsFilesInOrderAndNamesOutputs) {
     EXPECT_EQ(found.jobs[3].arguments,
               std::vector<std::string>{"--clips=" + (folder_ / "hill.off").string()});
     EXPECT_EQ(found.jobs[3].options, std::vector<std::string>{"--clips=hill.off"});
-    EXPECT_EQ(found.folders.size(), 3U) << "the folder, rocks and rocks/deep";
+    EXPECT_EQ(found.folders.size(), 3U) << "the root, rocks and rocks/deep";
     const auto elsewhere = jobs("[[asset]]\nmesh = 'hill.off'\noutput = '{stem}.relief'\n", folder_ / "out");
     EXPECT_EQ(required(elsewhere).jobs[0].output_path, folder_ / "out/hill.relief");
 }
@@ -213,7 +213,7 @@ TEST_F(RecipeJobsTest, WorldOwnsItsFolder) {
     EXPECT_FALSE(found.jobs[1].world || found.jobs[1].mesh_is_folder);
     EXPECT_TRUE(found.jobs[0].arguments.empty());
     EXPECT_EQ(found.jobs[0].options, std::vector<std::string>{kWorldOption})
-        << "or its key were a collider's";
+        << "a world, even if a collider has the same options";
     fs::create_symlink("w", folder_ / "link");
     const std::string level = "[[asset]]\nmesh = 'rocks/'\noutput = 'w/world.json'\n";
     for (const char* other : {"w/x/world.json", "link/x.relief", "w/a/b/c.relief"}) {
@@ -304,7 +304,7 @@ TEST_F(RecipeJobsTest, ForeignFilesAreNotReplaced) {
     entry.inputs = {{"hill.off", "x"}};
     ASSERT_TRUE(updateBakeCache(folder_, {{"known.relief", entry}}));
     EXPECT_EQ(outcome({"rock.relief", "w/world.json", "none.relief", "fresh.relief", "known.relief"}), "")
-        << "the last one was made by a bake, and is damaged";
+        << "the last one is a damaged output of a bake";
 }
 
 TEST(RecipeShards, EveryOutputIsInExactlyOneShard) {
@@ -320,7 +320,8 @@ TEST(RecipeShards, EveryOutputIsInExactlyOneShard) {
             }
             ASSERT_EQ(homes, 1) << name << " of " << count;
         }
-        EXPECT_GT(*std::ranges::min_element(sizes), static_cast<int>(1000 / count / 4)) << "about as large";
+        EXPECT_GT(*std::ranges::min_element(sizes), static_cast<int>(1000 / count / 4))
+            << "shards should have similar sizes";
     }
     // Shards of one array can run on several machines. XXH3-64 of the empty string is 2d06800538d394c2.
     EXPECT_TRUE(inShard("", {1 + 0xc2 % 4, 4}));

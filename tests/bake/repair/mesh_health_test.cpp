@@ -109,7 +109,7 @@ TEST(MeshHealth, EveryFaultIsCounted) {
 
     const MeshHealth strip = inspectMesh(makeMoebiusStrip(40, 4));
     EXPECT_EQ(strip.boundary_edges, 80U);
-    EXPECT_EQ(strip.inconsistent_edges, 4U) << "the seam";
+    EXPECT_EQ(strip.inconsistent_edges, 4U) << "edges of the seam";
 }
 
 // --- winding ---
@@ -221,7 +221,7 @@ TEST(Winding, OverlapOfSolidsIsInside) {
     const auto insideAt = [](const TriangleMesh& mesh, const glm::vec3& p) {
         return queryOf(windOutwards(withRandomFlips(mesh, 11))->mesh).inside(p);
     };
-    EXPECT_TRUE(insideAt(crossing, {0.2F, 0.1F, 0.1F})) << "in both";
+    EXPECT_TRUE(insideAt(crossing, {0.2F, 0.1F, 0.1F})) << "inside both";
     EXPECT_TRUE(insideAt(crossing, {-0.4F, 0.1F, 0.1F}));
     EXPECT_FALSE(insideAt(crossing, {-0.4F, 0.7F, 0.1F}));
     EXPECT_FALSE(insideAt(hollow, {0.1F, 0.1F, 0.1F}));

@@ -116,7 +116,7 @@ TEST(ViewBox, ContainsEverySurfaceStrictly) {
                     EXPECT_LT(glm::length(in_map), kCubeDepthMax);
                     EXPECT_LT(std::max({std::abs(in_map.x), std::abs(in_map.y), std::abs(in_map.z)}), 1.0F);
                 } else {
-                    EXPECT_GT(in_map.z, 6.2e-5F) << "the smallest normal half";
+                    EXPECT_GT(in_map.z, 6.2e-5F) << "above the smallest normal half";
                     EXPECT_LT(in_map.z, 1.0F);
                     const glm::vec2 size(view.width, view.height);
                     const glm::vec2 at = glm::vec2(in_map) * size;

@@ -89,8 +89,8 @@ TEST(BudgetShares, HalfIsByAreaAndHalfIsEven) {
     EXPECT_EQ(bytes[0], roundDownToEighth((1 << 18) + (1 << 17) * 3));
     EXPECT_EQ(bytes[1], roundDownToEighth((1 << 18) + (1 << 17)));
     EXPECT_EQ(byErrors(1 << 20, {powerLaw(1.0, 0.7)}).bytes, std::vector<std::uint64_t>{1 << 20})
-        << "all to one";
-    EXPECT_EQ(byArea(1 << 20, {0.0, 0.0}), (std::vector<std::uint64_t>(2, 1 << 18))) << "no area at all";
+        << "everything to the second mesh";
+    EXPECT_EQ(byArea(1 << 20, {0.0, 0.0}), (std::vector<std::uint64_t>(2, 1 << 18))) << "without any area";
 }
 
 TEST(BudgetShares, SmallPartsOfALargeLevelKeepTheEvenHalf) {
@@ -161,7 +161,7 @@ TEST(BudgetShares, LargeIncreasesAreReplanned) {
     EXPECT_EQ(shared.planned[0], std::vector<std::uint64_t>{16'384});
     EXPECT_GT(shared.planned[7].size(), 1U);
     EXPECT_GT(shared.bytes[7], 40'000U);
-    EXPECT_LT(shared.bytes[7], 400'000U) << "by the power law 3 MB";
+    EXPECT_LT(shared.bytes[7], 400'000U) << "the power law would give 3 MB";
     std::uint64_t planned = 0;
     for (const std::vector<std::uint64_t>& plans : shared.planned) {
         planned += sumOf(plans);

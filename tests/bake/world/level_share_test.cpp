@@ -63,8 +63,9 @@ TEST_F(LevelShares, BumpyBallGetsMoreThanABoxOfEqualArea) {
     const WorldBakeResult result = bake("w");
     std::map<std::string, std::uint64_t> shares = sharesOf(result);
     EXPECT_GT(shares["ball"], 2 * shares["box"]);
-    EXPECT_GT(shares["ball"], shares["rock"]) << "which has lower bumps";
-    EXPECT_GT(shares["ball"] + shares["torus"] + shares["rock"], kBudget * 3 / 4) << "what the box leaves";
+    EXPECT_GT(shares["ball"], shares["rock"]) << "the rock has lower bumps";
+    EXPECT_GT(shares["ball"] + shares["torus"] + shares["rock"], kBudget * 3 / 4)
+        << "bytes that the box leaves";
     EXPECT_LE(result.gpuBytes(), kBudget);
     EXPECT_LE(shares["ball"] + shares["torus"] + shares["rock"] + shares["box"], kBudget);
     request_.bake.threads = 1;

@@ -100,7 +100,7 @@ TEST_F(WrittenByHand, MaterialResponsesAreKeptByName) {
     EXPECT_EQ(changed.warnings, std::vector<std::string>{
                                     "world.json: no collider has the material 'stone' any more; its response "
                                     "is dropped"});
-    EXPECT_TRUE(loadWorld(worldFile())) << "a reader refuses names of no material";
+    EXPECT_TRUE(loadWorld(worldFile())) << "the reader rejects unknown material names";
     EXPECT_TRUE(bake("w").warnings.empty());
 }
 

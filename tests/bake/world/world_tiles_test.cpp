@@ -192,7 +192,7 @@ TEST_F(WorldTiles, ChecksAndMovesTreatTilesAsOneMesh) {
         changed += inside != shifted.evaluate(p + shift).inside() ? 1 : 0;
         torn_apart += inside != torn.evaluate(p + shift).inside() ? 1 : 0;
     }
-    EXPECT_LE(changed, 5) << "sums of floats are rounded";
+    EXPECT_LE(changed, 5) << "differences are rounding errors";
     EXPECT_GT(torn_apart, 2000);
 }
 
