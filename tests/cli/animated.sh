@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Meshes that move: animated ones, baked, checked, from recipes and played; and ones that relief-sim deforms. Unit tests show
-# the import, the poses, the scene's keys and what is refused.
+# Animated meshes: bakes, checks, recipes and playback, and meshes that relief-sim deforms. Unit tests cover the import,
+# poses, scene keys and errors.
 . "$(dirname "$0")/lib.sh"
 
 cp "$models/glTF2/glTF-Sample-Models/AnimatedMorphCube-glTF/"AnimatedMorphCube.{gltf,bin} .
@@ -24,14 +24,14 @@ import csv
 rows = list(csv.DictReader(open('field.csv')))
 assert [bool(r['f']) and float(r['f']) < 0 for r in rows] == [True, True, False, False], rows" || die "rest pose: $(cat field.csv)"
 "$relief" view cube.relief
-grep -q '"animated":true' cube.html || die "the page does not state that it shows the rest pose"
+grep -q '"animated":true' cube.html || die "the page does not mention the rest pose"
 expect 0 "$relief" bake $cube --animated --resolution 64 -o one.relief -q -j 1
-cmp cube.relief one.relief || die "threads change an animated bake"
+cmp cube.relief one.relief || die "the number of threads changes an animated bake"
 expect 0 "$relief" bake $cube -o still.relief -q
 expect 0 "$relief" info still.relief --json
 json stdout "d['animation'] is None"
 
-# Clips of other files; from a recipe too, whose outputs follow them.
+# Clips of other files, also in recipes, whose outputs depend on them.
 python3 - <<'P'
 import json
 d = json.load(open("AnimatedMorphCube.gltf"))
@@ -49,7 +49,7 @@ sed -i 's/swell/shrink/' clips.gltf
 expect 0 "$relief" bake --recipe r.toml --json
 json stdout "d['counts']['baked'] == 1"
 expect 0 "$relief" info out/still.relief
-matches -E '^  shrink' <stdout || die "the clip of before: $(cat stdout)"
+matches -E '^  shrink' <stdout || die "the previous clip: $(cat stdout)"
 
 tetrahedron t.obj
 expect_error 5 "t.obj" "$relief" bake t.obj --animated -o no.relief
@@ -58,7 +58,7 @@ expect_error 1 "--budget" "$relief" bake $cube --animated --budget 1MB -o no.rel
 expect_error 1 "--clips" "$relief" bake $cube --clips $cube -o no.relief
 expect_error 1 "--animated" "$relief" bake $cube --animated --world w
 expect_error 1 "clips.gltf" "$relief" bake $cube --animated --clips clips.gltf -o clips.gltf
-[ ! -e no.relief ] || die "an output beside an error"
+[ ! -e no.relief ] || die "an output despite an error"
 
 # A scene plays the clip.
 printf '%s\n' 'time = { steps = 20 }' '[particles]' 'capacity = 1024' '[[collider]]' 'file = "cube.relief"' 'play = { clip = "Square", speed = 2 }' >scene.toml
@@ -66,7 +66,7 @@ expect 0 "$relief_sim" scene.toml -q
 sed -i 's/Square/Circle/' scene.toml
 expect_error 3 "scene.toml:.*'Circle'" "$relief_sim" scene.toml -q
 
-# A torus that relief-sim deforms: the particles end elsewhere than on one that hardly moves; the same scene ends the same.
+# A deformed torus: the particles end elsewhere than on a nearly rigid one, and the result is reproducible.
 python3 "$RELIEF_SOURCE/samples/meshes.py" torus torus.obj
 scene() { # KEY… of [collider]
     printf '%s\n' '[collider]' "$@" '[time]' 'steps = 30' '[particles]' 'capacity = 2000' '[emitter]' 'box_min = [-1.2, 0.4, -1.2]' \
@@ -77,15 +77,15 @@ scene 'mesh = "torus.obj"' 'deform = { amplitude = 1e-4, frequency = 2 }' 'resol
 "$relief_sim" scene.toml --dump still.ply -q
 scene 'mesh = "torus.obj"' 'deform = { amplitude = 0.1, frequency = 2 }' 'resolution = 64'
 expect 0 "$relief_sim" scene.toml --check
-[[ $(cat stdout) == *"3 maps"* && $(cat stdout) == *"torus.obj"* ]] || die "--check does not tell of the mesh"
+[[ $(cat stdout) == *"3 maps"* && $(cat stdout) == *"torus.obj"* ]] || die "--check does not mention the mesh"
 expect 0 "$relief_sim" scene.toml --dump wobble.ply --frames frames --json
 json stdout "d['settings']['collider']['deform']['frequency'] == 2 and d['particles']['alive'] == 2000 and d['particles']['in_contact'] > 0"
-! cmp -s still.ply wobble.ply || die "the wobble does nothing"
-[ "$(identify -format '%k' frames/frame_0001.png)" -gt 100 ] || die "a frame shows nothing"
-! cmp -s frames/frame_0000.png frames/frame_0001.png || die "two frames are the same"
+! cmp -s still.ply wobble.ply || die "the wobble has no effect"
+[ "$(identify -format '%k' frames/frame_0001.png)" -gt 100 ] || die "a frame is empty"
+! cmp -s frames/frame_0000.png frames/frame_0001.png || die "two frames are equal"
 "$relief_sim" scene.toml --dump again.ply -q
-cmp wobble.ply again.ply || die "the same scene ends in another way"
-"$relief_sim" scene.toml --dump es.ply --api gles -q || die "not in OpenGL ES"
+cmp wobble.ply again.ply || die "the result is not reproducible"
+"$relief_sim" scene.toml --dump es.ply --api gles -q || die "failed in OpenGL ES"
 sed -i 's/torus.obj/none.obj/' scene.toml
 expect_error 2 'scene.toml:2:8: ' "$relief_sim" scene.toml --check
 echo "no mesh" >none.obj

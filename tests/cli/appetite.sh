@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-# Small containers take little memory, whatever they claim; a refusal names the option that allows it. The limit of memory is
-# that of the process, by setrlimit. tests/cases/appetite_cases.py draws meshes.
+# Small containers use little memory, regardless of what they claim, and errors name the option that raises the limit.
+# setrlimit limits the memory of the process. tests/cases/appetite_cases.py tests random meshes.
 source "$RELIEF_SOURCE/tests/cli/lib.sh"
 export PYTHONPATH=$PYTHONPATH:$RELIEF_SOURCE/tests/cases
 
-# within MB COMMAND…: in so much address space, and a minute of the processor.
+# within MB COMMAND…: runs with this much address space and a minute of CPU time
 within() {
     local megabytes=$1
     shift
@@ -26,7 +26,7 @@ open("tiny.relief", "wb").write(container([plain_map(4, 4, texel * 16)] * 1024))
 open("points.csv", "w").write("0,0,0\n")
 P
 
-# A file of 66 kB: refused before the work, by every verb that reads it.
+# A file of 66 kB: every verb that reads it rejects it early.
 refused='bomb.relief.*2146435072 bytes in memory.*--max-memory'
 expect_error 6 "$refused" within 500 "$relief" info bomb.relief
 expect_error 6 "$refused" within 500 "$relief" slice bomb.relief -o x.png
@@ -34,11 +34,11 @@ expect_error 6 "$refused" within 500 "$relief" query bomb.relief --points points
 expect_error 6 "$refused" within 500 "$relief" export bomb.relief -o maps
 expect_error 6 "$refused" within 500 "$relief_sim" bomb.relief --check
 expect 6 within 500 "$relief" check bomb.relief
-matches -q 'RLF-1402' <stdout || die "check says nothing of the limit: $(cat stdout)"
-matches -q -- '--max-memory' <stderr || die "check names no option: $(cat stderr)"
-[ ! -e maps ] || die "export made a folder for nothing"
+matches -q 'RLF-1402' <stdout || die "check does not mention the limit: $(cat stdout)"
+matches -q -- '--max-memory' <stderr || die "check does not name the option: $(cat stderr)"
+[ ! -e maps ] || die "a failed export created a folder"
 
-# Beyond the limit, a sound file is read where it is asked for.
+# With a higher limit, a valid file is read.
 expect_error 6 '268435456 bytes.*--max-memory' within 500 "$relief" info large.relief
 expect 0 within 800 "$relief" info large.relief --max-memory 300MB
 expect 0 within 800 "$relief" check large.relief --max-memory 300MB

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-# Every file that relief writes is whole, the old one or the new one: after SIGKILL or an error at any system call of
-# the writing, on a full disk, with many writers at once, and after signals at any time.
-#   RELIEF_ATOMIC_PAGE=FILE  also writes what was counted, for bake/measure/trust.md
+# Output files are either the complete old or the complete new file: after SIGKILL or an error in any system call of the
+# write, on a full disk, with concurrent writers, and after signals at any time.
+#   RELIEF_ATOMIC_PAGE=FILE  also writes the counts, for bake/measure/trust.md
 #   RELIEF_ATOMIC_ROUNDS=N   rounds of writers and of signals (1)
 . "$(dirname "$0")/lib.sh"
 rounds=${RELIEF_ATOMIC_ROUNDS:-1}
 
 command -v strace >/dev/null || die "strace is missing; run scripts/setup.sh"
 strace -o probe.trace true 2>probe.err ||
-    die "strace may not trace here (ptrace is not permitted), and without it nothing is tested: $(head -1 probe.err)"
+    die "strace cannot trace here (ptrace is not permitted), so nothing can be tested: $(head -1 probe.err)"
 mkdir out
 box cube.obj 1 1 1
 hash_of() { sha256sum <"$1" | cut -d' ' -f1; }
@@ -16,15 +16,15 @@ bake=("$relief" bake cube.obj --paper -j 1 -q -o)
 "${bake[@]}" new.relief --resolution 8
 "${bake[@]}" old.relief --resolution 4
 new=$(hash_of new.relief) old=$(hash_of old.relief)
-[ "$new" != "$old" ] || die "the older and the new file are the same"
+[ "$new" != "$old" ] || die "the old and the new file are equal"
 
-# --- every system call of the writing, killed and failed ---
+# --- kills and errors in every system call of the write ---
 
-# `calls`: the main thread's system calls from the temporary file to the end, as "SYSCALL N WHAT". N counts the
-# calls of that name in the main thread alone, as strace's when= does for each thread.
+# `calls`: the main thread's system calls from the temporary file to the end, as "SYSCALL N TARGET". N counts the calls
+# of this name in the main thread, like strace's when=, which counts per thread.
 cp old.relief out/a.relief
 strace -o trace "${bake[@]}" out/a.relief --resolution 8
-[ "$(hash_of out/a.relief)" = "$new" ] || die "a traced bake gives another file"
+[ "$(hash_of out/a.relief)" = "$new" ] || die "a traced bake gives a different file"
 python3 - >calls <<'P'
 import re
 seen, writing, calls = {}, False, []
@@ -37,7 +37,7 @@ for line in open('trace'):
     calls.append((name, seen[name], line))
 first = next(i for i, (name, _, line) in enumerate(calls) if 'O_CREAT' in line and '.relief-' in line)
 last = max(i for i, (name, _, _) in enumerate(calls) if name in ('rename', 'renameat', 'fsync', 'close'))
-# The writing begins at the last look at the target before the temporary file is made.
+# The write starts at the last access to the target before the temporary file is created.
 while first > 0 and calls[first - 1][0] in ('rt_sigprocmask', 'getpid', 'getrandom', 'getdents64', 'fstat', 'newfstatat', 'close', 'openat', 'readlink', 'brk'):
     first -= 1
 names = {'openat', 'open', 'write', 'pwrite64', 'fsync', 'fdatasync', 'close', 'rename', 'renameat', 'renameat2', 'fchmod',
@@ -47,7 +47,7 @@ for name, number, line in calls[first:last + 1]:
         what = 'temporary' if '.relief-' in line else 'other'
         print(name, number, what)
 P
-[ "$(wc -l <calls)" -ge 10 ] || die "the trace shows too few calls of the writing: $(cat calls)"
+[ "$(wc -l <calls)" -ge 10 ] || die "the trace shows too few calls of the write: $(cat calls)"
 for name in openat write fsync close rename fchmod; do
     grep -q "^$name " calls || die "the trace shows no $name"
 done
@@ -60,7 +60,7 @@ check_old_or_new() { # WHAT
         "$new" | "$old") ;;
         *)
             torn=$((torn + 1))
-            die "$1 left a torn file"
+            die "$1 left an incomplete file"
             ;;
     esac
 }
@@ -69,7 +69,7 @@ temporary_files() { find out -name '.relief-*' | wc -l; }
 while read -r name number _; do
     cp old.relief out/a.relief
     code=0
-    # The braces catch what bash itself says: "Killed".
+    # The braces capture messages of bash, such as "Killed".
     { strace -o /dev/null -e "inject=$name:signal=KILL:when=$number" "${bake[@]}" out/a.relief --resolution 8; } \
         >/dev/null 2>&1 || code=$?
     [ "$code" -eq 137 ] || die "SIGKILL at $name $number: exit code $code"
@@ -77,10 +77,10 @@ while read -r name number _; do
     check_old_or_new "SIGKILL at $name $number"
     left_by_kill=$((left_by_kill + $(temporary_files)))
 done <calls
-[ "$left_by_kill" -gt 0 ] || die "no kill came while a temporary file was there: nothing was tested"
+[ "$left_by_kill" -gt 0 ] || die "no kill happened while a temporary file existed, so nothing was tested"
 rm -f out/.relief-*.tmp
 
-# fails NAME NUMBER ERRNO: either the call may fail, or the error is named, the old file stays and nothing is left.
+# fails NAME NUMBER ERRNO: the bake succeeds, or the error is named, the old file is kept and no other file is left.
 fails() {
     local name=$1 number=$2 errno=$3 code=0 words
     cp old.relief out/a.relief
@@ -114,7 +114,7 @@ while read -r name number _; do
         fails "$name" "$number" "$errno"
     done
 done <calls
-# Each error must be noticed at least once; interrupted calls must be repeated.
+# Each error must be reported at least once, and interrupted calls must be repeated.
 for pair in 'openat ENOSPC' 'openat EACCES' 'write ENOSPC' 'write EIO' 'write EDQUOT' 'fsync ENOSPC' 'fsync EIO' 'fsync EDQUOT' \
     'close EIO' 'close ENOSPC' 'close EDQUOT' 'rename EACCES' 'rename EIO' 'fchmod EIO'; do
     grep -qx "$pair" reported || die "no call reported: $pair"
@@ -141,12 +141,12 @@ fi
 cp old.relief out/a.relief
 code=0
 (ulimit -f 64 && exec "${bake[@]}" out/a.relief --resolution 64) 2>stderr || code=$?
-[ "$code" -eq 2 ] && grep -q 'File too large' stderr || die "beyond the file size limit: exit code $code, $(cat stderr)"
-cmp -s old.relief out/a.relief && [ "$(temporary_files)" -eq 0 ] || die "the file size limit leaves traces"
+[ "$code" -eq 2 ] && grep -q 'File too large' stderr || die "above the file size limit: exit code $code, $(cat stderr)"
+cmp -s old.relief out/a.relief && [ "$(temporary_files)" -eq 0 ] || die "the file size limit changes files"
 expect_error 2 '/dev/full.*No space left' "${bake[@]}" /dev/full
 echo "full disk: $full"
 
-# --- eight writers and readers of one path ---
+# --- eight concurrent writers and readers of one path ---
 
 writes=0 reads=0
 cp old.relief out/a.relief
@@ -160,12 +160,12 @@ for ((round = 0; round < rounds; ++round)); do
     done
     writes=$((writes + 24))
     for ((i = 0; i < 20; ++i)); do
-        "$relief" info out/a.relief -q >/dev/null || die "a reader met a file that is not valid"
+        "$relief" info out/a.relief -q >/dev/null || die "a reader found an invalid file"
         check_old_or_new "a writer among eight"
         reads=$((reads + 1))
     done
     for pid in "${pids[@]}"; do
-        wait "$pid" || die "a writer among eight failed"
+        wait "$pid" || die "one of eight writers failed"
     done
     check_old_or_new "eight writers"
     [ "$(temporary_files)" -eq 0 ] || die "eight writers leave a temporary file"
@@ -206,7 +206,7 @@ assert ended >= 4 * rounds, f'only {ended} signals came in time'
 print(16 * rounds)
 P
 signals=$(python3 interrupt.py "$relief" "$rounds" "$bunny") || die "signals: see above"
-# Signals in the middle of the writing: strace delivers them at its calls.
+# Signals during the write: strace delivers them at its system calls.
 while read -r name number _; do
     for word in INT TERM HUP QUIT; do
         cp old.relief out/a.relief

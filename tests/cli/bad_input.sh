@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# Wrong calls and hostile files: one line that names the option or the file, the exit code that the manual gives, and an older
-# output that stays as it was. Unit tests show which values and files are refused; here every code, verb and kind of file
-# appears once.
+# Invalid calls and hostile files: one line names the option or file, the exit code is as documented, and existing
+# outputs are unchanged. Unit tests cover which values and files are rejected; this script covers every code, verb and
+# kind of file once.
 . "$(dirname "$0")/lib.sh"
 
 tetrahedron good.obj
@@ -11,7 +11,7 @@ echo '0,0,0' >points.csv
 
 bake_fails() { # CODE PATTERN ARGUMENT…
     expect_error "$1" "$2" "$relief" bake "${@:3}"
-    [ "$(cat old.relief)" = precious ] || die "an older output was touched: ${*:3}"
+    [ "$(cat old.relief)" = precious ] || die "an existing output was changed: ${*:3}"
 }
 
 # Meshes.
@@ -50,7 +50,7 @@ expect_error 1 axis "$relief" slice good.relief --axis w --at 0 -o out.png
 expect_error 1 steps "$relief_sim" good.relief --steps -1
 expect_error 6 99999 "$relief_sim" good.relief --steps 1 --frames frames --size 99999x99999
 
-# Containers: every verb that reads one.
+# Containers: every verb that reads them.
 head -c 1000 good.relief >truncated.relief
 cp good.relief altered.relief
 printf '\x55' | dd of=altered.relief bs=1 seek=700 conv=notrunc status=none
@@ -65,7 +65,7 @@ done
 expect_error 2 'missing\.relief' "$relief" info missing.relief
 expect_error 2 'missing\.relief' "$relief_sim" missing.relief
 
-# A mesh in place of a collider: each verb names the bake that makes one. Contents count more than the name.
+# A mesh in place of a collider: each verb suggests the bake. The contents matter, not the name.
 bake_first="'good\.obj' is a mesh.*relief bake 'good\.obj' -o 'good\.relief'"
 expect_error 3 "$bake_first" "$relief" info good.obj
 expect 3 "$relief" check good.obj
@@ -94,7 +94,7 @@ scene_fails 3 '4:.*restitution' $'[collider]\nfile = "good.relief"\n[collision]\
 scene_fails 3 '2:' $'[collider]\nfile = '
 expect_error 2 'missing\.toml' "$relief_sim" missing.toml
 
-# Files that would wait for ever.
+# Files that would block forever.
 mkfifo waits.obj waits.relief waits.toml
 for command in "bake waits.obj -o w.relief" "info waits.relief" "check waits.relief" "query waits.relief --points 0/0/0" \
     "bake --recipe waits.toml"; do
@@ -105,13 +105,13 @@ for command in "bake waits.obj -o w.relief" "info waits.relief" "check waits.rel
 done
 code=0
 timeout 20 "$relief_sim" waits.toml >/dev/null 2>stderr || code=$?
-[ "$code" -eq 2 ] && grep -q waits.toml stderr || die "a scene that is a pipe: $code, $(cat stderr)"
+[ "$code" -eq 2 ] && grep -q waits.toml stderr || die "a pipe as scene: $code, $(cat stderr)"
 
-# Help leads with an example and is no wider than 120 columns, for every verb.
+# For every verb, help starts with an example and is at most 120 columns wide.
 for command in "$relief" "$relief_sim" "$relief bake" "$relief info" "$relief check" "$relief query" "$relief slice" "$relief view" "$relief export"; do
     # shellcheck disable=SC2086
     expect 0 $command --help
-    head -8 stdout | matches "${command#"$RELIEF_BIN"/} " || die "help of $command does not lead with an example"
+    head -8 stdout | matches "${command#"$RELIEF_BIN"/} " || die "help of $command does not start with an example"
     ! awk 'length > 120 && !/^  relief/' stdout | grep . || die "too wide: $command --help"
 done
 expect 0 "$relief" --version

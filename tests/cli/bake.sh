@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# What a bake's options leave in the container, as `relief info` tells; and that threads, folder and name change no byte.
+# The container contents that bake options cause, as `relief info` prints them. Threads, folder and name do not change a
+# byte.
 . "$(dirname "$0")/lib.sh"
 
 for library in epoxy libGL\\. EGL; do
@@ -8,9 +9,9 @@ done
 
 box box.obj 1 2 3
 
-# The paper's set is three orthogonal front-back maps and one cube; the container names its source.
+# The paper's maps are three orthogonal front-back maps and a cube. The container names its source.
 expect 0 "$relief" bake box.obj -o box.relief --paper --resolution 64 -q
-[ ! -s stderr ] || die "-q is not quiet"
+[ ! -s stderr ] || die "-q prints output"
 expect 0 "$relief" info box.relief --json
 json stdout "[m['format'] for m in d['maps']] == ['front-back'] * 3 + ['cube'] and d['version'] == '2.0'"
 json stdout "d['bounds']['min'] == [-1, -2, -3] and d['bounds']['max'] == [1, 2, 3]"
@@ -19,17 +20,17 @@ json stdout "d['maps'][3]['compare'] == 'greater' and d['maps'][3]['width'] == 6
 expect 0 "$relief" info box.relief
 grep -q 'front-back' stdout || die "info does not list the maps"
 
-# A hole is closed, or kept; the bake reports it and the container records it.
+# A hole is closed, or kept on request. The bake reports it, and the container records it.
 sed 's/^f 4 3 2 1$/f 4 3 2/' box.obj >open.obj
 expect 0 "$relief" bake open.obj -o open.relief --map cube:size=16 --json
-grep -q 'open.obj: closed 1 hole' stderr || die "closing a hole is not reported: $(cat stderr)"
+grep -q 'open.obj: closed 1 hole' stderr || die "the closed hole is not reported: $(cat stderr)"
 json stdout "(d['closed_holes'], d['cap_triangles'], d['settings']['holes']) == (1, 1, 'close') and d['shape']['solids_with_holes'] == 1"
 json stdout "d['provenance']['triangles'] == 11 and '--holes' not in d['provenance']['options']"
 expect 0 "$relief" bake open.obj -o kept.relief --map cube:size=16 --json --holes keep
 json stdout "(d['closed_holes'], d['shape']) == (0, None) and d['provenance']['options'].endswith(' --holes keep')"
 ! cmp -s open.relief kept.relief || die "--holes keep closes holes"
 
-# Walls have two sides, unless --as says otherwise; the container remembers their thickness for a check.
+# Walls have two sides unless --as overrides it. The container records their thickness for checks.
 grep -v '^f 4 3 2 1' box.obj >walls.obj
 expect 0 "$relief" bake walls.obj -o walls.relief --budget 100kB --thickness 0.2 --json
 json stdout "d['shape']['sheets'] == 1 and abs(d['shape']['thickness'] - 0.2) < 1e-6 and d['wrong_percent'] < 5"
@@ -40,7 +41,7 @@ expect 0 "$relief" bake walls.obj -o solid.relief --budget 100kB --as solid --no
 json stdout "d['shape']['solids_with_holes'] == 1 and d['wrong_percent'] is None"
 json stdout "' --as solid' in d['provenance']['options']"
 
-# --map takes every format; --resolution, --decode and --depth apply to maps that do not set their own.
+# --map accepts every format. --resolution, --decode and --depth apply to maps without their own settings.
 expect 0 "$relief" bake box.obj -o all.relief --resolution 32 -q \
     --map float:dir=+x --map float:dir=-y,compare=greater --map fixed8:dir=1/2/3,size=48x24 \
     --map front-back:dir=-z --map cube:size=16 --map cube:center=5/0/0,compare=less
@@ -48,12 +49,12 @@ expect 0 "$relief" info all.relief --json
 json stdout "[(m['format'], m['compare']) for m in d['maps']] == [('float', 'less'), ('float', 'greater'), ('fixed8', 'less'), ('front-back', 'both'), ('cube', 'greater'), ('cube', 'less')]"
 json stdout "(d['maps'][2]['width'], d['maps'][2]['height']) == (48, 24)"
 expect 0 "$relief" info all.relief
-grep -qE '^         --map cube:[^ ]*$' stdout || die "options are not folded: $(cat stdout)"
+grep -qE '^         --map cube:[^ ]*$' stdout || die "options are not wrapped: $(cat stdout)"
 expect 0 "$relief" bake box.obj -o all.relief --resolution 16 --json --map front-back --map front-back:depth=unorm16 \
     --map cube:decode=plane --decode projected --depth half
 json stdout "[('half' in m, 'projected' in m) for m in d['settings']['maps']] == [(True, True), (False, True), (False, False)]"
 
-# A unit that was probably forgotten is named; with --unit the box is in metres.
+# A probably missing unit is suggested. With --unit the size is in metres.
 box large.obj 30 60 90
 expect 0 "$relief" bake large.obj -o unit.relief --map cube:size=16 --json
 json stdout 'any("no unit is named" in w for w in d["warnings"])'
@@ -62,27 +63,27 @@ for unit in cm m; do
     ! grep -q 'warning' stderr && grep -qE '^box [0-9.]+ x [0-9.]+ x [0-9.]+ m, from' stderr || die "with $unit: $(cat stderr)"
 done
 
-# Threads, folder and output name change no byte.
+# Threads, folder and output name do not change a byte.
 for threads in 1 2 5; do
     expect 0 "$relief" bake walls.obj -o "t$threads.relief" --budget 60kB --threads $threads -q
-    cmp t1.relief "t$threads.relief" || die "$threads threads bake other bytes than one"
+    cmp t1.relief "t$threads.relief" || die "$threads threads and one thread give different bytes"
 done
 mkdir elsewhere
 (cd elsewhere && "$relief" bake ../walls.obj -o x.relief --budget 60kB -q)
-cmp t1.relief elsewhere/x.relief || die "another folder gives other bytes"
-! grep -aq "$work" t1.relief || die "the output holds a path"
+cmp t1.relief elsewhere/x.relief || die "another folder gives different bytes"
+! grep -aq "$work" t1.relief || die "the output contains a path"
 
-# Without -o the output is in the current folder, and never over the mesh.
+# Without -o the output is in the current folder, and never replaces the mesh.
 mkdir default
 (cd default && expect 0 "$relief" bake ../box.obj --map cube:size=16 --json)
 json stdout "d['settings']['output'] == 'box.relief'"
 [ "$(ls default)" = box.relief ] || die "without -o: $(ls default)"
 cp box.obj mesh.relief
 expect_error 1 "'mesh.relief' is the input" "$relief" bake mesh.relief
-cmp box.obj mesh.relief || die "a mesh is lost to the default output"
+cmp box.obj mesh.relief || die "the default output overwrote the mesh"
 expect_error 1 'MESH is required' "$relief" bake
 
-# Several files: each gets its report, also behind one that fails.
+# Several files: each gets a report, even after a failed one.
 cp default/box.relief one.relief
 echo damaged >bad.relief
 expect 3 "$relief" info one.relief bad.relief box.relief
@@ -101,16 +102,16 @@ done >level.obj
 expect 0 "$relief" bake level.obj -o level.relief --map cube:size=16
 grep -q 'level.obj: 100 nodes become one collider; .* --world DIR' stderr || die "a level: $(cat stderr)"
 expect 0 "$relief" bake box.obj -o level.relief --map cube:size=16
-! grep -e --world stderr || die "a box is no level"
+! grep -e --world stderr || die "a box is not a level"
 
-# An older output is replaced; no temporary file stays.
+# An existing output is replaced, without leftover temporary files.
 expect 0 "$relief" bake box.obj -o elsewhere/x.relief --paper --resolution 32 -q
 [ "$(ls -A elsewhere)" = x.relief ] || die "files left behind: $(ls -A elsewhere)"
 
-# Random numbers of the library, functions whose last bits vary, and clocks must not reach outputs: formats/base/portable_math.h
-# replaces the functions. Benchmarks are no outputs.
+# Random numbers of the library, functions whose last bits vary, and clocks must not affect outputs.
+# formats/base/portable_math.h replaces the functions. Benchmarks are exempt.
 found=$(cd "$RELIEF_SOURCE" && grep -rnE --include=*.cpp --include=*.h --include=CMakeLists.txt \
     'std::(sin|cos|tan|asin|acos|atan|atan2|sinh|cosh|tanh|exp|exp2|expm1|log|log2|log10|log1p|pow|hypot|cbrt|tgamma|lgamma|erf|erfc)\(|(uniform_(int|real)|normal|bernoulli|poisson|discrete)_distribution|random_device|random_shuffle|std::(shuffle|sample)\(|unordered_(map|set)|std::hash|__DATE__|__TIME__|std::time\(|system_clock|setlocale|-ffast-math|-march=|rtcNewDevice\(nullptr' \
     bake formats CMakeLists.txt | grep -vE '^bake/bench/' || true)
-[ -z "$found" ] || die "bits that vary from machine to machine may reach outputs:"$'\n'"$found"
-grep -q -- '-ffp-contract=off' "$RELIEF_SOURCE/CMakeLists.txt" || die "contraction is not off"
+[ -z "$found" ] || die "results that vary between machines could affect outputs:"$'\n'"$found"
+grep -q -- '-ffp-contract=off' "$RELIEF_SOURCE/CMakeLists.txt" || die "floating-point contraction is not off"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# relief.h, librelief.so and librelief_c.a, as installed: a program in C99 links with either, its answers are
-# those of `relief query`, and the shared library exports what the header declares and nothing else.
+# The installed relief.h, librelief.so and librelief_c.a: a C99 program links with either and gives the results of
+# `relief query`. The shared library exports exactly the functions of the header.
 . "$(dirname "$0")/lib.sh"
 
 for component in development library; do
@@ -20,7 +20,7 @@ random_points points.csv
 "$relief" bake "$bunny" -q -o bunny.relief --budget 200kB
 export LD_LIBRARY_PATH
 LD_LIBRARY_PATH=$(dirname "$library")
-./in_cpp || die "the library is older than its header"
+./in_cpp || die "the library version does not match the header"
 ./c_api points.csv bunny.relief >own.csv || die "c_api failed"
 "$relief" query bunny.relief --points points.csv -o reference.csv --distance plane
 python3 - <<'P' || die "c_api and relief query disagree"
@@ -35,7 +35,7 @@ for a, b in zip(own, reference):
         assert [single(x) for x in a[3:7]] == [single(b[k]) for k in ('f', 'nx', 'ny', 'nz')], (a, b)
 P
 
-# The static library, by pkg-config and by CMake: the same answers, without the shared one.
+# The static library by pkg-config and by CMake gives the same results, without the shared library.
 unset LD_LIBRARY_PATH
 cat >CMakeLists.txt <<'C'
 cmake_minimum_required(VERSION 3.25)
@@ -48,12 +48,12 @@ foreach(name c c_static)
 endforeach()
 C
 cmake -G Ninja -S . -B by_cmake -DCMAKE_PREFIX_PATH="$work/installed" -DSOURCE="$RELIEF_SOURCE/tests/cli/c_api.c" >log 2>&1 &&
-    cmake --build by_cmake >>log 2>&1 || die "no C by CMake: $(tail -20 log)"
+    cmake --build by_cmake >>log 2>&1 || die "cannot build C with CMake: $(tail -20 log)"
 read -ra flags < <(pkg-config --cflags --libs relief-static)
 cc -std=c99 "$RELIEF_SOURCE/tests/cli/c_api.c" -o c_api_static "${flags[@]}" 2>log || die "does not link: $(head -20 log)"
 for program in ./c_api_static by_cmake/by_c_static by_cmake/by_c; do
     "$program" points.csv bunny.relief >again.csv || die "$program failed"
-    cmp own.csv again.csv || die "$program gives other answers"
+    cmp own.csv again.csv || die "$program gives different results"
     case $(ldd "$program" | grep -c 'librelief') in
         0) [ "$program" != by_cmake/by_c ] || die "Relief::c is not the shared library" ;;
         *) [ "$program" = by_cmake/by_c ] || die "$program needs the shared library" ;;
@@ -65,4 +65,4 @@ grep -oE '\brelief_[a-z_]+\(' "$RELIEF_SOURCE/runtime/c_api/relief.h" | tr -d '(
 nm -D --defined-only "$library" | awk '$2 != "A" { print $3 }' | sed 's/@.*//' | sort -u >exported
 diff declared exported >log || die "the header and the library differ: $(cat log)"
 [ "$(wc -l <exported)" -ge 37 ] || die "only $(wc -l <exported) functions"
-readelf -d "$library" | grep -q 'SONAME.*librelief.so.1' || die "the library has another SONAME"
+readelf -d "$library" | grep -q 'SONAME.*librelief.so.1' || die "the library has a different SONAME"

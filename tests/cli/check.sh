@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# relief check, with a mesh and without: report, JSON, page, exit codes, and advice that is worth what it promises. Unit tests
-# show the causes of errors and the codes of damage.
+# relief check with and without a mesh: report, JSON, page, exit codes, and advice that achieves the accuracy it
+# promises. Unit tests cover error causes and damage codes.
 . "$(dirname "$0")/lib.sh"
 
 "$relief" bake "$bunny" -o b.relief --paper --resolution 64 --json >bake.json 2>/dev/null
@@ -15,26 +15,26 @@ json report.json '0 < d["verdict"]["wrong_percent"] == d["accuracy"]["near"]["wr
 json report.json "d['accuracy']['gpu_bytes'] == $bytes and d['sampling']['samples'] == 5000 and d['sampling']['seed'] == 1"
 json report.json 'len(d["worst_places"]) == 3 and all(0 < p["size"] < 0.6 and 0 <= p["map"] < 4 for p in d["worst_places"])'
 
-# The same seed gives the same numbers and the same page, which is that of `relief view` with the report.
+# Equal seeds give equal numbers and pages. The page is that of `relief view` with the report.
 for i in 1 2; do
     "$relief" check b.relief --mesh "$bunny" --samples 5000 --seed 7 --json --html $i.html | grep -v -e '"truth"' -e '"field"' >$i.json
 done
-cmp 1.json 2.json && cmp 1.html 2.html || die "two runs measure differently"
+cmp 1.json 2.json && cmp 1.html 2.html || die "two runs give different results"
 "$relief" view b.relief -o view.html
-python3 - <<'P' || die "the page has another report"
+python3 - <<'P' || die "the page has a different report"
 import json, re
 d, view = (json.loads(re.search('id="relief-page-data"[^>]*>(.*)</script>', open(page).read())[1]) for page in ('1.html', 'view.html'))
 assert d['collider'] == view['collider'] and d['bytes'] == view['bytes'] and d['mesh']['name'] == 'bunny.obj'
 assert d['check']['verdict']['grade'] == 'poor' and len(d['check']['worst_places']) == 3 and d['check']['advice'][0]['helps']
 P
 
-# The first advice of a report that matches is as good as promised.
+# The first matching advice achieves the promised accuracy.
 promises() { # MESH COLLIDER PATTERN
     "$relief" check "$2" --mesh "$1" --samples 20000 --json >before.json 2>/dev/null
     bash -c "$(python3 -c 'import json, sys; print(next(a["command"] for a in json.load(open("before.json"))["advice"] if sys.argv[1] in a["about"] + a["command"]))' "$3" |
         sed "s#^relief#'$relief'#") -q" 2>/dev/null
     "$relief" check "$2" --mesh "$1" --samples 20000 --json >after.json 2>/dev/null
-    python3 - "$3" <<'P' || die "the advice for $2 is not worth what it promises"
+    python3 - "$3" <<'P' || die "the advice for $2 does not achieve what it promises"
 import json, sys
 before, after = (json.load(open(f)) for f in ('before.json', 'after.json'))
 advice = next(a for a in before['advice'] if sys.argv[1] in a['about'] + a['command'])
@@ -50,7 +50,7 @@ json before.json '{p["cause"] for p in d["worst_places"]} == {"texel"} and [a["a
 promises "$bunny" maps.relief 'patches of the same size'
 json after.json 'd["accuracy"]["gpu_bytes"] <= 1e5 and [p["map"] for p in d["worst_places"]] == [0] * 3'
 
-# A cavity that no map sees, a ball in a box: patches help.
+# An unseen cavity, a ball in a box: patches help.
 python3 - >hollow.obj <<'P'
 import math
 points = [(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]
@@ -74,8 +74,8 @@ promises hollow.obj h.relief 'patches of the same size'
 json before.json '{p["cause"] for p in d["worst_places"]} == {"unseen"} and d["accuracy"]["unseen_area_percent"] > 9'
 json before.json 'all(abs(math.dist(p["position"], (0.2, 0, 0)) - 0.5) < 0.06 for p in d["worst_places"])'
 
-# An open mesh that was to stay open: a solid helps. The collider of a repaired mesh is measured against the repair, and against
-# the original.
+# A mesh kept open: a solid helps. The collider of a repaired mesh is measured against the repaired mesh and against the
+# original.
 tar -xzf /usr/share/doc/libcgal-dev/data.tar.gz data/meshes/mushroom.off
 mv data/meshes/mushroom.off "a mesh's.off"
 "$relief" bake "a mesh's.off" -o m.relief --holes keep --resolution 64 -q 2>/dev/null
@@ -87,7 +87,7 @@ json wrapped.json 'd["repaired"]["repair"] == "wrap=0.05" and d["repaired"]["tri
 json wrapped.json 'd["verdict"]["wrong_percent"] == d["repaired"]["accuracy"]["near"]["wrong_percent"] < 3'
 json wrapped.json 'd["accuracy"]["near"]["wrong_percent"] > d["verdict"]["wrong_percent"] + 1'
 
-# --max-error: the report is printed, and the exit code is that of a difference.
+# --max-error: the report is printed, and the exit code means a difference.
 expect 7 "$relief" check b.relief --mesh "$bunny" --samples 5000 --max-error 0.01 --json
 json stdout 'd["max_error_percent"] == 0.01 and not d["passed"]'
 grep -q 'max-error' stderr || die "no reason given: $(cat stderr)"
@@ -97,7 +97,7 @@ grep -q '^good.relief: .* wrong near the surface: above --max-error 0.01 %$' std
 expect 0 "$relief" check b.relief --mesh "$bunny" --samples 5000 --max-error 50%
 grep -q '^b.relief: .*: within --max-error 50 %$' stdout && ! grep -q '^What to do:$' stdout || die "$(cat stdout)"
 
-# The same surface in another file is a warning, another mesh an error.
+# The same surface in another file gives a warning, another mesh an error.
 (cat "$bunny" && echo '# touched') >touched.obj
 expect 0 "$relief" check b.relief --mesh touched.obj --samples 1000 --json
 grep -q 'warning: .*touched.obj' stderr || die "no warning: $(cat stderr)"
@@ -112,9 +112,9 @@ for option in '--samples 5' '--seed 5' '--max-error 5' '--html page.html'; do
     expect_error 1 '--mesh' "$relief" check b.relief $option
 done
 
-# Without a mesh: every issue of the file by its code, and what is left of the file.
+# Without a mesh: every issue of the file by its code, and the state of each map.
 expect 0 "$relief" check b.relief
-[ ! -s stderr ] && grep -q '^b.relief: sound$' stdout || die "a sound file: $(cat stdout stderr)"
+[ ! -s stderr ] && grep -q '^b.relief: sound$' stdout || die "a valid file: $(cat stdout stderr)"
 expect 0 "$relief" check b.relief --json
 json stdout 'd["verdict"] == "sound" and d["issues"] == [] and [m["state"] for m in d["maps"]] == ["sound"] * 4'
 "$relief" check - --json <b.relief | cmp <(sed 's/"b.relief"/"standard input"/' stdout) - || die "standard input differs"
@@ -129,12 +129,12 @@ json stdout 'd["errors"] == 2 and [m["state"] for m in d["maps"]] == ["sound", "
 cp b.relief later.relief
 printf '\3' | dd of=later.relief bs=1 seek=12 conv=notrunc status=none
 expect 5 "$relief" check later.relief
-grep -q 'RLF-1003, .*version 3\..*; use a newer Relief$' stderr || die "the cure of a later version: $(cat stderr)"
+grep -q 'RLF-1003, .*version 3\..*; use a newer Relief$' stderr || die "the advice for a newer version: $(cat stderr)"
 
-# Fresh bakes have no issues, not even boxes whose faces lie at the end of their maps.
+# Fresh bakes have no issues, even boxes whose faces are on the border of their maps.
 for options in '--budget 60kB' '--paper --resolution 32' '--map float:size=32 --map fixed8:dir=1/2/3,size=32,compare=greater --map cube:size=16'; do
     # shellcheck disable=SC2086
     "$relief" bake "$models/OBJ/box.obj" -o other.relief -q $options 2>/dev/null
     expect 0 "$relief" check other.relief
-    ! grep RLF stdout || die "a box is suspicious: $options"
+    ! grep RLF stdout || die "a box has issues: $options"
 done

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Ninja and Make read the depfiles: a second build does nothing, and a change of any file that a mesh refers to bakes it again.
-# cmake_package.sh shows CMake.
+# Ninja and Make read the depfiles: a second build does nothing, and a change of any file that the mesh references bakes
+# it again. cmake_package.sh covers CMake.
 . "$(dirname "$0")/lib.sh"
 
 # The mesh is a glTF tetrahedron with a buffer file, in a folder whose name needs every escape.
@@ -37,7 +37,7 @@ expect_error 2 'missing' "$relief" bake missing.obj -o m.relief --depfile m.d
 expect_error 1 'depfile' "$relief" bake "$odd/m.gltf" -o - --depfile m.d
 expect_error 1 'two outputs' "$relief" bake "$odd/m.gltf" -o m.relief --depfile m.relief
 
-# follows BUILD IDLE: BUILD bakes at first, then says IDLE, and bakes again when a file that it refers to changes.
+# follows BUILD IDLE: BUILD bakes first, then prints IDLE, and bakes again after each change of a dependency.
 follows() {
     local build=$1 idle=$2 changed
     for changed in '' "$odd/m.gltf" "$odd/buffer.bin" rocks/r.mtl rocks/r1.obj r.toml new; do
@@ -48,11 +48,11 @@ follows() {
             *) touch "$changed" ;;
         esac
         expect 0 bash -c "$build"
-        ! grep -q "$idle" stdout || die "$build: nothing was done after '$changed' changed"
+        ! grep -q "$idle" stdout || die "$build: no bake after '$changed' changed"
         expect 0 bash -c "$build"
         grep -q "$idle" stdout || die "$build: not idle after '$changed': $(cat stdout)"
     done
-    [ -f r3.relief ] || die "$build: a new file was not noticed"
+    [ -f r3.relief ] || die "$build: a new file was not detected"
     rm -f rocks/r3.obj ./*.relief ./*.d stamp .relief-cache.json
 }
 

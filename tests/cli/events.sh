@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-# relief-sim --events and [[spawn]]: the hits of a run as lines of JSON, and the births that they cause. Unit tests show the closed
-# form of a hit in each API and path, on bodies too, and what a hit makes.
+# relief-sim --events and [[spawn]]: hits as lines of JSON, and the births that they cause. Unit tests cover the closed
+# form of a hit in each API and path, also on bodies, and the effects of a hit.
 . "$(dirname "$0")/lib.sh"
 
 "$relief" bake "$bunny" -o bunny.relief --paper --resolution 64 -q
-# Four drops fall on the ground from 1.25 above it, a second apart, and stay where they touch it.
+# Four drops, a second apart, fall on the ground from 1.25 above it and stay where they touch it.
 cat >drop.toml <<'S'
 [collider]
 file = "bunny.relief"
@@ -41,12 +41,12 @@ for hit in hits:
     assert all(abs(a - b) < 0.005 for a, b in zip(hit['position'], [7 + 0.25 * fall, 0.75, 0.5])), hit
 P
 expect 0 "$relief_sim" drop.toml --events none.jsonl --events-min-speed 5 -q
-[ ! -s none.jsonl ] || die "--events-min-speed leaves slower hits in"
+[ ! -s none.jsonl ] || die "--events-min-speed keeps slower hits"
 expect 0 "$relief_sim" drop.toml --events all.jsonl --events-min-speed 4.5 -q
 cmp all.jsonl hits.jsonl
 
 "$relief_sim" drop.toml --events - 2>text | cmp - hits.jsonl || die "--events - differs"
-grep -q '600 steps' text || die "the summary is not on stderr beside --events -"
+grep -q '600 steps' text || die "the summary is not on stderr with --events -"
 expect_error 1 '--events-min-speed' "$relief_sim" drop.toml --events-min-speed 1
 expect_error 1 '--events' "$relief_sim" drop.toml --events - --json
 expect_error 1 '--check' "$relief_sim" drop.toml --check --events e

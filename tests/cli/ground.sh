@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Height maps: one collider or tiles, the same from every file, and checks against the height map. Unit tests show the
-# error's bound, drops on seams, and which settings and files are refused.
+# Height maps: one collider or tiles, equal for every file format, and checks against the height map. Unit tests cover
+# the error bound, drops on seams, and invalid settings and files.
 . "$(dirname "$0")/lib.sh"
 
 heights() { python3 "$RELIEF_SOURCE/tests/cli/heights.py" "$@"; }
@@ -16,7 +16,7 @@ expect 0 "$relief" check ground.relief
 expect 0 "$relief" info ground.relief
 grep -q -- "with --heights $settings" stdout || die "info: $(cat stdout)"
 
-# Samples are the same from another file and from a recipe.
+# Equal samples in another file or from a recipe give equal ground.
 expect 0 "$relief" bake hills.r16 --heights high=100,low=0 -o raw.relief
 python3 -c "
 import random
@@ -24,21 +24,21 @@ r = random.Random(1)
 print('\n'.join(f'{r.uniform(-1, 131)},{r.uniform(5, 60)},{r.uniform(-1, 131)}' for _ in range(2000)))" >points.csv
 expect 0 "$relief" query ground.relief --points points.csv -o from_png.csv
 expect 0 "$relief" query raw.relief --points points.csv -o from_raw.csv
-cmp from_png.csv from_raw.csv || die "the same samples are other ground"
+cmp from_png.csv from_raw.csv || die "equal samples give different ground"
 printf '%s\n' 'version = 1' '[[asset]]' 'mesh = "hills.png"' 'output = "hills.relief"' "heights = \"$settings\"" >recipe.toml
 expect 0 "$relief" bake --recipe recipe.toml -q
-cmp ground.relief hills.relief || die "a recipe bakes other ground"
+cmp ground.relief hills.relief || die "a recipe gives different ground"
 
-# Tiles, found by whoever reads worlds; a second bake removes what it does not replace.
+# Tiles form a world. A second bake removes files that it does not replace.
 expect 0 "$relief" bake hills.png --heights $settings,tile=64 --world w --json
 json stdout "len(d['tiles']) == 9 and d['output'] == 'w' and d['removed'] == []"
 json w/world.json "d['unit'] == 'm' and [b['node'] for b in d['bodies']][:4] == ['tile 0 0', 'tile 1 0', 'tile 2 0', 'tile 0 1']"
 json w/world.json "d['bodies'][4]['position'] == [64, 0, 64]"
 expect 0 "$relief" check w/world.json
-# The same sides, and the body that decides, which lies in the point's own tile.
+# The tiles give the same sides, decided by the body of the point's own tile.
 expect 0 "$relief" query w/world.json --points points.csv -o world.csv
 expect 0 "$relief" query ground.relief --points points.csv -o plane.csv --distance plane
-python3 - <<'P' || die "a world's points are not those of its ground"
+python3 - <<'P' || die "world and collider differ"
 import csv
 world, ground = (list(csv.DictReader(open(name))) for name in ('world.csv', 'plane.csv'))
 assert len(world) == len(ground) == 2000
@@ -56,20 +56,20 @@ json stdout "len(d['tiles']) == 4 and len(d['removed']) == 9"
 json w/world.json "d['bodies'][3]['position'] == [105, -3, 101]"
 [ "$(find w -type f | wc -l)" -eq 5 ] || die "containers are left over: $(ls w)"
 
-# Against the height map: with the settings that it was baked with, and with others.
+# Checks against the height map, with the settings of the bake and with others.
 expect 0 "$relief" check ground.relief --mesh hills.png --samples 5000 --max-error 1
 grep -q '^ground.relief: ground of hills.png, 130x130 samples' stdout || die "check: $(cat stdout)"
 expect 0 "$relief" check w/world.json --mesh hills.png --json --samples 5000
 json stdout "d['heights'] == 'spacing=1,low=0,high=100,offset=5/-3/1,tile=100' and d['near']['missing'] == d['seams']['missing'] == 0"
 json stdout "0 < d['seams']['error']['max'] < 0.03 and d['seams']['wrong_percent'] < 1 and d['warnings'] == []"
 expect 7 "$relief" check ground.relief --mesh hills.png --heights $settings,offset=0/0.5/0 --samples 5000 --max-error 10
-grep -q 'max-error' stderr || die "a shift passes: $(cat stderr)"
+grep -q 'max-error' stderr || die "a shift is not detected: $(cat stderr)"
 expect 0 "$relief" check ground.relief --mesh hills.r16 --samples 500
 grep -q 'warning: hills.r16 is not the file' stderr || die "another file: $(cat stderr)"
 heights larger.png 140
 expect_error 3 "larger.png" "$relief" check ground.relief --mesh larger.png
 
-# The bake read the file and recorded its settings, so check accepts any file name.
+# The container records the settings, so check accepts any file name.
 for file in c.bil c.bin c.dem c; do
     cp hills.r16 $file
     expect 0 "$relief" bake $file --heights $settings,width=130 -o c.relief
@@ -81,15 +81,15 @@ done
 expect 0 "$relief" bake c.bil --heights $settings,width=130,tile=64 --world cw
 expect 0 "$relief" check cw/world.json --mesh c.bil --samples 500
 
-# Cliffs are named, one beside a seam once.
+# Cliffs are reported, and a cliff at a seam only once.
 heights wide.png 130 step65
 expect 0 "$relief" bake wide.png --heights low=0,high=655.35,tile=64 --world wide
-grep -q 'warning: wide.png: 129 squares are steep:' stderr || die "another cliff: $(cat stderr)"
+grep -q 'warning: wide.png: 129 squares are steep:' stderr || die "the cliff: $(cat stderr)"
 
-# Wrong calls and files: one line, and nothing is written.
+# Invalid calls and files: one line, and nothing is written.
 bad() { # CODE PATTERN FILE SETTINGS
     expect_error "$1" "$2" "$relief" bake "$3" --heights "$4" -o bad.relief
-    [ ! -e bad.relief ] || die "a failed bake writes"
+    [ ! -e bad.relief ] || die "a failed bake writes a file"
 }
 bad 1 "spacing" hills.png spacin=1
 head -c 3000 hills.png >cut.png
@@ -97,7 +97,7 @@ bad 3 "cut.png" cut.png low=0,high=1
 expect_error 3 "cut.png" "$relief" check ground.relief --mesh cut.png
 bad 2 "none.png" none.png low=0,high=1
 bad 5 "points.csv" points.csv low=0,high=1
-truncate -s 2000000000 large.raw # 10⁹ samples, which take no room
+truncate -s 2000000000 large.raw # 10⁹ samples; the sparse file uses no space
 bad 6 "large.raw" large.raw low=0,high=1
 rm large.raw
 expect_error 5 "hills.png.*--heights" "$relief" bake hills.png -o bad.relief

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# A worker reads meshes: its limits, its death, its parent's death; units and axes reach the container. Unit tests show what
-# each format may contain.
+# The worker that reads meshes: its limits, its death, and its parent's death. Units and axes reach the container. Unit
+# tests cover the contents of each format.
 . "$(dirname "$0")/lib.sh"
 export TMPDIR="$work/tmp"
 mkdir "$TMPDIR"
@@ -30,8 +30,8 @@ for option in '--import-memory 1kB' '--import-time 0' '--max-triangles 200000000
     expect_error 1 "${option%% *}" "$relief" bake good.stl -o x.relief $option
 done
 
-# Memory: a header of a few bytes may ask for too much, and so may a mesh of honest size, or instances: 90 million triangles
-# in a few kilobytes are refused before there is one of them.
+# Memory: a short header can request too much, and so can large meshes or instances. 90 million triangles in a few
+# kilobytes are rejected before they are created.
 printf '%s\n' ply 'format binary_little_endian 1.0' 'element vertex 99999999999' 'property float x' 'property float y' 'property float z' \
     'element face 1' 'property list uchar int vertex_indices' end_header >count.ply
 expect_error 6 'count\.ply' "$relief" bake count.ply -o x.relief
@@ -62,12 +62,12 @@ expect_error 6 'large\.obj' "$relief" bake large.obj -o x.relief --import-memory
 )
 expect_error 6 'unfold\.dae.*import-(time|memory)' "$relief" bake unfold.dae -o x.relief --import-time 2
 
-filters() { # PID: what /proc gives of its system call filters
+filters() { # PID: the system call filters according to /proc
     grep -s '^Seccomp' "/proc/$1/status"
 }
 
-# start ARGUMENT…: bakes unfold.dae in the background; sets $parent and its $worker, which is stopped at once. Both are
-# slower than this script on a busy machine: the worker must not reach its limit of memory before.
+# start ARGUMENT…: bakes unfold.dae in the background, sets $parent and $worker, and stops the worker at once. On a busy
+# machine the worker must not reach its memory limit before.
 start() {
     nice -n 19 "$relief" bake unfold.dae --import-memory 8000000000 -o x.relief "$@" >"$work/stdout" 2>"$work/stderr" </dev/null &
     parent=$!
@@ -75,7 +75,7 @@ start() {
     for _ in $(seq 500); do
         worker=$(cat "/proc/$parent/task/$parent/children" 2>/dev/null || true)
         worker=${worker%% *}
-        # In its sandbox it has begun: a worker that dies before is begun again.
+        # It is in its sandbox: a worker that dies earlier is restarted.
         [ -z "$worker" ] || [ "$(filters "$worker")" = "$(filters self)" ] || break
         sleep 0.01
     done
@@ -91,7 +91,7 @@ ends() { # CODE PATTERN
 
 start --import-time 2
 ends 6 'import-time'
-gone "$worker" || die "a worker outlived its time"
+gone "$worker" || die "a worker outlived its time limit"
 start
 kill -KILL "$worker"
 ends 4 'SIGKILL'
@@ -105,5 +105,5 @@ wait "$parent" || true
 kill -CONT "$worker" 2>/dev/null || true
 gone "$worker" || die "a worker outlived its parent"
 
-[ ! -e x.relief ] || die "an output beside an error"
+[ ! -e x.relief ] || die "an output despite an error"
 [ -z "$(ls -A "$TMPDIR")" ] || die "temporary files: $(ls -A "$TMPDIR")"

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-# The import worker killed and failed at its system calls, and its parent short of descriptors, processes and memory: the
-# collider is the same, or one line says what the system says and what helps; the older file stays, and nothing else.
-#   RELIEF_FAULTS_PAGE=FILE  tries every call, not every ninth of the dynamic loader's, and writes what was counted,
-#                            for bake/measure/trust.md
+# The import worker with kills and errors at its system calls, and its parent without descriptors, processes or memory.
+# The collider is the same, or one line gives the system's error and a fix, the existing file is kept, and no other file
+# is left.
+#   RELIEF_FAULTS_PAGE=FILE  tests every call, not every ninth of the dynamic loader, and writes the counts,
+#                           for bake/measure/trust.md
 . "$(dirname "$0")/lib.sh"
 
 command -v strace >/dev/null || die "strace is missing; run scripts/setup.sh"
 strace -o probe.trace true 2>probe.err ||
-    die "strace may not trace here (ptrace is not permitted), and without it nothing is tested: $(head -1 probe.err)"
+    die "strace cannot trace here (ptrace is not permitted), so nothing can be tested: $(head -1 probe.err)"
 mkdir out bin
 cat >mesh.obj <<'M'
 mtllib mesh.mtl
@@ -22,7 +23,7 @@ f 2 3 4
 M
 echo 'newmtl m' >mesh.mtl
 
-# relief takes the worker that lies beside it: here one that strace starts, with $INJECT.
+# relief runs the worker in its own folder: here a script that starts it under strace with $INJECT.
 cp "$relief" bin/relief
 cp "$RELIEF_BIN/relief-import" bin/traced
 cat >bin/relief-import <<'W'
@@ -35,13 +36,13 @@ export TRACE="$work/trace" INJECT=
 bake=(mesh.obj --map fixed8:size=4 -j 1 -q -o)
 "$relief" bake "${bake[@]}" new.relief
 "$relief" bake "${bake[@]}" old.relief --map fixed8:size=8
-! cmp -s old.relief new.relief || die "the older and the new file are the same"
+! cmp -s old.relief new.relief || die "the old and the new file are equal"
 cp old.relief out/a.relief
 bin/relief bake "${bake[@]}" out/a.relief
-cmp out/a.relief new.relief || die "a traced worker gives another file"
+cmp out/a.relief new.relief || die "a traced worker gives a different file"
 
-# The worker's calls as "SYSCALL N PART", N counted for each thread as strace's when= does. A call that two threads make
-# for the same time is listed once, as the first's. PART: the dynamic loader's, or the worker's own.
+# The worker's calls as "SYSCALL N PART". N counts per thread, as strace's when= does. Calls that two threads make with
+# equal N are listed once, as the first thread's. PART is `loader` for the dynamic loader or `own`.
 python3 - "$([ -n "${RELIEF_FAULTS_PAGE:-}" ] && echo 1 || echo 9)" >calls <<'P'
 import re, sys
 step = int(sys.argv[1])
@@ -52,7 +53,7 @@ for line in open('trace'):
         continue
     key = match[1], match[2]
     seen[key] = seen.get(key, 0) + 1
-    # The first that the worker itself does is to look at the mesh.
+    # The worker's first own call accesses the mesh.
     own = own or (match[2] in ('fstat', 'newfstatat') and line.split('(')[1].startswith('3,') and 'memfd' not in line and
                   'st_size=%d,' % __import__('os').path.getsize('mesh.obj') in line)
     call = match[2], seen[key]
@@ -65,16 +66,16 @@ P
 for name in mmap prctl prlimit64 landlock_restrict_self seccomp openat2 fallocate ftruncate fcntl exit_group; do
     grep -q "^$name .* own$" calls || die "the trace of the worker shows no $name: $(cat calls)"
 done
-grep -q 'loader$' calls || die "the trace shows nothing of the dynamic loader"
+grep -q 'loader$' calls || die "the trace shows no call of the dynamic loader"
 
-# ends WHAT: what is there after a bake is whole, and alone.
+# ends WHAT: the bake leaves exactly one complete file.
 ends() {
     [ "$(ls -A out)" = a.relief ] || die "$1 leaves $(ls -A out)"
     [ ! -e /proc/"$(head -1 trace | cut -d' ' -f1)" ] || die "$1 leaves a worker"
     if [ "$code" -eq 0 ]; then
-        cmp -s out/a.relief new.relief || die "$1: success with another collider"
+        cmp -s out/a.relief new.relief || die "$1: success with a different collider"
     else
-        cmp -s out/a.relief old.relief || die "$1: exit code $code, and the older file is gone"
+        cmp -s out/a.relief old.relief || die "$1: exit code $code, and the old file is gone"
         [ "$(wc -l <stderr)" -eq 1 ] && grep -q "^relief: error: .*'mesh\.obj'.*;" stderr || die "$1 is not named: $(cat stderr)"
     fi
 }
@@ -108,9 +109,9 @@ while read -r name number part; do
     for errno in $list; do
         cp old.relief out/a.relief
         code=0
-        # The call that is made instead is one that the sandbox allows.
+        # Replaces the call with one that the sandbox allows.
         INJECT="$name:error=$errno:syscall=getpid:when=$number" bin/relief bake "${bake[@]}" out/a.relief 2>stderr || code=$?
-        grep -q INJECTED trace || continue # this time the call was not made so often
+        grep -q INJECTED trace || continue # the call was made fewer times in this run
         ends "$errno at the worker's $name $number"
         errors=$((errors + 1))
         case $code in
@@ -120,8 +121,8 @@ while read -r name number part; do
         esac
     done
 done <calls
-# An interrupted call goes on; an error is named, the loader's troubles too.
-! grep -q '^fallocate EINTR own' reported || die "an interruption is an error: $(grep '^fallocate EINTR' reported)"
+# Interrupted calls are repeated. Errors are named, also those of the loader.
+! grep -q '^fallocate EINTR own' reported || die "an interrupted call is an error: $(grep '^fallocate EINTR' reported)"
 for what in 'mmap ENOMEM loader.*libraries cannot be loaded.*ulimit -n' 'fallocate ENOSPC own.*No space left' \
     'ftruncate EIO own.*could not continue .*Input/output error' 'prlimit64 EPERM own.*cannot (limit|lower).*Operation not permitted' \
     'seccomp ENOMEM own.*system calls.*Cannot allocate' 'landlock_restrict_self E2BIG own.*enter Landlock'; do
@@ -130,7 +131,7 @@ done
 
 # --- the parent ---
 
-# parent WANTED PATTERN INJECTION…: the parent's own calls; the worker is not traced.
+# parent WANTED PATTERN INJECTION…: injects into the parent's calls; the worker is not traced.
 parent() {
     local wanted=$1 pattern=$2 code=0 options=()
     shift 2
@@ -143,13 +144,13 @@ parent() {
     [ "$code" -eq "$wanted" ] && { [ "$wanted" -eq 0 ] || grep -qE "$pattern" stderr; } || die "$*: exit code $code: $(cat stderr)"
     [ "$code" -ne 0 ] || endured=$((endured + 1))
 }
-# An interrupted call goes on.
+# Interrupted calls are repeated.
 for injection in fallocate:error=EINTR poll:error=ENOMEM poll:error=EINTR; do
     grep -q "^${injection%%:*}(" trace 2>/dev/null || strace -o trace "$relief" bake "${bake[@]}" out/a.relief
     grep -q "^${injection%%:*}(" trace || continue
     parent 0 '' "$injection:when=1"
 done
-# A shortage is named.
+# Shortages are named.
 strace -o trace "$relief" bake "${bake[@]}" out/a.relief
 clone=$(grep -oE '^(clone3|clone|vfork)' trace | head -1)
 parent 4 'importer could not be started \(Resource temporarily unavailable\); .*end processes.*ulimit.*-u' \
@@ -159,22 +160,22 @@ parent 4 'importer could not be started \(Too many open files\); close files.*ul
 parent 4 'importer could not be started \(Too many open files in system\); close files' memfd_create:error=ENFILE
 parent 4 'importer could not be started \(No space left on device\); .*free memory' fallocate:error=ENOSPC
 
-# With few descriptors; without a tracer, which needs some itself.
+# Few descriptors, without a tracer, which needs some itself.
 few=0
 for ((limit = 4; limit < 200; ++limit)); do
     cp old.relief out/a.relief
     code=0
     (ulimit -n "$limit" && exec "$relief" bake "${bake[@]}" out/a.relief) 2>stderr || code=$?
     [ "$code" -ne 0 ] || break
-    # The parent's own loader has its own words, and not ours.
+    # The parent's own loader prints its own messages.
     ! grep -q 'error while loading shared libraries' stderr || continue
     ends "$limit descriptors"
     grep -q 'ulimit -n' stderr || die "$limit descriptors: $(cat stderr)"
     few=$((few + 1))
 done
 [ "$code" -eq 0 ] && [ "$few" -ge 3 ] || die "with $limit descriptors: $code, $few refused: $(cat stderr)"
-cmp out/a.relief new.relief || die "few descriptors give another file"
-# Few processes: nobody's limit, for root has none.
+cmp out/a.relief new.relief || die "few descriptors give a different file"
+# Few processes, as an unprivileged user: root has no limit.
 if setpriv --reuid=65534 --regid=65534 --clear-groups true 2>/dev/null; then
     chmod -R a+rwX .
     chmod a+x "$work"
@@ -185,7 +186,7 @@ if setpriv --reuid=65534 --regid=65534 --clear-groups true 2>/dev/null; then
     [ "$code" -eq 4 ] && grep -q 'ulimit.*-u' stderr || die "no processes: exit code $code: $(cat stderr)"
 fi
 
-# A worker that lies about an image: one line.
+# A worker that returns a false image: one line.
 python3 "$RELIEF_SOURCE/tests/cli/heights.py" hills.png 33
 cat >bin/relief-import <<'W'
 #!/usr/bin/env bash

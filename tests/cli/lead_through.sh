@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# samples/in_….md, as a newcomer follows them: files are what the pages say, and their commands run in order, with what is
-# installed. No page is longer than a screen.
+# Follows samples/in_….md with the installed files: files are written as shown, and commands run in order. No page is
+# longer than a screen.
 . "$(dirname "$0")/lib.sh"
 
 cmake --install "$RELIEF_BIN/.." --prefix "$work/prefix" >log || die "cannot install: $(tail log)"
@@ -10,14 +10,14 @@ PYTHONPATH=$(find "$work/prefix" -type d -name dist-packages)
 LD_LIBRARY_PATH=$(dirname "$(find "$work/prefix" -name 'librelief.so')")
 export PKG_CONFIG_PATH PYTHONPATH LD_LIBRARY_PATH
 
-# follow PAGE: writes its files and runs its commands, in a folder of its own.
+# follow PAGE: writes its files and runs its commands in a separate folder
 follow() {
     local page=$RELIEF_SOURCE/samples/$1
     [ "$(wc -l <"$page")" -le 60 ] || die "$1 is longer than a screen"
     mkdir -p "$1.d/meshes"
     cp "$bunny" "$1.d/"
     cp "$bunny" "$1.d/meshes/"
-    python3 - "$page" "$1.d" <<'P' || die "$1 has no commands"
+    python3 - "$page" "$1.d" <<'P' || die "$1 contains no commands"
 import pathlib, re, sys
 text, folder = pathlib.Path(sys.argv[1]).read_text(), pathlib.Path(sys.argv[2])
 commands = ''
@@ -30,7 +30,7 @@ for name, language, block in re.findall(r'(?:<!-- file: (\S+) -->\n)?```(\w*)\n(
 assert commands
 (folder / 'commands.sh').write_text('set -e\n' + commands)
 P
-    # Debian's python, for which the package is built.
+    # Debian's Python, for which the package is built.
     (cd "$1.d" && PATH=$(dirname /usr/bin/python3):$PATH bash commands.sh >../log 2>&1) || die "$1: $(tail -20 log)"
 }
 
@@ -59,15 +59,15 @@ C
 # shellcheck disable=SC2046
 cc -std=c99 engine.c in_your_engine.md.d/snow.o -o engine $(pkg-config --cflags --libs relief egl)
 ./engine 2>said || die "the engine's page fails: $(cat said)"
-grep -q 'no such file' said || die "an error is not told: $(cat said)"
+grep -q 'no such file' said || die "an error is not printed: $(cat said)"
 
 follow in_your_build.md
 [ "$(find in_your_build.md.d/baked -name '*.relief')" = in_your_build.md.d/baked/meshes/bunny.relief ] || die "the recipe baked $(find in_your_build.md.d)"
-cmp in_your_build.md.d/baked/meshes/bunny.relief in_your_build.md.d/out/baked/meshes/bunny.relief || die "CMake bakes other bytes"
+cmp in_your_build.md.d/baked/meshes/bunny.relief in_your_build.md.d/out/baked/meshes/bunny.relief || die "CMake gives different bytes"
 
 if [ "$RELIEF_PYTHON$RELIEF_OPENVDB" = ONON ]; then
     follow in_python_and_blender.md
-    grep -qE '^[0-9.]+ % wrong, worst at' log && grep -qE '^[0-9.]+% of the box is inside$' log || die "bunny.py says: $(cat log)"
+    grep -qE '^[0-9.]+ % wrong, worst at' log && grep -qE '^[0-9.]+% of the box is inside$' log || die "bunny.py prints: $(cat log)"
     [ "$(find in_python_and_blender.md.d/frames -name '*.ply' | wc -l)" = 3 ] && [ -s in_python_and_blender.md.d/bunny.vdb ] ||
         die "no frames: $(find in_python_and_blender.md.d)"
 fi

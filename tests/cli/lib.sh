@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Sourced by every test of this folder: a scratch folder, and what a test may expect.
+# Sourced by every test in this folder: a temporary folder and common checks.
 set -euo pipefail
 
 relief="$RELIEF_BIN/relief"
@@ -27,42 +27,42 @@ expect() {
     }
 }
 
-# expect_error CODE PATTERN COMMAND…: as expect; and there is exactly one line on stderr, it starts with the
-# program's name, matches PATTERN (extended, any case), and nothing is on stdout.
+# expect_error CODE PATTERN COMMAND…: like expect. In addition stdout is empty, and stderr is one line that starts with
+# the program's name and matches PATTERN (extended, any case).
 expect_error() {
     local code=$1 pattern=$2
     shift 2
     expect "$code" "$@"
     [ "$(wc -l <"$work/stderr")" -eq 1 ] || {
         cat "$work/stderr" >&2
-        die "not one line of error: $*"
+        die "not one line on stderr: $*"
     }
-    grep -qE '^relief(-sim|-pages)?: error: ' "$work/stderr" || die "error without the program's name: $(cat "$work/stderr")"
+    grep -qE '^relief(-sim|-pages)?: error: ' "$work/stderr" || die "the error lacks the program's name: $(cat "$work/stderr")"
     grep -qiE -- "$pattern" "$work/stderr" || die "'$(cat "$work/stderr")' does not match '$pattern'"
-    [ ! -s "$work/stdout" ] || die "output on stdout beside an error: $*"
+    [ ! -s "$work/stdout" ] || die "output on stdout despite an error: $*"
 }
 
-# page_place: where pages of `relief view` have their data; a player with no more than that.
+# page_place: prints the line of the page template that contains the data.
 page_place() {
     grep '^<script type="application/json"' "$RELIEF_SOURCE/runtime/web/view/index.html"
 }
 
-# gone PID: waits until neither the process nor one of its group runs; fails if one still does after a while.
+# gone PID: waits until the process and its group have ended; fails after a while.
 gone() {
     python3 "$RELIEF_SOURCE/tests/cli/processes.py" "$1"
 }
 
-# COMMAND | matches PATTERN…: as grep -q, but reads to the end, so that COMMAND never fails by SIGPIPE.
+# COMMAND | matches PATTERN…: like grep -q, but reads to the end, so that COMMAND never fails by SIGPIPE.
 matches() {
     grep "$@" >/dev/null
 }
 
-# tetrahedron FILE [SIZE]: at the origin, as OBJ.
+# tetrahedron FILE [SIZE]: an OBJ at the origin.
 tetrahedron() {
     printf 'v 0 0 0\nv %s 0 0\nv 0 %s 0\nv 0 0 %s\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n' "${2:-1}" "${2:-1}" "${2:-1}" >"$1"
 }
 
-# box FILE X Y Z: from (-X, -Y, -Z) to (X, Y, Z), as OBJ of six squares; the first is the side of -Z.
+# box FILE X Y Z: an OBJ from (-X, -Y, -Z) to (X, Y, Z) of six squares; the first is the side -Z.
 box() {
     {
         printf "v %s %s %s\n" "-$2" "-$3" "-$4" "$2" "-$3" "-$4" "$2" "$3" "-$4" "-$2" "$3" "-$4" \
@@ -71,7 +71,8 @@ box() {
     } >"$1"
 }
 
-# unfold FILE: a COLLADA document whose nodes each stand for two of the next: 2⁴⁰ in all, which the importer begins to unfold.
+# unfold FILE: a COLLADA document in which each node instances the next one twice: 2⁴⁰ nodes, which the importer starts
+# to expand.
 unfold() {
     python3 - "$1" <<'P'
 import sys
@@ -84,7 +85,7 @@ open(sys.argv[1], 'w').write(
 P
 }
 
-# random_points FILE: 10,000 points in and about the bunny.
+# random_points FILE: 10,000 points in and around the bunny.
 random_points() {
     python3 - "$1" <<'P'
 import random, sys
@@ -95,9 +96,9 @@ with open(sys.argv[1], 'w') as out:
 P
 }
 
-# json FILE EXPRESSION: evaluates a Python expression over the document `d`; must be true.
+# json FILE EXPRESSION: a Python expression over the document `d` that must be true.
 json() {
-    python3 - "$1" "$2" <<'P' || die "not true of $1: $2"
+    python3 - "$1" "$2" <<'P' || die "not true for $1: $2"
 import json, math, sys
 d = json.load(open(sys.argv[1]))
 sys.exit(0 if eval(sys.argv[2]) else 1)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# The report of `relief bake` on broken meshes, --strict and --repair, and what it loses, by each part's own size. Unit tests
-# show the faults, the repairs and the accuracy of parts.
+# The report of `relief bake` on broken meshes, --strict and --repair, and lost parts, judged at their own size. Unit
+# tests cover faults, repairs and the accuracy of parts.
 . "$(dirname "$0")/lib.sh"
 
 python3 - <<'P'
@@ -30,7 +30,7 @@ def save(name, boxes):
         first += 8
     open(name, 'w').write('\n'.join(lines) + '\n')
 
-# A slab of 5 km with nine pillars of 2 x 9 x 2: by area the pillars are nothing. And a part astray.
+# A slab of 5 km with nine pillars of 2 x 9 x 2, whose area is negligible, and an outlier part.
 save('slab.obj', [((-2500, -10, -2500), (2500, 0, 2500), 'slab')] +
      [((x, 0.5, z), (x + 2, 9.5, z + 2), f'pillar_{x}_{z}') for x in (-2000, 0, 2000) for z in (-2000, 0, 2000)])
 for name, far in ('stray.obj', 1e3), ('lost.obj', 1e9):
@@ -38,7 +38,7 @@ for name, far in ('stray.obj', 1e3), ('lost.obj', 1e9):
 P
 small=(--paper --resolution 32)
 
-# A sound mesh has one line, and --strict accepts it; a hole is counted, and --strict refuses it.
+# A closed mesh has one line, and --strict accepts it. A hole is counted, and --strict rejects it.
 expect 0 "$relief" bake ball.obj -o ball.relief "${small[@]}" --strict
 grep -q '^mesh: a closed solid; 1 component$' stderr || die "the report: $(cat stderr)"
 expect 0 "$relief" bake holed.obj -o holed.relief "${small[@]}" -v
@@ -46,25 +46,26 @@ grep -q '^mesh: 7 boundary edges; 1 component, 0 closed$' stderr && grep -q '  f
 expect_error 3 'holed\.obj: .*7 boundary edges' "$relief" bake holed.obj -o strict.relief "${small[@]}" --strict
 [ ! -e strict.relief ] || die "--strict wrote a collider"
 
-# Turned triangles do not change the maps.
+# Reversed triangles do not change the maps.
 expect 0 "$relief" bake turned.obj -o turned.relief "${small[@]}" --json
 json stdout "d['turned_triangles'] == 86 and d['repair'] is None"
 "$relief" export ball.relief -o a -q
 "$relief" export turned.relief -o b -q
-diff -r a b || die "a mesh with turned triangles bakes to other maps"
+diff -r a b || die "reversed triangles change the maps"
 
-# A wrap is a solid, is recorded, and has the same bytes each time.
+# A wrap is a solid, is recorded, and is deterministic.
 expect 0 "$relief" bake holed.obj -o wrap.relief "${small[@]}" --repair wrap=0.1 --strict --json
 json stdout "d['repair']['method'] == 'wrap=0.1' and d['repair']['mesh_health']['solid'] and d['mesh_health']['boundary_edges'] == 7"
 json stdout "d['provenance']['options'].endswith(' --repair wrap=0.1') and d['provenance']['mesh_name'] == 'holed.obj'"
 expect 0 "$relief" bake holed.obj -o again.relief "${small[@]}" --repair wrap=0.1 -j 1 -q
-cmp wrap.relief again.relief || die "two wraps of the same mesh differ"
+cmp wrap.relief again.relief || die "two wraps of one mesh differ"
 for repair in warp wrap=2; do expect_error 1 'repair' "$relief" bake ball.obj -o x.relief --repair $repair; done
 
-# Lost parts are named, and the advised bytes lose fewer; --max-error fails for them, and --detail tells which count.
+# Lost parts are named, and the suggested budget loses fewer. --max-error fails because of them, and --detail selects
+# which count.
 expect 0 "$relief" bake slab.obj -o slab.relief --unit m --json
 json stdout 'd["parts"]["lost"] == 9 and d["parts"]["worst"][0]["node"].startswith("pillar") and d["wrong_percent"] < 1'
-grep -qE "slab\.obj: 9 of 10 parts are lost, the largest pillar_.*--budget [0-9.]+MB" stderr || die "the bake does not name what it loses: $(cat stderr)"
+grep -qE "slab\.obj: 9 of 10 parts are lost, the largest pillar_.*--budget [0-9.]+MB" stderr || die "the bake does not name the lost parts: $(cat stderr)"
 budget=$(grep -oE -- '--budget [0-9.]+MB' stderr)
 # shellcheck disable=SC2086
 expect 0 "$relief" bake slab.obj -o more.relief --unit m --json $budget
@@ -72,16 +73,16 @@ json stdout 'd["parts"]["lost"] < 5'
 expect 7 "$relief" check slab.relief --mesh slab.obj --unit m --samples 20000 --max-error 2 --json
 json stdout 'd["verdict"]["grade"] == "poor" and d["verdict"]["lost_parts"] == 9 and d["verdict"]["wrong_percent"] < 1'
 json stdout 'len(d["parts"]["groups"]) == 10 and all(p["size"] == 9 and p["state"] == "lost" for p in d["parts"]["worst"][:9])'
-grep -q -- '--detail' stderr || die "no cure: $(cat stderr)"
+grep -q -- '--detail' stderr || die "no advice: $(cat stderr)"
 expect 0 "$relief" check slab.relief --mesh slab.obj --unit m --samples 20000 --max-error 2 --detail 10 --json
 json stdout 'd["verdict"]["grade"] == "good" and d["parts"]["minor"] == 9 and d["passed"]'
 json stdout 'd["verdict"]["ignored_parts"]["lost"] == 9 and "; 9 of 10 parts, at most 9 m long, are not represented" in d["verdict"]["text"]'
 
-# A part astray is named, and so is what no map sees because of it.
+# An outlier part is named, and so are the parts that no map sees because of it.
 expect 0 "$relief" bake stray.obj -o stray.relief --budget 64kB
-grep -q 'stray\.obj: helper ' stderr || die "no word of the stray: $(cat stderr)"
+grep -q 'stray\.obj: helper ' stderr || die "the outlier is not named: $(cat stderr)"
 expect_error 4 'lost\.obj: helper ' "$relief" bake lost.obj -o stray.relief --budget 64kB
-# A sheet thinner than a part is long is a warning.
+# A thickness too large for a part gives a warning.
 printf '%s\n' 'v 0 0 0' 'v 10 0 0' 'v 10 0 10' 'v 0 0 10' 'v 4 3 0' 'v 4.2 3 0' 'v 4.2 3 0.2' 'v 4 3 0.2' 'g floor' 'f 1 2 3 4' 'g leaf' 'f 5 6 7 8' >sheets.obj
 expect 0 "$relief" bake sheets.obj -o thick.relief --thickness 0.1 --budget 1MB
-grep -q 'sheets\.obj: .*leaf' stderr || die "no word of the leaf: $(cat stderr)"
+grep -q 'sheets\.obj: .*leaf' stderr || die "the leaf is not named: $(cat stderr)"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# --as NAME=KIND on command lines and in recipes: the container remembers it, a check rebuilds the same solid, and queries answer
-# by it. Unit tests show names in each format and what each kind makes.
+# --as NAME=KIND on command lines and in recipes: the container records it, a check rebuilds the same solid, and queries
+# reflect it. Unit tests cover names in each format and the solid of each kind.
 . "$(dirname "$0")/lib.sh"
 
 cat >meshes.py <<'P'
@@ -18,14 +18,14 @@ sides = [(name, []) for name in FACES if name != '+y']
 open('two.obj', 'w').write('\n'.join(
     box(0, ['g tub left', 'usemtl wood'], sides, 1) +
     box(4, ['o garden house', 'usemtl wood'], sides + [('+y', [])], 9)) + '\n')
-# A box whose lid is of another material, and shares its edges.
+# A box whose lid has another material and shares its edges.
 for name, glass in (('car', 'glass'), ('odd', 'Fenster = "vorn" $x;\'é')):
     open(name + '.obj', 'w').write('\n'.join(box(0, ['g car', 'usemtl paint'], sides + [('+y', ['usemtl ' + glass])], 1)) + '\n')
 open('points.csv', 'w').write('x,y,z\n0,0,0\n4,0,0\n0.2,1.05,0.3\n0.2,-1.02,0.3\n')
 P
 python3 meshes.py
 
-# bakes MESH COUNTS OPTIONS…: so many solids, solids with holes, sheets and terrains.
+# bakes MESH COUNTS OPTIONS…: COUNTS are solids, solids with holes, sheets and terrains.
 bakes() {
     expect 0 "$relief" bake "$1" -o out.relief --budget 60kB --no-check --json "${@:3}"
     cp stdout report.json
@@ -33,10 +33,10 @@ bakes() {
 }
 fields() { # EXPRESSION over the fields f of the points
     expect 0 "$relief" query out.relief --points points.csv -o field.csv
-    python3 -c "import csv, sys; f = [float(row['f']) for row in csv.DictReader(open('field.csv'))]; sys.exit(not ($1))" || die "not $1: $(cat field.csv)"
+    python3 -c "import csv, sys; f = [float(row['f']) for row in csv.DictReader(open('field.csv'))]; sys.exit(not ($1))" || die "false: $1: $(cat field.csv)"
 }
 
-# Two groups, each as it is told; the check finds the same, and queries answer by it.
+# Two groups of different kinds. The check and queries agree.
 bakes two.obj '1, 0, 1, 0'
 cp out.relief plain.relief
 bakes two.obj '0, 1, 1, 0' --as tub=solid --as garden=shell --thickness 0.2
@@ -51,29 +51,29 @@ expect_error 3 "renamed\.obj.*'tub'" "$relief" check two.relief --mesh renamed.o
 bakes two.obj '0, 0, 2, 0' --as garden=auto --as wood=shell
 grep -q 'warning: two.obj: --as garden=auto' stderr || die "no warning: $(cat stderr)"
 
-# A name that changes nothing changes no texel; without one, not even a byte.
+# A name without effect changes no texel. Without names not even a byte changes.
 bakes two.obj '1, 0, 1, 0' --as tub=auto --as garden=solid
 "$relief" export plain.relief --gpu plain -q && "$relief" export out.relief --gpu same -q
-diff -r plain same || die "names that state what is so anyway change the texels"
+diff -r plain same || die "names without effect change the texels"
 bakes two.obj '1, 0, 1, 0' --as auto
 cmp plain.relief out.relief || die "--as auto is not the default"
 
-# A material that shares its edges is a part of its own.
+# A material that shares edges is a separate part.
 bakes car.obj '0, 1, 1, 0' --as glass=shell --as paint=solid --thickness 0.2
 fields 'f[0] < 0 and f[2] < 0 < f[3]'
 expect 0 "$relief" check out.relief --mesh car.obj --samples 2000 --max-error 3
 
-# Names as artists give them reach the container, the check and the commands that it advises.
+# Artists' names reach the container, the check and its suggested commands.
 odd="Fenster = \"vorn\" \$x;'é=shell"
 expect 0 "$relief" bake odd.obj -o rough.relief --budget 10kB --no-check --as "$odd"
 expect 0 "$relief" check rough.relief --mesh odd.obj --samples 2000 --json
-python3 - "$odd" <<'P' || die "the advised commands lack the name: $(cat stdout)"
+python3 - "$odd" <<'P' || die "the suggested commands lack the name: $(cat stdout)"
 import json, shlex, sys
 d = json.load(open('stdout'))
 sys.exit(0 if d['mesh']['shape']['sheets'] == 2 and d['advice'] and all(sys.argv[1] in shlex.split(a['command']) for a in d['advice']) else 1)
 P
 
-# Names and kinds that do not exist, or that contradict each other.
+# Unknown or contradictory names and kinds.
 while read -r pattern options; do
     # shellcheck disable=SC2086
     expect_error 1 "$pattern" "$relief" bake two.obj -o x.relief $options
@@ -88,11 +88,11 @@ two\.obj.*'tob'.*'tub' --as tob=solid
 O
 [ ! -e x.relief ] || die "an error left a file"
 
-# Recipes: a string or a list; a change bakes again.
+# Recipes: a string or a list. A change bakes again.
 printf '%s\n' 'version = 1' '[defaults]' 'output = "{stem}.baked.relief"' 'budget = "60kB"' 'no-check = true' 'as = "shell"' '[[asset]]' \
     'mesh = "two.obj"' 'as = ["tub=solid", "garden=shell"]' 'thickness = 0.2' '[[asset]]' 'mesh = "car.obj"' >r.toml
 expect 0 "$relief" bake --recipe r.toml -q
-cmp two.relief two.baked.relief || die "a recipe bakes other bytes than its options"
+cmp two.relief two.baked.relief || die "recipe and command line give different bytes"
 sed -i 's/tub=solid/tub=shell/' r.toml
 expect 0 "$relief" bake --recipe r.toml -q --json
 json stdout "[a['state'] for a in d['assets']] == ['baked', 'up to date']"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# No tool writes over what it reads, nor two outputs into one file: by the same name, a symbolic link, or a hard one. The
-# combinations are drawn by tests/cases/overwrite_cases.py; this script has those that need a shell or several runs.
+# No tool overwrites its inputs or writes two outputs to one file, whether by name, symbolic link or hard link.
+# tests/cases/overwrite_cases.py draws combinations; this script covers those that need a shell or several runs.
 . "$(dirname "$0")/lib.sh"
 
 page_place >stub.html
@@ -19,16 +19,16 @@ printf '%s\n' '[collider]' 'file = "box.relief"' '[time]' 'steps = 4' '[[type]]'
     'atlas = "frames/frame_0002.png"' 'size = [16, 16]' 'every = 2' >scene.toml
 printf 'version = 1\n[[asset]]\nmesh = "box.obj"\noutput = "{stem}.new.relief"\nmap = "cube:size=16"\n' >r.toml
 sha256sum box.* points.csv atlas.png scene.toml r.toml frames/frame_0002.png >before
-kept() { # PATTERN COMMAND…: refused as a usage error, and no file has changed
+kept() { # PATTERN COMMAND…: fails with a usage error, and no file changes
     expect_error 1 "$@"
-    sha256sum --quiet -c before || die "an input is lost: $*"
+    sha256sum --quiet -c before || die "an input was overwritten: $*"
 }
 
 # A frame is an input only if its number is written.
 kept "frame_0002\.png' is the input" "$relief_sim" scene.toml --first-frame 0 --frames frames
 expect 0 "$relief_sim" scene.toml --frames frames -q
 
-# Every file of a scene is an input, also one that this run does not read: a mesh of pictures, a finer or coarser container.
+# Every file of a scene is an input, even if this run does not read it: meshes of pictures, finer or coarser containers.
 mkdir meshes
 cp box.obj meshes/stored
 ln -s stored meshes/box.obj
@@ -39,7 +39,7 @@ for output in meshes/box.obj meshes/stored; do
     kept "'$output' is the input" "$relief_sim" pictured.toml --steps 1 --events $output
 done
 
-# A bake owns the folder of a world: its containers, up to date or not there yet, and its caches.
+# A bake owns the folder of a world: its containers, present or not, and its caches.
 python3 "$RELIEF_SOURCE/tests/cli/heights.py" hills.png 33
 printf '%s\n' 'version = 1' '[[asset]]' 'mesh = "box.obj"' 'output = "recipe/world.json"' 'budget = "20kB"' >world.toml
 level=("$relief" bake box.obj --world level --budget 20kB)
@@ -59,34 +59,34 @@ kept "and --stamp would both write 'recipe.symbolic', which is '.*recipe/.*relie
 kept "'box.obj' and --events would both write" "${recipe[@]}" --events "$(echo recipe/*.relief)"
 kept "and --depfile would both write" "${level[@]}" --depfile level/.relief-curves.json
 
-# A refused run makes no folder.
+# A rejected run creates no folder.
 expect_error 2 'makes a folder there' "$relief" bake box.obj --world fresh/sub --budget 20kB --depfile fresh
 expect_error 2 'makes a folder there' "$relief" bake --recipe world.toml -o fresh/sub --stamp fresh
 expect_error 2 'does not exist' "$relief" bake box.obj --world fresh/sub --budget 20kB --depfile missing/d
 expect_error 2 "missing.obj': No such file or directory; check the path\$" "$relief" bake missing.obj --world fresh/sub
 expect_error 2 'missing.png' "$relief" bake missing.png --heights low=0,high=1 --world fresh
-[ ! -e fresh ] || die "a refused run has made a folder"
+[ ! -e fresh ] || die "a rejected run created a folder"
 expect 0 "$relief" bake box.obj --world fresh/sub --budget 20kB --depfile fresh/d -q
 
-# A page of a world, and the report beside a page.
+# A page of a world, and the report next to a page.
 kept "is the input" "$relief" view level/world.json -o "$(echo level/*.relief)"
 kept "the report and --html would both write" "$relief" check box.relief --mesh box.obj --html /dev/stdout
 
-# Standard input and output are files as well.
+# Standard input and output are files, too.
 kept "'points.csv' is the input standard input" sh -c "'$relief' query box.relief --points - -o points.csv <points.csv"
 code=0
 "$relief_sim" scene.toml --events shared >shared 2>stderr </dev/null || code=$?
 [ "$code" -eq 1 ] && grep -q 'the report' stderr || die "the report and --events share a file: $code, $(cat stderr)"
 
-# A recipe: what its meshes refer to, in every shard; its cache, which is no recipe and no link.
+# A recipe: dependencies of its meshes, in every shard; its cache, which is neither a recipe nor a link.
 for shard in 1/2 2/2; do kept "'box.obj' is the input" "$relief" bake --recipe r.toml --stamp box.obj --shard $shard; done
 cp r.toml .relief-cache.json
 kept "recipe.s cache" "$relief" bake --recipe .relief-cache.json
-cmp r.toml .relief-cache.json || die "a recipe is lost to its cache"
+cmp r.toml .relief-cache.json || die "the cache overwrote the recipe"
 rm .relief-cache.json
 mkdir elsewhere
 echo precious >elsewhere/precious
 ln -s elsewhere/precious .relief-cache.json
 expect 0 "$relief" bake --recipe r.toml
-grep -q 'not a regular file' stderr || die "a cache that is a link: $(cat stderr)"
+grep -q 'not a regular file' stderr || die "a link as cache: $(cat stderr)"
 [ "$(cat elsewhere/precious)" = precious ] && [ ! -L .relief-cache.json ] || die "the cache follows a link"

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-# samples/own_engine: a loader in C without Relief's library, compiled as its page says. It answers as `relief query`
-# does for every format; what it lets fall comes to lie on the surface. The example of LAYOUT.md is what the tool writes.
+# samples/own_engine: a loader in C without Relief's library, compiled as its page shows. Its results equal those of
+# `relief query` for every format, and its particles come to rest on the surface. The example of LAYOUT.md matches the
+# tool's output.
 . "$(dirname "$0")/lib.sh"
 
 sample=$RELIEF_SOURCE/samples/own_engine
 cp "$sample"/*.c .
 [ "$(wc -l <minimal.c)" -le 80 ] || die "minimal.c has more than 80 lines"
 sed -n 's/^ *\(cc -std.*\)/\1/p' "$sample/README.md" | while read -r command; do
-    sh -c "$command -Wall -Wextra -Wpedantic -Werror" || die "it does not compile as its page says: $command"
+    sh -c "$command -Wall -Wextra -Wpedantic -Werror" || die "it does not compile as its page shows: $command"
 done
 
 random_points points.csv
@@ -71,7 +72,7 @@ f 4 1 5 8
 O
 "$relief" bake box.obj -q -o box.relief --map front-back:dir=-z,size=6x4
 "$relief" export box.relief --gpu box -q
-python3 - "$RELIEF_SOURCE/runtime/layout/LAYOUT.md" <<'P' || die "the example of LAYOUT.md is another"
+python3 - "$RELIEF_SOURCE/runtime/layout/LAYOUT.md" <<'P' || die "the example of LAYOUT.md differs"
 import itertools, json, struct, sys
 block = open('box/block.bin', 'rb').read()
 said = json.load(open('box/gpu.json'))
@@ -101,6 +102,6 @@ for is_, should in zip(lines, example):
 sys.exit(lines != example)
 P
 
-# What it refuses.
-"$relief" export box.relief 2>message && die 'export wrote nothing, and said nothing'
-grep -q 'add -o DIR, --gpu DIR' message || die "$(cat message)"
+# Rejected inputs.
+"$relief" export box.relief 2>message && die 'export wrote and printed nothing'
+grep -q 'give a folder with -o or --gpu' message || die "$(cat message)"

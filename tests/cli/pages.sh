@@ -1,21 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-# Manual pages: formatters accept them, and each has every option of its --help. Help is short and grouped. bash completes
-# verbs, options and values.
+# Manual pages made from --help: formatters accept them, and they list every option. bash completes verbs, options and
+# values.
 . "$(dirname "$0")/lib.sh"
 
 python3 "$RELIEF_SOURCE/scripts/install/pages.py" pages "$relief" "$relief_sim"
 cp pages/*.1 .
-# The build makes the same pages, to be installed.
-diff -r pages "$RELIEF_BIN/../install/pages" || die "the build has other pages"
+# The build creates the same pages for installation.
+diff -r pages "$RELIEF_BIN/../install/pages" || die "the pages of the build differ"
 completion=$(realpath "$(dirname "$0")/../../scripts/install/completion.bash")
 for tool in relief relief-sim; do
-    # The installed programs do not make pages.
+    # The installed programs do not create pages.
     expect 1 "$RELIEF_BIN/$tool" --dump-cli man
 done
 mapfile -t verbs < <("$relief" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z]*\) .*/\1/p')
 [ ${#verbs[@]} -ge 6 ] || die "verbs: ${verbs[*]}"
 
-# Every option of --help.
+# Every option that --help lists.
 for page in relief relief-sim "${verbs[@]/#/relief-}"; do
     case $page in
     relief | relief-sim) command=("$RELIEF_BIN/$page") ;;
@@ -46,17 +46,17 @@ for page in *.1; do
         [ ! -s warnings ] || die "$formatter $page: $(cat warnings)"
         [ "$(wc -l <text)" -gt 20 ] || die "$formatter $page prints nothing"
     done
-    # Pages have no date: the same sources give the same bytes.
-    ! mandoc -Tlint -Wwarning "$page" | grep -v 'missing date' || die "mandoc finds fault with $page"
+    # Pages have no date: equal sources give equal bytes.
+    ! mandoc -Tlint -Wwarning "$page" | grep -v 'missing date' || die "mandoc reports warnings for $page"
     man -l "$page" | matches -E '^EXIT STATUS' || die "$page has no exit status"
 done
 man -l relief-bake.1 | col -b | matches 'relief bake bunny.obj$' || die "no example in relief-bake(1)"
 
-# bash. The completion asks the programs.
+# bash: the completion runs the programs.
 PATH=$RELIEF_BIN:$PATH
 touch a.relief b.toml && mkdir folder
 cat >complete.bash <<'B'
-# complete.bash COMPLETION WORD…: what the last word would be completed to.
+# complete.bash COMPLETION WORD…: prints the completions of the last word.
 source "$1"
 shift
 COMP_WORDS=("$@")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Recipes: what is baked and what is not, and one bad asset among good ones. Unit tests show what a recipe may contain and
-# which changes count.
+# Recipes: which assets are baked, and one bad asset among good ones. Unit tests cover the contents of recipes and the
+# changes that count.
 . "$(dirname "$0")/lib.sh"
 
 mkdir -p in/rocks/deep
@@ -24,7 +24,7 @@ cp -r in pristine
 events() { python3 -c "import json,sys; print(*[json.loads(l)['event'] for l in open(sys.argv[1])])" "$1"; } # their names
 hashes() { (cd "$1" && find . -name '*.relief' | sort | xargs sha256sum); }
 
-# A dry run writes nothing; a run bakes everything; the second does nothing and reports that.
+# A dry run writes nothing. A run bakes everything, and a second run reports that nothing changed.
 expect 0 "$relief" bake --recipe in/r.toml --dry-run
 grep -q 'baked/d.relief.*rocks/deep/d.obj.*new' stdout || die "the dry run gives no reason: $(cat stdout)"
 [ ! -e in/baked ] || die "a dry run wrote something"
@@ -36,15 +36,15 @@ grep -q '5 assets: 5 baked;' stderr || die "no summary: $(cat stderr)"
 [ "$(events events.jsonl | tr ' ' '\n' | sort | uniq -c | xargs)" = '5 done 1 start 5 started 1 summary' ] || die "events: $(events events.jsonl)"
 [ "$(ls -A in/baked)" = "$(printf '%s\n' d.relief hill.relief r1.relief r2.relief r3.relief)" ] || die "files: $(ls -A in/baked)"
 "$relief" bake in/rocks/r1.obj -o alone.relief --map cube:size=32 -q
-cmp alone.relief in/baked/r1.relief || die "a recipe bakes other bytes than its options alone"
+cmp alone.relief in/baked/r1.relief || die "recipe and command line give different bytes"
 hashes in >first
 expect 0 "$relief" bake --recipe in/r.toml --events -
 [ "$(events stdout)" = "start skipped skipped skipped skipped skipped summary" ] || die "events: $(cat stdout)"
-[ "$(cat stderr)" = "5 assets up to date" ] || die "the second run does not report that: $(cat stderr)"
+[ "$(cat stderr)" = "5 assets up to date" ] || die "the second run reports something else: $(cat stderr)"
 
-rebakes() { # NAMES…: a run bakes these and nothing else
+rebakes() { # NAMES…: a run bakes exactly these assets
     expect 0 "$relief" bake --recipe in/r.toml --json -q
-    [ ! -s stderr ] || die "-q is not quiet"
+    [ ! -s stderr ] || die "-q prints output"
     json stdout "sorted(a['asset'] for a in d['assets'] if a['state'] == 'baked') == sorted('baked/%s.relief' % n for n in '$*'.split())"
 }
 touch in/rocks/*.obj in/r.toml
@@ -58,9 +58,9 @@ sed -i 's/compress = 3/compress = 4/' in/r.toml
 rebakes r1 hill
 echo '{' >in/.relief-cache.json
 expect 0 "$relief" bake --recipe in/r.toml
-grep -q 'warning: .*\.relief-cache\.json' stderr && grep -q '5 baked' stderr || die "a cache that is none: $(cat stderr)"
+grep -q 'warning: .*\.relief-cache\.json' stderr && grep -q '5 baked' stderr || die "an invalid cache: $(cat stderr)"
 
-# An asset with a damaged mesh fails: it is named, its older output stays, and the others are baked.
+# An asset with a damaged mesh fails: it is named, its existing output is kept, and the others are baked.
 cp in/baked/r1.relief older.relief
 rm -r in && cp -r pristine in
 mkdir in/baked
@@ -69,14 +69,15 @@ printf 'v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n' >in/rocks/r2.obj
 expect 3 "$relief" bake --recipe in/r.toml --events e.jsonl -j 2
 grep -q 'error: baked/r2.relief: .*r2\.obj' stderr && grep -q "error: 1 of 5 assets failed, first 'baked/r2.relief'" stderr ||
     die "the failed asset is not named: $(cat stderr)"
-cmp in/baked/r2.relief older.relief || die "an older output was touched"
+cmp in/baked/r2.relief older.relief || die "an existing output was changed"
 grep '"event":"failed"' e.jsonl >failed.json
 json failed.json "d['code'] == 3 and 'r2.obj' in d['error'] and d['asset'] == 'baked/r2.relief'"
 cp pristine/rocks/r2.obj in/rocks/
 rebakes r2
-hashes in | cmp - first || die "mended, it gives other bytes"
+hashes in | cmp - first || die "the fixed asset gives different bytes"
 
-# The error of each collider, also of one that is up to date; of a world that of its worst; null where none was measured.
+# The error of each collider, even if it is up to date. A world has that of its worst collider; without a measurement it
+# is null.
 printf '%s\n' 'version = 1' '[[asset]]' 'mesh = "hill.obj"' 'output = "a.relief"' 'budget = "20kB"' '[[asset]]' 'mesh = "hill.obj"' \
     'output = "b.relief"' 'map = "cube:size=16"' '[[asset]]' 'mesh = "hill.obj"' 'output = "w/world.json"' 'budget = "20kB"' >in/wrong.toml
 for state in baked 'up to date'; do
@@ -86,13 +87,13 @@ for state in baked 'up to date'; do
     [ "$state" != baked ] || grep -qE '/3\] a.relief: baked, .* % wrong, ' stderr || die "no error in progress: $(cat stderr)"
 done
 
-# A bake that takes too long is ended, and the exit code says "limit".
+# A bake that exceeds its time is stopped, and the exit code means a limit.
 printf '%s\n' 'version = 1' '[[asset]]' "mesh = \"bunny.obj\"" 'output = "late.relief"' 'budget = "16MB"' 'time-limit = 0.2' >late.toml
 cp "$bunny" bunny.obj
 expect 6 "$relief" bake --recipe late.toml
 grep -q 'late.relief: .*--time-limit' stderr || die "the limit is not named: $(cat stderr)"
 
-# Errors in a recipe have their place, and nothing is baked; options that go with no recipe, or only with one.
+# Errors in a recipe have a position, and nothing is baked. Also options that conflict with recipes or require one.
 printf '%s\n' 'version = 1' '[[asset]]' 'mesh = "hill.obj"' 'output = "h.relief"' 'budgte = 1' >in/wrong.toml
 expect_error 3 "wrong\.toml:5:1: .*'budget'" "$relief" bake --recipe in/wrong.toml -o wrong_out
 [ ! -e wrong_out ] || die "something was written for a wrong recipe"

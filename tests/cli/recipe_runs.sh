@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Runs of recipes as processes: crashes, shards, signals, readers that go away; keys for other caches; the pages' examples.
+# Recipe runs as processes: crashes, shards, signals and closed pipes; keys for external caches; the examples of pages.
 . "$(dirname "$0")/lib.sh"
 
 mkdir in
@@ -7,7 +7,7 @@ for i in 1 2 3 4 5; do tetrahedron "in/r$i.obj" "$i"; done
 printf '%s\n' 'version = 1' '[[asset]]' 'mesh = "r?.obj"' 'output = "{stem}.relief"' 'map = "cube:size=32"' >in/r.toml
 hashes() { (cd "$1" && find . -name '*.relief' | sort | xargs sha256sum); }
 
-# One bake at a time, and four shards at once into one folder, give the same bytes.
+# One bake at a time and four concurrent shards in one folder give the same bytes.
 expect 0 "$relief" bake --recipe in/r.toml -o alone -j 1
 hashes alone >first
 jobs=()
@@ -19,9 +19,9 @@ for job in "${jobs[@]}"; do wait "$job" || die "a shard failed"; done
 hashes shards | cmp - first || die "four shards give other bytes"
 [ "$(cat s1 s2 s3 s4 | grep -c '"event":"done"')" -eq 5 ] || die "shards overlap"
 expect 0 "$relief" bake --recipe in/r.toml -o shards
-[ "$(cat stderr)" = "5 assets up to date" ] || die "the shards' cache is not whole: $(cat stderr)"
+[ "$(cat stderr)" = "5 assets up to date" ] || die "the cache of the shards is incomplete: $(cat stderr)"
 
-# A bake that crashes harms nothing else: the other asset is baked, and no temporary file is left.
+# A crashed bake affects nothing else: the other asset is baked, and no temporary file is left.
 mkdir many
 for i in 0 1 2 3 4; do cp "$bunny" many/b$i.obj; done
 tetrahedron many/a.obj
@@ -38,7 +38,7 @@ budget = "16MB"
 quality = "best"
 T
 sed '/b?.obj/s/b?/b0/' many/m.toml >many/one.toml
-python3 - "$relief" <<'P' || die "a crash is not told as one"
+python3 - "$relief" <<'P' || die "a crash is not reported as one"
 import json, os, signal, subprocess, sys
 run = subprocess.Popen([sys.argv[1], 'bake', '--recipe', 'many/one.toml', '-j', '1', '--events', '-'],
                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -57,9 +57,10 @@ failed = [e for e in events if e['event'] == 'failed']
 assert run.wait() == 4, run.returncode
 assert len(failed) == 1 and failed[0]['code'] == 4 and 'signal 11' in failed[0]['error'], events
 P
-[ -f many/a.relief ] && rm many/a.relief || die "the other asset is not there"
+[ -f many/a.relief ] && rm many/a.relief || die "the other asset is missing"
 
-# An interrupted run ends by the signal within 2 s and leaves no child and no temporary file; what was done stays done.
+# An interrupted run exits by the signal within 2 s and leaves no child and no temporary file. Finished outputs are
+# kept.
 for signal in INT TERM; do
     python3 - "$relief" $signal <<'P' || die "interrupting by SIG$signal failed"
 import json, processes, signal, subprocess, sys, time
@@ -87,12 +88,12 @@ assert rest[-1]['event'] == 'summary' and rest[-1]['signal'] == number, rest
 assert all(processes.gone(int(child), 0.0) for child in children), 'a child is left'
 P
     [ -z "$(find many -name '.relief-*.tmp')" ] || die "a temporary file is left"
-    [ -f many/a.relief ] || die "what was done is gone"
+    [ -f many/a.relief ] || die "finished outputs are gone"
 done
 expect 0 "$relief" bake --recipe many/m.toml --dry-run
-grep -q 'a.relief .*up to date' stdout || die "what was done is not known: $(cat stdout)"
+grep -q 'a.relief .*up to date' stdout || die "finished outputs are not recognised: $(cat stdout)"
 
-# A killed run leaves no child behind; without a reader of its events a run goes on, and reports it.
+# A killed run leaves no child. If the reader of events closes its pipe, the run continues and reports it.
 python3 - "$relief" <<'P' || die "a killed run leaves a child, or a closed pipe ends a run"
 import os, processes, subprocess, sys, time
 run = subprocess.Popen([sys.argv[1], 'bake', '--recipe', 'many/m.toml', '-q'])
@@ -111,7 +112,7 @@ assert run.returncode == 2 and 'cannot write events' in run.stderr, run
 P
 hashes piped | cmp - first || die "not everything was baked behind a closed pipe"
 
-# The page's example and the sample are valid recipes.
+# The example of the page and the sample are valid recipes.
 sed -n '/^```toml$/,/^```$/{//!p}' "$RELIEF_SOURCE/bake/recipe/README.md" >example.toml
 mkdir -p rocks/test halls sample/meshes/rocks
 tetrahedron rocks/a.obj 1
@@ -127,7 +128,8 @@ cp rocks/b.obj sample/meshes/rocks/b_lod1.obj
 expect 0 "$relief" bake --recipe sample/colliders.toml
 [ "$(find sample -name '*.relief')" = sample/colliders/meshes/rocks/a.relief ] || die "the sample bakes $(find sample -name '*.relief')"
 
-# Keys for other caches: known before anything is baked, the same afterwards and elsewhere, and others if anything else is.
+# Keys for external caches are known before the bake, are the same afterwards and in other folders, and change with any
+# input.
 keys() { python3 -c "import json; print(*[a['asset'] + '=' + a.get('key', '') for a in json.load(open('stdout'))['assets']])"; }
 mkdir keys
 tetrahedron keys/t.obj 2
@@ -141,11 +143,11 @@ keys >before
 grep -qE '^m.relief=[0-9a-f]{32} t.relief=[0-9a-f]{32}$' before || die "keys: $(cat before)"
 for _ in baked 'up to date'; do
     expect 0 "$relief" bake --recipe keys/r.toml --json
-    keys | cmp - before || die "the keys are others once baked: $(keys)"
+    keys | cmp - before || die "the bake changes the keys: $(keys)"
 done
-changes() { # WHICH: exactly these assets' keys are others now
+changes() { # WHICH: the keys of exactly these assets change
     expect 0 "$relief" bake --recipe elsewhere/r.toml --dry-run --json
-    [ "$(keys | tr ' ' '\n' | grep -vxFf <(tr ' ' '\n' <before) | cut -d= -f1)" = "$1" ] || die "other keys than that of $1: $(keys)"
+    [ "$(keys | tr ' ' '\n' | grep -vxFf <(tr ' ' '\n' <before) | cut -d= -f1)" = "$1" ] || die "wrong keys change, expected $1: $(keys)"
     cp keys/m.mtl keys/*.obj keys/*.toml elsewhere/
 }
 changes ''

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-# Levels and height maps in recipes: the same bytes as by hand, baked again when a file of theirs or a container changed and
-# never else, whatever else fails; and no output in another's folder. Unit tests show the rules of folders, links and options.
+# Levels and height maps in recipes: the same bytes as separate bakes. They are baked again only if their files or
+# containers change, regardless of other failures, and no output is in another's folder. Unit tests cover the rules for
+# folders, links and options.
 . "$(dirname "$0")/lib.sh"
 
-level() { # FILE.gltf [KEY=VALUE…]: with its buffer in FILE.bin
+level() { # FILE.gltf [KEY=VALUE…]: its buffer is FILE.bin
     python3 "$RELIEF_SOURCE/tests/cli/level.py" "$@"
     python3 - "$1" <<'P'
 import base64, json, pathlib, sys
@@ -21,7 +22,7 @@ tetrahedron in/rock.obj 1
 tetrahedron in/parts/a.obj 2
 tetrahedron in/parts/b.obj 3
 settings=spacing=1,low=0,high=100,tile=64
-# The defaults for single meshes do not apply to levels and height maps.
+# Defaults for single meshes do not apply to levels and height maps.
 cat >in/r.toml <<T
 version = 1
 [defaults]
@@ -45,42 +46,42 @@ output = "folders/{stem}/world.json"
 budget = "100kB"
 T
 baked() { (cd "$1" && find . -type f ! -name .relief-cache.json | sort | xargs sha256sum); }
-# Files that were written anew have other times; their numbers may come again.
+# Rewritten files have new times; inode numbers can be reused.
 numbers() { (cd out && find . -type f ! -name .relief-cache.json | sort | xargs stat -c '%n %i %y'); }
 run() { expect 0 "$relief" bake --recipe in/r.toml -o out --json -q "$@"; }
 keys() { python3 -c "import json; print([(a['asset'], a['key']) for a in json.load(open('stdout'))['assets']])"; }
-rebakes() { # NAMES…: a run bakes these and nothing else
+rebakes() { # NAMES…: a run bakes exactly these assets
     run
     json stdout "[a['asset'] for a in d['assets'] if a['state'] == 'baked'] == '$*'.split()"
 }
-because() { # ASSET REASON: a dry run gives this reason for this asset only, and bakes nothing
+because() { # ASSET REASON: a dry run gives this reason for only this asset, and bakes nothing
     numbers >before
     run --dry-run
     json stdout "[a['asset'] + ' ' + a['reason'] for a in d['assets'] if a['state'] == 'stale'] == ['$1 $2']"
     numbers | cmp - before || die "a dry run writes"
 }
 
-# By hand and by recipes of any -j, the same.
+# Separate bakes and recipes with any -j give the same files.
 "$relief" bake in/rock.obj -o rock.relief --max-error 20 --compress 1 -q
 "$relief" bake in/levels/yard.gltf --world yard --budget 200kB --compress 1 -q
 "$relief" bake in/hills.png --world ground --heights "$settings" --compress 1 -q
 "$relief" bake in/parts --world parts --budget 100kB --compress 1 -q
 run --dry-run
 keys >keys
-[ ! -e out ] || die "a dry run writes something"
+[ ! -e out ] || die "a dry run writes files"
 run -j 4 --stamp stamp --depfile stamp.d --events events.jsonl
 cp stdout report.json
-keys | cmp - keys || die "the keys are others once baked"
-cmp rock.relief out/rock.relief || die "a recipe bakes another rock"
+keys | cmp - keys || die "the bake changes the keys"
+cmp rock.relief out/rock.relief || die "a recipe gives a different rock"
 for pair in yard:levels/yard ground:ground parts:folders/parts; do
-    diff -r -x .relief-cache.json "${pair%:*}" "out/${pair#*:}" || die "a recipe bakes another ${pair%:*}"
+    diff -r -x .relief-cache.json "${pair%:*}" "out/${pair#*:}" || die "a recipe gives a different ${pair%:*}"
 done
 expect 0 "$relief" bake --recipe in/r.toml -o one -j 1
 baked out >first
-baked one | diff first - || die "-j 1 gives other bytes"
+baked one | diff first - || die "-j 1 gives different bytes"
 for file in out/*/world.json out/*/*/world.json; do expect 0 "$relief" check "$file"; done
 
-# The report's containers and bytes are all that was written.
+# The report lists exactly the containers and bytes that were written.
 python3 - <<'P' || die "the report misses files: $(cat report.json)"
 import json, os
 report = json.load(open('report.json'))
@@ -98,18 +99,19 @@ tr -d '\\\n' <stamp.d | tr -s ' ' >depfile
 grep -q '^stamp: in/r.toml in/rock.obj in/levels/yard.gltf in/levels/yard.bin in/hills.png in/parts/a.obj in/parts/b.obj in in/levels in/parts' depfile ||
     die "depfile: $(cat stamp.d)"
 expect 0 "$relief" bake --recipe in/r.toml -o out
-[ "$(cat stderr)" = "4 assets up to date" ] || die "the second run bakes: $(cat stderr)"
+[ "$(cat stderr)" = "4 assets up to date" ] || die "the second run bakes assets: $(cat stderr)"
 
-# A level that was baked by hand is completed.
+# A level from a separate bake is completed.
 mkdir -p hand/levels
 cp -r yard hand/levels/yard
 rm hand/levels/yard/floor-*
 (cd hand && stat -c '%n %i' levels/yard/box-*) >before
 expect 0 "$relief" bake --recipe in/r.toml -o hand -q
-(cd hand && stat -c '%n %i' levels/yard/box-*) | cmp - before || die "what was baked by hand is baked again"
-baked hand | diff first - || die "completed, it is another"
+(cd hand && stat -c '%n %i' levels/yard/box-*) | cmp - before || die "a separate bake is repeated"
+baked hand | diff first - || die "the completed level differs"
 
-# A container, a coarse one, or the world's file that is gone or damaged: that world again, and of a level just what is missing.
+# If a container, a coarse container or the world file is missing or damaged, that world is baked again; for a level,
+# only the missing parts.
 for file in levels/yard/box-*.relief levels/yard/box-coarse-*.relief levels/yard/world.json ground/hills-1-1-*.relief; do
     file=$(cd out && ls $file | head -n 1)
     asset=$(dirname "$file")/world.json
@@ -120,15 +122,15 @@ for file in levels/yard/box-*.relief levels/yard/box-coarse-*.relief levels/yard
     *) because "$asset" "its \\'$(basename "$file")\\' is missing" && anew=3 ;; # a container and its coarse one
     esac
     rebakes "$asset"
-    baked out | diff first - || die "$file is not made good"
+    baked out | diff first - || die "$file is not restored"
     [ "$(numbers | diff before - | grep -c '^>')" = "$anew" ] || die "not $anew files are new: $(numbers | diff before -)"
     printf x >>"out/$file"
     rebakes "$asset"
-    baked out | diff first - || die "$file, damaged, is not made good"
+    baked out | diff first - || die "damaged $file is not restored"
     rebakes ''
 done
 
-# Other inputs: the level only, and no container if just a node moved.
+# Changed inputs: only the level is baked. If only a node moved, no container changes.
 level in/levels/yard.gltf x=3
 because levels/yard/world.json "\\'levels/yard.gltf\\' changed"
 rebakes levels/yard/world.json
@@ -138,33 +140,34 @@ rebakes levels/yard/world.json
 printf '\0' >>in/levels/yard.bin
 because levels/yard/world.json "\\'levels/yard.bin\\' changed"
 rebakes levels/yard/world.json
-baked out | diff first - || die "a byte that nothing refers to changes the level"
+baked out | diff first - || die "an unreferenced byte changes the level"
 tetrahedron in/parts/c.obj 4
 because folders/parts/world.json "\\'parts\\' changed"
 rebakes folders/parts/world.json
 rm in/parts/c.obj
 rebakes folders/parts/world.json
-baked out | diff first - || die "the folder is another again"
+baked out | diff first - || die "the folder changed again"
 
-# A level that fails, or is late, leaves its world and the others.
+# A level that fails or times out keeps its world and the others.
 printf 'v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n' >in/parts/b.obj
 tetrahedron in/rock.obj 1.5
 expect 3 "$relief" bake --recipe in/r.toml -o out
 grep -q "error: folders/parts/world.json: .*b\.obj" stderr || die "the failed level is not named: $(cat stderr)"
-! baked out | diff first - | grep -v rock.relief | grep '^[<>]' || die "a level that fails changes something"
+! baked out | diff first - | grep -v rock.relief | grep '^[<>]' || die "a failed level changes files"
 tetrahedron in/parts/b.obj 3
 tetrahedron in/rock.obj 1
 rebakes rock.relief
 sed 's/^budget = "200kB"/&\ntime-limit = 0.001/' in/r.toml >in/late.toml
 expect 6 "$relief" bake --recipe in/late.toml -o out
 grep -q 'levels/yard/world.json: .*--time-limit' stderr || die "the limit is not named: $(cat stderr)"
-baked out | diff first - || die "a level that is late changes something"
+baked out | diff first - || die "a level that timed out changes files"
 
-# Errors in the recipe have their place; links that lead out are neither read nor written. Unit tests show those of caches.
-fails() { # PATTERN LINE…: of a recipe
+# Errors in a recipe have a position. Links out of the folders are neither read nor written; unit tests cover those of
+# caches.
+fails() { # PATTERN LINE…: lines of a recipe
     printf '%s\n' 'version = 1' '[[asset]]' "${@:2}" >in/wrong.toml
     expect_error 3 "wrong\.toml:$1" "$relief" bake --recipe in/wrong.toml -o linked
-    [ "$(cat secret.relief)" = precious ] || die "a file elsewhere was written"
+    [ "$(cat secret.relief)" = precious ] || die "a file outside the folders was written"
 }
 echo precious >secret.relief
 mkdir -p linked/w
@@ -178,7 +181,7 @@ ln -s ../../secret.obj in/parts/secret.obj
 fails "3:8: .*secret.obj" 'mesh = "parts/"' 'output = "w/world.json"'
 rm in/parts/secret.obj
 
-# The output folder may be a world's; a level's own folder may get its world.
+# A world can be in the output folder, or in its level's own folder.
 sed 's#w/world#world#' <(printf '%s\n' 'version = 1' '[[asset]]' "${yard[@]}") >in/root.toml
 printf '%s\n' 'version = 1' '[[asset]]' 'mesh = "parts/"' 'output = "{dir}/{stem}/world.json"' 'budget = "100kB"' 'compress = 1' >in/own.toml
 for state in baked 'up to date'; do
@@ -187,5 +190,5 @@ for state in baked 'up to date'; do
     expect 0 "$relief" bake --recipe in/own.toml --json -q
     json stdout "[a['state'] for a in d['assets']] == ['$state']"
 done
-diff -r -x .relief-cache.json yard root || die "another level in the output folder"
-diff -r -x '*.obj' -x old parts in/parts || die "another level in its own folder"
+diff -r -x .relief-cache.json yard root || die "the level in the output folder differs"
+diff -r -x '*.obj' -x old parts in/parts || die "the level in its own folder differs"

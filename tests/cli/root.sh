@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# --root DIR: scenes may name files of one folder more than their own, and of no other.
+# --root DIR: scenes can name files in one folder besides their own, and in no other.
 . "$(dirname "$0")/lib.sh"
 
 # assets; scenes; elsewhere
@@ -17,7 +17,7 @@ done
 (cd scenes && expect 0 "$relief_sim" scene.toml --check --root ../assets)
 expect 0 "$relief_sim" scenes/scene.toml --root assets --steps 3
 expect_error 3 "leads out of the scene's folder and of --root 'elsewhere'" "$relief_sim" scenes/scene.toml --check --root elsewhere
-# The own folder stays allowed, a name that only begins like the root's does not, nor a link that leads out of both.
+# The scene's own folder is still allowed. A name that only starts like the root is not, nor is a link out of both.
 cp assets/colliders/box.relief scenes/own.relief
 printf '[collider]\nfile = "own.relief"\n' >scenes/own.toml
 expect 0 "$relief_sim" scenes/own.toml --check --root elsewhere

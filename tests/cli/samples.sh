@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# The samples' scenes with a fortieth of their particles: every scene is valid and plays, pictures show something, and the village
-# and the kitchen, of many nodes and materials, hold what falls on them, by the formulas that they are made from.
+# Sample scenes with a fortieth of their particles: every scene is valid and plays, and pictures are not empty. The
+# closed forms of the village and the kitchen, with many nodes and materials, verify where particles settle.
 . "$(dirname "$0")/lib.sh"
 
 samples=$RELIEF_SOURCE/samples
@@ -23,27 +23,27 @@ python3 "$samples/village.py" .
 "$relief" bake village.glb --world world --budget 2MB --quality fast -q
 "$relief" bake kitchen.gltf -o kitchen.relief --quality fast -q
 
-# Meshes have the same bytes each time.
+# Meshes are deterministic.
 mkdir again
 python3 "$samples/meshes.py" torus again/torus.obj
 for name in walker kitchen; do python3 "$samples/$name.py" again/$name.gltf; done
 python3 "$samples/village.py" again
 for name in torus.obj walker.gltf kitchen.gltf village.glb meshes; do
-    diff -r $name again/$name || die "$name is another each time"
+    diff -r $name again/$name || die "$name is not deterministic"
 done
 
-# Every scene in the folder passes --check, so that none is forgotten.
+# Every scene in the folder passes --check.
 for scene in "$samples"/*.toml; do
     name=$(basename "$scene" .toml)
     cp "$scene" .
     expect 0 "$relief_sim" "$name.toml" --check
-    # rate = 36000.0 -> 900, of those that rain thinly by themselves less
+    # rate = 36000.0 -> 900; sparse scenes are reduced less
     python3 - "$name.toml" <<'P'
 import re, sys
 path = sys.argv[1]
 text = open(path).read()
 share = {'walker': 8, 'wobbling_torus': 10}.get(path[:-5], 40)
-# Of the village's mud few soles are as near as it wants to ground of 2 MB: all of it.
+# The village's mud keeps its rate: at 2 MB few soles are as near the ground as the scene requires.
 full = 1000 if path == 'village.toml' else 0
 text = re.sub(r'(?m)^rate = ([0-9.]+)', lambda m: 'rate = %g' % (float(m[1]) / (share if float(m[1]) >= full else 1)), text)
 text = re.sub(r'(?m)^every = .*', 'every = 100000', text)
@@ -53,7 +53,7 @@ open(path, 'w').write(text)
 P
 done
 
-# Every scene makes a page.
+# Every scene can be written as a page.
 page_place >stub.html
 for scene in "$samples"/*.toml; do
     RELIEF_VIEW_PAGE=stub.html expect 0 "$relief_sim" "$(basename "$scene")" --page page.html
@@ -65,7 +65,7 @@ play() { # NAME STEPS
     json stdout "d['particles']['born'] == d['particles']['alive'] + d['particles']['died']"
     local colors
     colors=$(identify -format '%k' "frames_$1/frame_0000.png")
-    [ "$colors" -gt 200 ] || die "a frame of $1 has $colors colours: it shows nothing"
+    [ "$colors" -gt 200 ] || die "a frame of $1 has $colors colours: it is empty"
 }
 play bunny_in_the_snow 300
 play catherine_wheel 170
@@ -114,7 +114,7 @@ mud = [p[1] for p, kind, _ in drops if kind == 3]
 assert mud and max(mud) < 1, 'from under feet'
 P
 
-# A walker's feet press prints into snow all the way, not only where a picture is drawn of it.
+# A walker's feet leave prints in snow at every step, not only in drawn frames.
 cat >prints.toml <<'T'
 [[collider]]
 file = "walker.relief"

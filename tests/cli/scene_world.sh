@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Worlds in scenes: the same particles as of colliders that are placed by hand, bodies that move, worlds that stream. Unit tests
-# show keys, names and limits.
+# Worlds in scenes: the same particles as with separately placed colliders, moving bodies, and streaming worlds. Unit
+# tests cover keys, names and limits.
 . "$(dirname "$0")/lib.sh"
 
 python3 "$RELIEF_SOURCE/tests/cli/level.py" level.gltf
@@ -35,26 +35,26 @@ keys = '[[collider.key]]\ntime = 0\n[[collider.key]]\ntime = 1\nposition = [-3, 
 ground, first = file[0] + 'position = [0, -0.5, 0]\nrestitution = 0.5\n', file[1] + 'position = [2, 0, 0]\nscale = 2\n'
 second = file[1] + 'position = [-3, 0.25, 0]\nfriction = 0.5\n'
 table = '[[collider]]\n'
-# As many tiles move and are met as one body.
+# The tiles of a node move and collide as one body.
 open('moved.toml', 'w').write('world = "w/tiles.json"\n' + table + 'node = "second"\n' + keys + table +
                               'node = "first"\nposition = [2, 0, 0]\n' + rest)
 open('by_hand.toml', 'w').write(table + second + keys + table + first + table + ground + rest)
 P
 for scene in moved by_hand; do expect 0 "$relief_sim" $scene.toml --dump $scene.ply --events $scene.jsonl --json; done
-cmp moved.ply by_hand.ply || die "other particles than by hand"
-cmp moved.jsonl by_hand.jsonl || die "other hits than by hand"
-[ "$(grep -o '"body":.' moved.jsonl | sort | uniq -c | awk '$1 > 20' | wc -l)" = 3 ] || die "nearly nothing is hit"
+cmp moved.ply by_hand.ply || die "different particles than with placed colliders"
+cmp moved.jsonl by_hand.jsonl || die "different hits than with placed colliders"
+[ "$(grep -o '"body":.' moved.jsonl | sort | uniq -c | awk '$1 > 20' | wc -l)" = 3 ] || die "too few hits"
 expect 0 "$relief_sim" moved.toml --json -q
 json stdout "[c['node'] for c in d['settings']['collider']] == ['second', 'first', 'ground', 'second'] and d['settings']['world'] == 'w/tiles.json'"
 json stdout "d['settings']['collider'][0]['key'][0]['position'] == [-3, 0.25, 0] and d['settings']['collider'][1]['position'] == [2, 0, 0]"
 
-# A world alone: snow falls on it, in pictures too.
+# Only a world: snow falls on it, also in pictures.
 expect 0 "$relief_sim" w/world.json --steps 30 --frames frames --size 64x48 --dump alone.ply --json
 json stdout "len(d['settings']['collider']) == 5 and d['settings']['collider'][2]['angle'] != 0 and d['frames'] == 3"
-[ -s frames/frame_0002.png ] || die "no pictures of a world"
+[ -s frames/frame_0002.png ] || die "a world has no pictures"
 echo 'world = "w/world.json"' >only.toml
 expect 0 "$relief_sim" only.toml --steps 30 --dump only.ply -q
-cmp alone.ply only.ply || die "a scene of a world alone is another scene"
+cmp alone.ply only.ply || die "a scene with only a world differs"
 expect 0 "$relief_sim" w/world.json --check --json
 json stdout "[f['kind'] for f in d['files']] == ['world'] + ['collider'] * 3 and d['bodies'] == 5 and d['files'][0]['file'] == 'w/world.json'"
 expect_error 1 "w/world.json" "$relief_sim" only.toml --dump w/world.json
@@ -65,7 +65,7 @@ expect_error 2 "bad.toml:1:9: " "$relief_sim" bad.toml --check
 mv w/box-* .
 expect_error 2 "w/world.json" "$relief_sim" w/world.json
 
-# A shower moves over nine tiles, a few of which are wanted at a time: if all that is needed is there, the run is the same.
+# A shower moves over nine tiles and needs only a few at a time. If these are loaded, streaming does not change the run.
 python3 "$RELIEF_SOURCE/tests/cli/heights.py" hills.r16 560
 expect 0 "$relief" bake hills.r16 --heights low=0,high=100,tile=256 --world t --json
 json stdout "len(d['tiles']) == 9 and sum(t['coarse'] is not None for t in d['tiles']) == 8"
@@ -81,14 +81,14 @@ scene $'[stream]\nradius = 30\nmemory = 0.65' >little.toml
 for name in all stream little; do
     expect 0 "$relief_sim" $name.toml --dump $name.ply --json
     json stdout "d['warnings'] == []"
-    # The hills are up to 3 m off in coarse tiles.
+    # Coarse tiles of the hills have errors up to 3 m.
     python3 "$RELIEF_SOURCE/tests/cli/heights.py" --below $name.ply 100 $([ $name = little ] && echo 3 || echo 0.05) || die "$name"
 done
-cmp all.ply stream.ply || die "if all that is needed is there, the run is another"
+cmp all.ply stream.ply || die "the run differs although all needed tiles are loaded"
 expect 0 "$relief_sim" little.toml --dump again.ply -q
 cmp little.ply again.ply || die "two runs of one scene differ"
 
-# A missing file is named once; a missing coarse one is an error.
+# A missing file is reported once. A missing coarse file is an error.
 of() { python3 -c "import json; print(json.load(open('t/world.json'))['colliders'][0]$1['file'])"; }
 fine=$(of '') coarse=$(of "['coarse']")
 mv "t/$fine" kept

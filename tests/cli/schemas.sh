@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# The JSON Schemas of the build are valid and closed, and describe everything; real outputs of each verb satisfy
-# them, and documents with anything added, missing or changed do not.
+# The JSON Schemas of the build are valid, closed and complete. Real outputs of each verb satisfy them; documents with
+# additions, omissions or changes do not.
 . "$(dirname "$0")/lib.sh"
 
 cat >validate.py <<'P'
@@ -68,13 +68,13 @@ for entry in sys.argv[2:]:
         assert not validator.is_valid(with_change(document, (), lambda at: at.pop(key))), f'{file} without {key}'
     assert mutations > 4, file
 
-# diff's documents exist only where the verb does.
+# Documents of diff exist only if the verb does.
 missing = set(schemas) - used - ({'diff'} if 'diff:diff.json' not in sys.argv else set())
 assert not missing, f'no output is held against {missing}'
 P
 
 outputs=()
-# made SCHEMA CODE COMMAND…: a document of this schema, from standard output.
+# made SCHEMA CODE COMMAND…: standard output is a document of this schema
 made() {
     local file=out${#outputs[@]}.json
     expect "$2" "${@:3}"
@@ -112,7 +112,7 @@ python3 "$RELIEF_SOURCE/tests/cli/heights.py" heights.png 70
 made ground-bake 0 "$relief" bake heights.png --heights low=0,high=9,tile=64 --world g --json
 made ground-check 0 "$relief" check g/world.json --mesh heights.png --heights low=0,high=99,tile=64 --samples 500 --max-error 100 --json
 
-# A scene with everything in it.
+# A scene with all features.
 python3 -c "import struct; open('flow.raw', 'wb').write(struct.pack('<24f', *range(24)))"
 echo '0,1,0' >points.csv
 cat >scene.toml <<'T'
@@ -142,7 +142,7 @@ spawn = [{ on = "collision" }]
 render = { size = [32, 24], every = 20, sprite = "quad" }
 T
 made sim-report 0 "$relief_sim" scene.toml --steps 40 --frames frames --events hits.jsonl --json
-[ -s hits.jsonl ] || die "nothing was hit"
+[ -s hits.jsonl ] || die "there are no hits"
 made sim-report 0 "$relief_sim" b.relief --steps 2 --json
 made sim-check 0 "$relief_sim" scene.toml --check --json
 echo nonsense >bad.toml
@@ -152,7 +152,7 @@ outputs+=(sim-events:hits.jsonl recipe-events:events.jsonl world:w/world.json)
 "$RELIEF_BIN/relief-generate" --schemas schemas
 python3 validate.py schemas "${outputs[@]}" || die "schemas and outputs differ"
 
-# The schema of scenes, which editors complete them by: every sample satisfies it, and a wrong key or value does not.
+# The schema of scenes, for completion in editors: every sample satisfies it, and a wrong key or value does not.
 python3 - "$RELIEF_SOURCE" <<'P' || die "the schema of scenes and the samples differ"
 import json, pathlib, sys, tomllib
 from jsonschema import Draft202012Validator

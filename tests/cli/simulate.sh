@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# relief-sim from outside: what it needs, --check, and its outputs, which a reader reads that shares no code with it.
+# relief-sim from outside: its dependencies, --check, and its outputs, read by an independent reader.
 . "$(dirname "$0")/lib.sh"
 
 for library in assimp embree CGAL gmp mpfr tbb OpenEXR IlmImf; do
@@ -23,17 +23,17 @@ size = [33, 21]
 every = 10
 S
 
-# --check needs no GPU, display or driver: here any attempt to open a context fails with 5.
+# --check needs no GPU, display or driver: here any attempt to create a context fails with 5.
 no_gl=(env LIBGL_DRIVERS_PATH=/nonexistent __EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent/egl.json)
 expect 5 "${no_gl[@]}" "$relief_sim" scene.toml --steps 1
 expect 0 "${no_gl[@]}" "$relief_sim" scene.toml --check
 [ "$(wc -l <stdout)" -eq 1 ] && [ ! -s stderr ] && grep -q "scene.toml.* 25 steps .*3000 particles.*bunny.relief" stdout ||
-    die "--check does not answer with one line: $(cat stdout stderr)"
+    die "--check does not print one line: $(cat stdout stderr)"
 expect 0 "${no_gl[@]}" "$relief_sim" scene.toml --check --json
 json stdout "d['valid'] is True and d['steps'] == 25 and [f['kind'] for f in d['files']] == ['scene', 'collider']"
 json stdout "all(f['bytes'] == __import__('os').path.getsize(f['file']) for f in d['files'])"
 expect 0 "$relief_sim" scene.toml --check -q
-[ ! -s stdout ] || die "--check -q says something"
+[ ! -s stdout ] || die "--check -q prints output"
 
 mkdir sub
 ln -s "$bunny" sub/link.relief
@@ -52,7 +52,7 @@ check_fails 2 ':4:.*missing\.obj' $'[collider]\nfile = "bunny.relief"\n[render]\
 check_fails 6 '.*67108864' $'[collider]\nfile = "bunny.relief"\n[render]\nsize = [65535, 65535]'
 expect_error 1 '--check' "$relief_sim" scene.toml --check --frames frames
 
-# Dumps of every frame, the final one and the report tell the same story; pictures show something.
+# Frames, the final dump and the report agree, and pictures are not empty.
 expect 0 "$relief_sim" scene.toml --dump-frames dumps --dump final.ply --frames frames --size 160x120 --json --seed 3
 cp stdout report.json
 python3 - <<'P'
@@ -74,21 +74,21 @@ assert len(particles) == last['alive'] == last['born'] - last['died'] > 0
 assert last['died'] > 0 and last['collisions'] >= last['in_contact'] >= 0
 P
 [ "$(identify -format '%wx%h' frames/frame_0001.png)" = 160x120 ] || die "frames are not 160x120"
-[ "$(identify -format '%k' frames/frame_0001.png)" -gt 50 ] || die "a frame of fewer than 50 colours shows nothing"
+[ "$(identify -format '%k' frames/frame_0001.png)" -gt 50 ] || die "a frame has fewer than 50 colours"
 
-# The same seed gives the same run, another seed a different one; compute shaders and the other API run the same scene.
+# Equal seeds give equal runs, different seeds different ones. Compute shaders and the other API play the same scene.
 "$relief_sim" scene.toml --dump - --seed 3 >again.ply 2>text
-cmp again.ply final.ply || die "the same seed gives another run, or --dump - other bytes"
-grep -q '25 steps' text || die "the summary is not on stderr beside --dump -"
+cmp again.ply final.ply || die "the same seed gives a different run, or --dump - different bytes"
+grep -q '25 steps' text || die "the summary is not on stderr with --dump -"
 "$relief_sim" scene.toml --dump other.ply --seed 4 -q
 ! cmp -s other.ply final.ply || die "another seed gives the same run"
 "$relief_sim" scene.toml --path compute --api gles --dump other.ply --seed 3 --json >stdout
 json stdout 'd["path"] == "compute" and d["particles"]["born"] > 0'
-cmp other.ply final.ply || die "compute shaders give another run"
+cmp other.ply final.ply || die "compute shaders give a different run"
 MESA_GL_VERSION_OVERRIDE=3.3 expect_error 5 'OpenGL 4\.3 or OpenGL ES 3\.1' "$relief_sim" scene.toml --path compute
 expect_error 1 '--path' "$relief_sim" scene.toml --check --path compute
 
-# Settings within their ranges that are too much together: one line, and nothing is dumped.
+# Valid settings whose combination is too large: one line, and nothing is dumped.
 printf '[collider]\nfile = "bunny.relief"\nposition = [0.0, 1e9, 0.0]\nscale = 1e6\n' >moved.toml
 expect_error 3 'moved.toml:2:8: ' "$relief_sim" moved.toml
 python3 -c "import struct; open('flow.raw', 'wb').write(struct.pack('<24f', *[1e6] * 24))"
@@ -124,5 +124,5 @@ radius = 1e9
 S
 for api in gl gles; do
     expect_error 4 "lost\.toml:25:1: .*'dust'" "$relief_sim" lost.toml --api "$api" --dump lost.ply -q
-    [ ! -e lost.ply ] || die "a dump beside an error"
+    [ ! -e lost.ply ] || die "a dump despite an error"
 done

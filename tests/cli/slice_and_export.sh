@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-# Slices and exported maps, read back with OpenEXR's own tool.
+# Slices and exported maps, read with OpenEXR's tools.
 . "$(dirname "$0")/lib.sh"
 
 "$relief" bake "$bunny" -o b.relief --paper --resolution 96 -q
 "$relief" slice b.relief --axis z --at center --size 200 -o s.png
-[ "$(identify -format '%m' s.png)" = PNG ] || die "the slice is no PNG"
+[ "$(identify -format '%m' s.png)" = PNG ] || die "the slice is not a PNG"
 
 "$relief" export b.relief -o maps
 [ "$(find maps -name '*.exr' | wc -l)" -eq 9 ] || die "three front-back maps and six faces, not $(ls maps)"
@@ -14,9 +14,9 @@ for word in 'Z,' ZBack N.X N.Y N.Z worldToCamera worldToNDC; do
     grep -q "$word" header || die "$front_back lacks $word: $(cat header)"
 done
 
-# A collider of patches is shown by six views, beside the images of other maps.
+# A collider with patches is exported as six views, besides the images of other maps.
 "$relief" bake "$bunny" -o p.relief --map patches:bytes=20kB --map cube:size=16 -q
-"$relief" info p.relief | grep -qE 'patches +per patch +- +[1-9][0-9]+ patches +[0-9.]+ kB' || die "info does not say how many patches there are: $("$relief" info p.relief)"
+"$relief" info p.relief | grep -qE 'patches +per patch +- +[1-9][0-9]+ patches +[0-9.]+ kB' || die "info does not print the number of patches: $("$relief" info p.relief)"
 "$relief" export p.relief -o patches
 [ "$(find patches -name 'view_[+-][xyz].exr' | wc -l)" -eq 6 ] && [ "$(find patches -type f | wc -l)" -eq 12 ] || die "six views and six faces, not $(ls patches)"
 exrheader patches/view_+x.exr >header
@@ -30,11 +30,11 @@ diff -r small again || die "two exports differ"
 expect_error 1 'resolution has no effect without -o' "$relief" export p.relief --gpu gpu --resolution 40
 expect_error 1 'no patches.*remove --resolution' "$relief" export b.relief -o none --resolution 40
 expect_error 1 '--resolution' "$relief" export p.relief -o none --resolution 5000
-[ ! -e none ] || die "a refused export made a folder"
+[ ! -e none ] || die "a rejected export created a folder"
 ln -s ../p.relief small/view_+z.exr.link && mv small/view_+z.exr.link small/view_+z.exr
 expect_error 1 'view_.z.exr' "$relief" export p.relief -o small
 
-# Distances as numbers, by the extension of the output.
+# Distances as numbers, selected by the extension of the output.
 "$relief" slice p.relief --axis y --size 200 -o d.EXR
 exrheader d.EXR >header
 for word in 'distance, 32-bit floating' 'relief.plane .*"y = ' worldToNDC '(199 '; do
@@ -44,7 +44,7 @@ expect_error 1 'out.jpg. must end in .png or .exr' "$relief" slice p.relief -o o
 cp p.relief p.exr
 expect_error 1 'output' "$relief" slice p.exr -o p.exr
 
-# An exported shader states its licence, is ASCII, and has no constant that it does not use.
+# An exported shader states its licence, is ASCII, and has no unused constants.
 "$relief" export b.relief --gpu gpu
 python3 - <<'P' || die "collider.glsl: $(head -5 gpu/collider.glsl)"
 import re
@@ -55,9 +55,9 @@ unused = [n for n in re.findall(r'(?m)^#define (RELIEF_[A-Z0-9_]+) \S', head) if
 assert not unused, unused
 P
 
-# Every run gives the same bytes.
+# Outputs are deterministic.
 "$relief" slice b.relief --axis z --at center --size 200 -o again.png
 cmp s.png again.png || die "two pictures differ"
 
-# A plane wholly outside also gives a picture.
+# A plane outside the collider also gives a picture.
 "$relief" slice b.relief --axis x --at 1000 --size 32 -o far.png

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-# relief bake --time-limit: ends at the time with one line that says what took it, leaves the older files, nothing half
-# written and no worker; and the line of progress that says the same to people.
+# relief bake --time-limit: stops in time with one line that names the current stage, and leaves the existing files, no
+# incomplete file and no worker. Also the progress line, which shows the stage.
 . "$(dirname "$0")/lib.sh"
 mkdir out
 
-# limited SECONDS ARGUMENT…: bakes into out/a.relief in a process group of its own; sets $code.
+# limited SECONDS ARGUMENT…: bakes into out/a.relief in a separate process group; sets $code
 limited() {
     local seconds=$1
     shift
@@ -17,7 +17,7 @@ limited() {
 "$relief" bake "$bunny" -o new.relief --budget 30kB -q
 "$relief" bake "$bunny" -o old.relief --budget 20kB -q
 old() { cp old.relief out/a.relief && echo old >out/a.d; }
-is() { # old or new: both files are
+is() { # old or new: both files must be
     cmp -s out/a.relief "$1.relief" && [ "$1" = "$(grep -qx old out/a.d && echo old || echo new)" ] && [ "$(ls -A out)" = $'a.d\na.relief' ]
 }
 
@@ -30,15 +30,15 @@ took=$((($(date +%s%N) - start) / 1000000))
 grep -qE "^relief: error: '.*bunny\.obj': the bake did not end within 1 s; it had been [a-z ]+ for [0-9.]+ s; .*--time-limit" stderr ||
     die "the error says: $(cat stderr)"
 [ "$took" -lt 5000 ] || die "it took $took ms"
-is old || die "a bake whose time is up leaves $(ls -lA out)"
+is old || die "a stopped bake leaves $(ls -lA out)"
 
-# An import that would never end; the worker ends too.
+# An import that would never end. The worker ends, too.
 unfold unfold.dae
 limited 0.5 unfold.dae --import-time 600 --import-memory 100GB
 [ "$code" -eq 6 ] && grep -q "unfold\.dae.*within 0\.5 s; it had been reading the mesh" stderr || die "exit code $code: $(cat stderr)"
 is old || die "an import whose time is up leaves $(ls -lA out)"
 
-# At any time: all new or all old.
+# At any time: all files new or all old.
 start=$(date +%s%N)
 "$relief" bake "$bunny" -o timed.relief --budget 30kB -q
 span=$((($(date +%s%N) - start) / 1000000))
@@ -53,16 +53,16 @@ for i in $(seq 12); do
         *) die "after $ms ms: exit code $code: $(cat stderr)" ;;
     esac
 done
-[ "$ended" -ge 3 ] || die "only $ended of 12 limits came in time"
+[ "$ended" -ge 3 ] || die "only $ended of 12 limits stopped the bake"
 
-# Time enough changes nothing.
+# A sufficient limit changes nothing.
 old
 limited 600 "$bunny" --budget 30kB
-[ "$code" -eq 0 ] && is new || die "with time enough: exit code $code: $(cat stderr)"
+[ "$code" -eq 0 ] && is new || die "with enough time: exit code $code: $(cat stderr)"
 
 expect_error 1 'time-limit' "$relief" bake "$bunny" -o x.relief --time-limit=1s
 
-# The line of progress: on a terminal alone, wiped at the end, and not with -q.
+# The progress line: only on a terminal, erased at the end, and not with -q.
 cat >terminal.py <<'P'
 import os, pty, re, sys
 child, terminal = pty.fork()
@@ -85,8 +85,8 @@ assert shown.rfind(' s\x1b[K') <= shown.rfind('\r\x1b[K'), 'the line stays'
 sys.exit(os.waitstatus_to_exitcode(status))
 P
 python3 terminal.py "$relief" bake "$bunny" -o x.relief --max-error 0.5% -j 1 --time-limit 600 >lines || die "on a terminal: $(cat lines)"
-grep -qE "bunny\.obj': searching for the smallest budget, [0-9]+ s" lines || die "the line says: $(head -3 lines)"
+grep -qE "bunny\.obj': searching for the smallest budget, [0-9]+ s" lines || die "the line is: $(head -3 lines)"
 python3 terminal.py "$relief" bake "$bunny" -o x.relief --paper --resolution 1024 -j 1 --quality best >lines || die "on a terminal: $(cat lines)"
-grep -qE "bunny\.obj': baking the maps \[#+\.*\] [0-9]+ %, [0-9]+ s" lines || die "the line says: $(head -3 lines)"
+grep -qE "bunny\.obj': baking the maps \[#+\.*\] [0-9]+ %, [0-9]+ s" lines || die "the line is: $(head -3 lines)"
 python3 terminal.py "$relief" bake "$bunny" -o x.relief --max-error 2% -q >lines || die "on a terminal: $(cat lines)"
 [ ! -s lines ] || [ "$(tr -d '\n' <lines)" = '' ] || die "-q shows $(head -1 lines)"

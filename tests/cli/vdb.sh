@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# OpenVDB: particles of relief-sim as points, and a collider's field as a level set and as a mesh, held against vdb_print and
-# relief query; or, in a build without it, one line that says so.
+# OpenVDB: particles as points, and a collider's field as a level set and a mesh, compared with vdb_print and relief
+# query. A build without OpenVDB prints one line about it.
 . "$(dirname "$0")/lib.sh"
 
 "$relief" bake "$bunny" -o b.relief --budget 100kB -q
@@ -20,20 +20,20 @@ if [ "$RELIEF_OPENVDB" != ON ]; then
     expect_error 5 'no OpenVDB' "$relief" export b.relief --mesh b.ply
     expect_error 5 'no OpenVDB' "$relief_sim" s.toml -q --dump s.vdb
     expect_error 5 'no OpenVDB' "$relief_sim" s.toml -q --dump-frames frames --dump-format vdb
-    [ "$(ls)" = "$(printf 'b.relief\ns.toml\nstderr\nstdout')" ] || die "something was written: $(ls)"
+    [ "$(ls)" = "$(printf 'b.relief\ns.toml\nstderr\nstdout')" ] || die "files were written: $(ls)"
     exit 0
 fi
 
-# The same particles as in PLY, under the names that other tools know.
+# The same particles as in PLY, with the usual attribute names.
 "$relief_sim" s.toml -q --dump s.ply
 "$relief_sim" s.toml -q --dump s.vdb
 "$relief_sim" s.toml -q --dump - --dump-format vdb >again.vdb
-cmp s.vdb again.vdb || die "the same run wrote other bytes"
+cmp s.vdb again.vdb || die "equal runs write different bytes"
 count=$(sed -n 's/^element vertex //p;/end_header/q' s.ply | head -1)
 [ "$count" -gt 1000 ] || die "$count particles"
 vdb_print -l s.vdb >printed
 for words in 'name: particles' ptdataidx32 "points: $count\$"; do
-    grep -q "$words" printed || die "vdb_print says no '$words': $(cat printed)"
+    grep -q "$words" printed || die "vdb_print does not print '$words': $(cat printed)"
 done
 "$relief_sim" s.toml -q --dump-frames frames --dump-format vdb
 [ "$(ls frames | tr '\n' ' ')" = "particles_0000.vdb particles_0001.vdb particles_0002.vdb " ] || die "frames: $(ls frames)"
@@ -44,12 +44,12 @@ expect_error 1 'ply' "$relief_sim" s.toml --dump x --dump-format obj
 expect 0 "$relief" export b.relief --vdb b.vdb --voxels 64
 vdb_print -l b.vdb >printed
 for words in 'Name: surface' 'level set' 'Tree_float'; do
-    grep -q "$words" printed || die "vdb_print says no '$words': $(cat printed)"
+    grep -q "$words" printed || die "vdb_print does not print '$words': $(cat printed)"
 done
 expect 0 "$relief" export b.relief --vdb - --voxels 64
-cmp stdout b.vdb || die "standard output holds another level set"
+cmp stdout b.vdb || die "standard output has a different level set"
 
-# The mesh: closed, and where relief query says that the surface is.
+# The mesh is closed, and its surface matches relief query.
 expect 0 "$relief" export b.relief --mesh b.ply --voxels 96
 python3 - <<'P' >points.csv || die "the mesh is not closed"
 import struct
@@ -70,7 +70,7 @@ for p in points:
     print(','.join(map(repr, p)))
 P
 "$relief" query b.relief --points points.csv -o answers.csv
-python3 - <<'P' || die "the mesh lies elsewhere than the field's surface"
+python3 - <<'P' || die "the mesh does not match the field's surface"
 import csv, statistics
 rows = list(csv.reader(open('answers.csv')))
 distances = sorted(abs(float(row[3])) for row in rows if row[3] and row[0] != 'x')
@@ -82,7 +82,7 @@ expect_error 1 'has no effect without' "$relief" export b.relief -o maps --voxel
 expect_error 1 'voxels' "$relief" export b.relief --vdb x.vdb --voxels 4
 expect_error 1 'output .* is the input' "$relief" export b.relief --vdb b.relief
 expect_error 2 'folder' "$relief" export b.relief --vdb nowhere/x.vdb
-[ ! -e x.vdb ] || die "a refused export left a file"
+[ ! -e x.vdb ] || die "a rejected export left a file"
 mkdir -p both
 expect_error 1 '--mesh and --gpu would both write' "$relief" export b.relief --mesh both/block.bin --gpu both
-[ -z "$(ls both)" ] || die "a refused export has written something"
+[ -z "$(ls both)" ] || die "a rejected export wrote files"

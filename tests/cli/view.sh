@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-# relief view and relief-sim --page: a page that holds everything itself, of colliders, of meshes beside them, of worlds and scenes;
-# and what may be wrong with them. A stub stands for the page of scenes, which needs another build; tests/web looks at the real ones.
+# relief view and relief-sim --page: self-contained pages of colliders, meshes, worlds and scenes, and their errors. A
+# stub replaces the page of scenes, which needs another build; tests/web tests the real pages.
 . "$(dirname "$0")/lib.sh"
 
-# data PAGE: what the page holds, to data.json, and the rest to rest.html; nothing in it is elsewhere.
+# data PAGE: writes the page's data to data.json and the rest to rest.html; fails if the page references external files
 data() {
-    python3 - "$1" <<'P' || die "$1 is no page with data"
+    python3 - "$1" <<'P' || die "$1 is not a page with data"
 import json, re, sys
 before, data, after = re.fullmatch('(.*id="relief-page-data"[^>]*>)(.*?)(</script>.*)', open(sys.argv[1]).read(), re.S).groups()
 assert '<' not in data and '\n' not in data, 'data that could end its script'
@@ -14,30 +14,30 @@ json.dump(json.loads(data), open('data.json', 'w'))
 open('rest.html', 'w').write(before + 'null' + after)
 P
 }
-holds() { # FILE BASE64_EXPRESSION: the bytes in data.json are those of the file
+holds() { # FILE BASE64_EXPRESSION: the bytes in data.json equal those of the file
     json data.json "__import__('base64').b64decode($2, validate=True) == open('$1', 'rb').read()"
 }
 
 "$relief" bake "$bunny" -o b.relief --paper --resolution 48 -q
 
-# The page lies beside the collider, the same in every run. It needs no build of the web: RELIEF_VIEW_PAGE is for scenes.
+# The page is next to the collider and is deterministic. It needs no web build: RELIEF_VIEW_PAGE is for scenes.
 RELIEF_VIEW_PAGE=$work/none.html expect 0 "$relief" view b.relief
-[ ! -s stdout ] && [ ! -s stderr ] || die "it prints something: $(cat stdout stderr)"
+[ ! -s stdout ] && [ ! -s stderr ] || die "it prints output: $(cat stdout stderr)"
 data b.html
 json data.json 'list(d) == ["format", "name", "bytes", "collider", "shows", "mesh", "check", "scene", "files"]'
 json data.json '[d["format"], d["name"]] == [3, "b.relief"] and {d[k] for k in list(d)[4:]} == {None} and not d["collider"]["animated"]'
 json data.json "d['bytes'] == $(stat -c %s b.relief)"
 cp rest.html page.html
 "$relief" view - -o - <b.relief >standard_input.html
-sed 's/"name":"b.relief"/"name":"standard input"/' b.html | cmp - standard_input.html || die "standard input has another page"
+sed 's/"name":"b.relief"/"name":"standard input"/' b.html | cmp - standard_input.html || die "standard input gives a different page"
 
-# It holds what relief export --gpu writes, of each kind of map.
+# It contains the output of relief export --gpu, for each kind of map.
 "$relief" bake "$bunny" -o kinds.relief -q --map float:dir=+x,size=16 --map fixed8:dir=-z,size=16 --map cube:size=8 --map front-back:dir=+y,size=16 --map patches:bytes=10kB
 for collider in b.relief kinds.relief; do
     "$relief" export $collider --gpu gpu -q
     "$relief" view $collider -o page_of.html
     data page_of.html
-    cmp rest.html page.html || die "the page of $collider differs beside its data"
+    cmp rest.html page.html || die "the page of $collider differs outside its data"
     holds gpu/block.bin 'd["collider"]["block"]'
     json data.json 'd["collider"]["glsl"] == open("gpu/collider.glsl").read()'
     for i in 0 1 2; do
@@ -52,7 +52,7 @@ expect 0 "$relief" view b.relief --mesh "$bunny" --samples 5000 --seed 7 -o mesh
 "$relief" check b.relief --mesh "$bunny" --samples 5000 --seed 7 --json >check.json
 "$relief" check b.relief --mesh "$bunny" --samples 5000 --seed 7 >check.txt
 data mesh.html
-python3 - <<'P' || die "the page has another report than relief check"
+python3 - <<'P' || die "the page and relief check have different reports"
 import base64, json, struct
 d, check = json.load(open('data.json')), json.load(open('check.json'))
 c = d['check']
@@ -69,14 +69,14 @@ assert len(corners) == 3 * check['mesh']['triangles'] and max(corners) == len(ve
 assert abs(min(vertices[1::3]) + 1) < 2 and abs(max(vertices[1::3]) - 1) < 2
 P
 
-# Names that would end a script, or are no UTF-8.
+# Names that would end a script, or are not UTF-8.
 for name in '<script><!--.relief' $'\xff.relief'; do
     cp b.relief "$name"
     expect 0 "$relief" view "$name" -o name.html
     data name.html
 done
 
-# A scene, and the files that it names. Of a body that deforms the panel gets maps without a surface.
+# A scene and its files. For a deforming body the panel has maps without a surface.
 printf '%s\n' '<!doctype html>' '<title>stub</title>' "$(page_place)" '<p>the end</p>' >stub.html
 export RELIEF_VIEW_PAGE=$work/stub.html
 mkdir -p scene/sub
@@ -84,9 +84,9 @@ cp b.relief scene/sub/
 printf '0,2,0\n' >scene/points.csv
 printf '%s\n' '[collider]' 'file = "./sub/b.relief"' '[[emitter]]' 'points = "points.csv"' 'direction = [0, -1, 0]' 'speed = 1.0' >scene/s.toml
 expect 0 "$relief_sim" scene/s.toml --page scene/s.html
-[ ! -s stdout ] && [ ! -s stderr ] || die "--page prints something: $(cat stdout stderr)"
+[ ! -s stdout ] && [ ! -s stderr ] || die "--page prints output: $(cat stdout stderr)"
 data scene/s.html
-cmp rest.html stub.html || die "not the stub with data"
+cmp rest.html stub.html || die "the page is not the stub with data"
 holds b.relief 'd["files"]["sub/b.relief"]'
 holds scene/points.csv 'd["files"]["points.csv"]'
 json data.json '[d["collider"], d["shows"], d["name"], len(d["files"])] == [None, "sub/b.relief", "s.toml", 2]'
@@ -130,12 +130,12 @@ refuses 6 'triangles' b.relief --mesh "$bunny" --max-triangles 10 -o errors/o.ht
 printf '[collider]\nfile = "../b.relief"\n' >scene/outside.toml
 pages 3 'outside.toml:2' scene/outside.toml --page errors/o.html
 
-# The page of scenes: the variable first, then the installed one, then the build beside this one.
+# The page of scenes: first the variable, then the installed page, then the adjacent build.
 RELIEF_VIEW_PAGE=$work/none.html pages 2 none.html scene/s.toml --page errors/o.html
 RELIEF_VIEW_PAGE=$work/box.obj pages 3 'scripts/build.sh web' scene/s.toml --page errors/o.html
 cat stub.html stub.html >twice.html
 RELIEF_VIEW_PAGE=$work/twice.html pages 3 'scripts/build.sh web' scene/s.toml --page errors/o.html
-# A player whose data has another format, or of a release before pages stated it.
+# A player whose data has another format or precedes format versions.
 for mark in 's/data-format="/&1/' 's/ data-format="[^"]*"//'; do
     sed "$mark" stub.html >other.html
     RELIEF_VIEW_PAGE=$work/other.html pages 3 'other.html.*scripts/build.sh web' scene/s.toml --page errors/o.html
@@ -145,14 +145,14 @@ cp "$relief" "$relief_sim" "$RELIEF_BIN/relief-import" tree/release/bin/
 unset RELIEF_VIEW_PAGE
 expect_error 5 'scripts/build.sh web' tree/release/bin/relief-sim scene/s.toml --page errors/o.html
 expect 0 tree/release/bin/relief view b.relief -o found.html
-cmp found.html b.html || die "an installed tool makes another page"
+cmp found.html b.html || die "an installed tool writes a different page"
 for place in web/bin release/share/relief; do
     sed "s#stub#$place#" stub.html >tree/$place/view.html
     expect 0 tree/release/bin/relief-sim scene/s.toml --page found.html
     grep -q "<title>$place" found.html || die "the page in $place is not found"
 done
 
-# A world: its text and colliders, and a scene that names it.
+# A world: its text and colliders, and a scene that uses it.
 export RELIEF_VIEW_PAGE=$work/stub.html
 python3 "$RELIEF_SOURCE/tests/cli/level.py" level.gltf
 "$relief" bake level.gltf --world w --budget 60kB --no-check -q

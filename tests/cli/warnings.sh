@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-# A scene that is valid and probably not meant gets a warning with the cure, and one that is meant gets none.
+# A valid scene that is probably unintended gets a warning with advice; an intended one gets none.
 . "$(dirname "$0")/lib.sh"
 
 box wall.obj 2 2 0.1
 "$relief" bake wall.obj -o wall.relief --budget 60kB --no-check -q
 "$relief" bake wall.obj -o metres.relief --budget 60kB --no-check --unit m -q
 
-scene() { # LINE…: what plays against the wall
+scene() { # LINE…: settings of the particles that hit the wall
     printf '[collider]\nfile = "metres.relief"\n' >scene.toml
     printf '%s\n' "$@" >>scene.toml
 }
@@ -14,11 +14,11 @@ still=('velocity_spread = [0.0, 0.0, 0.0]')
 jet=('[forces]' 'gravity = [0.0, -9.81, 0.0]' 'drag = 0.0' '[emitter]' 'point = [0.0, 0.0, 3.0]' 'lifetime = 5.0' "${still[@]}")
 fall=('[emitter]' 'point = [0.0, 100.0, 0.0]' 'velocity = [0.0, 0.0, 0.0]' "${still[@]}")
 
-# warns PATTERN: --check warns so, in one line on standard error and in JSON; with -q not at all. Empty: no warning.
+# warns PATTERN: --check prints this warning as one line on stderr and in JSON, but not with -q. Empty: no warning.
 warns() {
     expect 0 "$relief_sim" scene.toml --check
     [ "$(wc -l <stderr)" -eq "$([ -z "$1" ] && echo 0 || echo 1)" ] || die "warned: $(cat stderr)"
-    [ -z "$1" ] || grep -qE "^relief-sim: warning: $1" stderr || die "not '$1': $(cat stderr)"
+    [ -z "$1" ] || grep -qE "^relief-sim: warning: $1" stderr || die "no warning '$1': $(cat stderr)"
     cp stderr warned
     expect 0 "$relief_sim" scene.toml --check --json
     json stdout "len(d['warnings']) == $(wc -l <warned)"
@@ -26,7 +26,7 @@ warns() {
     [ ! -s stderr ] || die "-q warns: $(cat stderr)"
 }
 
-# Speed times dt, against the wall's thickness: 6 a second is 0.1 a step, 60 is 1.
+# Speed times dt, compared with the wall's thickness: 6 per second is 0.1 per step, 60 is 1.
 scene "${jet[@]}" 'velocity = [0.0, 0.0, -6.0]'
 warns ''
 open=$'[collision]\nsweep = 0.0' # only the ends of a step are tested
@@ -36,19 +36,19 @@ for cure in $'[collision]\nsweep = 0.1' $'[time]\ndt = 0.002' $'[[type]]\ncollid
     scene "${jet[@]}" 'velocity = [0.0, 0.0, -60.0]' "$cure"
     warns ''
 done
-# A scene without the key gets a sweep that holds them.
-behind() { # how many of all are behind the wall after 20 steps
-    "$relief_sim" scene.toml -q --steps 20 --dump out.ply || die 'no run'
+# A scene without the key gets a sweep that stops them.
+behind() { # the number of particles behind the wall after 20 steps
+    "$relief_sim" scene.toml -q --steps 20 --dump out.ply || die 'relief-sim failed'
     PYTHONPATH=$(dirname "$0") python3 -c 'import ply; print(sum(each["z"] < -0.2 for each in ply.read("out.ply")))'
 }
-[ "$(behind)" -gt 0 ] || die 'the test shows nothing: none passes a wall thinner than a step'
+[ "$(behind)" -gt 0 ] || die 'no particle passes a wall thinner than a step, so nothing is tested'
 scene "${jet[@]}" 'velocity = [0.0, 0.0, -60.0]'
 warns ''
-[ "$(behind)" -eq 0 ] || die 'particles pass a wall for which a sweep was chosen'
-# Its 32 pieces end somewhere.
+[ "$(behind)" -eq 0 ] || die 'particles pass a wall despite an automatic sweep'
+# A sweep has at most 32 segments.
 scene "${jet[@]}" 'velocity = [0.0, 0.0, -900.0]'
 warns "at a speed of 900 a step is 0.4[0-9]* long, but 'metres\.relief' is typically 0\.[0-9]* thick: particles may pass through it; set a smaller time\.dt"
-# A fall of 100 m ends at 44 m/s; drag lets it fall no faster than 9.81 / 2.5; at a hundredth of gravity it ends at 4.4 m/s.
+# A fall of 100 m ends at 44 m/s; drag lets it fall no faster than 9.81 / 2.5. At a hundredth of gravity it ends at 4.4 m/s.
 scene '[forces]' 'gravity = [0.0, -9.81, 0.0]' 'drag = 0.0' "${fall[@]}" "$open"
 warns 'at a speed of 44\.3 a step is 0\.738 long'
 scene '[forces]' 'gravity = [0.0, -9.81, 0.0]' "${fall[@]}"
@@ -60,7 +60,7 @@ scene "${jet[@]}" 'velocity = [0.0, 0.0, -60.0]' "$open"
 sed -i 's/^\[collider\]$/[[collider]]/; 2a[[collider]]\nfile = "wall.relief"\nscale = 0.5\nposition = [0.0, 0.0, -5.0]' scene.toml
 warns "at a speed of [0-9.]+ a step is 1[0-9.]* long, but 'wall\.relief' is typically 0\.(09|1|10|11)[0-9]* thick, the thinnest of 2 .*sweep = 0\.0[45]"
 
-# Refused births: known after the run only.
+# Rejected births are known only after the run.
 crowd=('[particles]' 'capacity = 100' '[time]' 'steps = 20' "${jet[@]}" 'velocity = [0.0, 0.0, -1.0]')
 scene "${crowd[@]}" 'rate = 3000.0'
 warns ''

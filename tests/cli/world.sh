@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Levels: each different mesh baked once, only what has changed again, the world file last; and checks of worlds. Unit tests show
-# shares of budgets, tiles, and which world files are refused.
+# Levels: each distinct mesh is baked once, only changes are baked again, and the world file is written last. Also
+# checks of worlds. Unit tests cover budget shares, tiles and invalid world files.
 . "$(dirname "$0")/lib.sh"
 
 level() { python3 "$RELIEF_SOURCE/tests/cli/level.py" "$@"; }
@@ -17,7 +17,7 @@ json w/world.json "d['bodies'][2]['scale'] == 2 and d['bodies'][2]['rotation'] =
 [ "$(tr -d '\\\n' <w.d | tr -s ' ')" = 'w/world.json: level.gltf' ] || die "depfile: $(cat w.d)"
 containers w >first
 
-# The contents, and checks: with the level, and without.
+# The contents, and checks with and without the level.
 expect 0 "$relief" info w/world.json --json
 json stdout "d['file'] == 'w/world.json' and d['unit'] == 'm' and [c['bodies'] for c in d['colliders']] == [1, 3, 1]"
 json stdout "d['bytes'] == sum(__import__('os').path.getsize('w/' + c['file']) for c in d['colliders'])"
@@ -29,17 +29,17 @@ expect 0 "$relief" check w/world.json --mesh level.gltf --max-error 1 --samples 
 json stdout "d['accuracy']['wrong_percent'] < 0.5 and [b['node'] for b in d['accuracy']['bodies']] == ['ground', 'first', 'second', 'third', 'wide']"
 json stdout "len(d['accuracy']['places']) == len(d['accuracy']['worst']) and all(p['cause'] == 'texel' and p['advice'] == '' for p in d['accuracy']['places'])"
 
-# A moved node is wrong where it was and where it is. It changes the world file only.
+# A moved node is wrong at its old and new position. It changes only the world file.
 level level.gltf x=3
 expect 7 "$relief" check w/world.json --mesh level.gltf --samples 5000 --max-error 1
 grep -q 'warning: level.gltf: 1 node ' stderr && grep -qE '^  1 +first' stdout || die "the moved node is not the worst: $(cat stdout stderr)"
 cp w/world.json before.json
 expect 0 "$relief" bake level.gltf --world w --budget 200kB
-grep -q ' 0 baked, 3 up to date' stderr || die "a moved node bakes something: $(cat stderr)"
+grep -q ' 0 baked, 3 up to date' stderr || die "a moved node causes a bake: $(cat stderr)"
 containers w | diff first - || die "a moved node changes a container"
 [ "$(diff before.json w/world.json | grep -c '^>')" -eq 1 ] || die "a moved node changes more than its line"
 
-# A changed mesh changes its containers, and the former ones go. The larger box has a coarse one beside it.
+# A changed mesh replaces its containers. The larger box also has a coarse container.
 level level.gltf x=3 high=1.01
 expect_error 3 "level.gltf.*'box'" "$relief" check w/world.json --mesh level.gltf
 expect 0 "$relief" bake level.gltf --world w --budget 200kB --json
@@ -56,9 +56,9 @@ rm w/box-coarse-*.relief
 expect_error 2 'colliders\[1\]\.coarse' "$relief" check w/world.json
 expect 0 "$relief" bake level.gltf --world w --budget 200kB
 grep -q ' 1 baked, 2 up to date' stderr || die "a coarse container is missing: $(cat stderr)"
-containers w | diff now - || die "baked again, the bytes differ"
+containers w | diff now - || die "a repeated bake gives different bytes"
 
-# If a mesh fails, the world stays. Others' files are never touched.
+# If a mesh fails, the world is kept. Foreign files are never changed.
 echo mine >w/mine.relief
 cp w/world.json before.json
 expect_error 1 "1 of 3 colliders failed.*'box': --thickness" "$relief" bake level.gltf --world w --budget 200kB --as shell --thickness 1.5
@@ -67,7 +67,7 @@ expect 0 "$relief" check w/world.json
 level other.gltf box=0
 expect 0 "$relief" bake other.gltf --world w --budget 60kB --json
 json stdout "len(d['removed']) >= 3 and d['bodies'] == 1"
-[ "$(cat w/mine.relief)" = mine ] || die "a file of somebody else is gone"
+[ "$(cat w/mine.relief)" = mine ] || die "a foreign file is gone"
 
 # A folder is a level of its files.
 mkdir parts
@@ -77,7 +77,7 @@ expect 0 "$relief" bake parts --world of_parts --budget 60kB -q
 json of_parts/world.json "[b['node'] for b in d['bodies']] == ['a.gltf', 'b.gltf']"
 expect 0 "$relief" check of_parts/world.json --mesh parts --samples 1000 --max-error 2 -q
 
-# Options that go with no level, and with none but a level.
+# Options that conflict with levels, or require one.
 expect_error 1 "--max-error" "$relief" bake level.gltf --world v --max-error 1
 expect_error 1 "both name the output" "$relief" bake level.gltf --world v -o x.relief
 expect_error 1 "recipe" "$relief" bake --recipe r.toml --world v
