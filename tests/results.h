@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The value of a Result that must be good, and what the error of one that must fail says.
+// Helpers for Results that must succeed or fail.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -11,16 +11,16 @@
 
 namespace relief {
 
-/// The value of a Result, without which the test cannot go on.
+/// The value of a Result; ends the test on an error.
 template <class T>
 T required(Result<T> result, const char* file = __builtin_FILE(), int line = __builtin_LINE()) {
     if (!result) {
         ADD_FAILURE_AT(file, line) << result.error().message;
     }
-    return std::move(result).value();  // throws: the test ends
+    return std::move(result).value();  // throws, which ends the test
 }
 
-/// Fails with this code and a message of one line that has the words.
+/// Expects an error with this code and a one-line message that contains these words.
 template <class T>
 void expectError(const Result<T>& result, ErrorCode code, std::string_view words = {},
                  const char* file = __builtin_FILE(), int line = __builtin_LINE()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The seeds of generated cases. Those of a usual run are always the same; RELIEF_TEST_SEED makes others.
+// Seeds of generated cases: fixed by default, varied by RELIEF_TEST_SEED.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace relief::test {
 
-/// `usual`, a million further on for each unit of RELIEF_TEST_SEED (0 if it is not set): ranges of seeds do not meet.
+/// `usual` plus a million times RELIEF_TEST_SEED (default 0), so that ranges of seeds do not overlap.
 inline std::uint32_t seedFrom(std::uint32_t usual) {
     const char* const text = std::getenv("RELIEF_TEST_SEED");
     const auto other = static_cast<std::uint32_t>(text == nullptr ? 0UL : std::strtoul(text, nullptr, 10));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A folder of a test's own.
+// A temporary folder for a test.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 
 namespace relief::test {
 
-/// A folder that is gone after the test.
+/// A folder that is deleted after the test.
 class TemporaryFolder {
   public:
     TemporaryFolder() {
@@ -31,7 +31,7 @@ class TemporaryFolder {
     }
 
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-    /// Writes a file of this name; returns its path.
+    /// Writes a file with this name and returns its path.
     std::filesystem::path write(const std::string& name, std::string_view contents) const {
         const std::filesystem::path path = path_ / name;
         std::ofstream(path, std::ios::binary) << contents;

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Meshes that ask for much: of slivers, of walls in layers, and of parts far apart. Each must end within tight limits of memory
-and time, with a result or with a line that names the file and no option that nobody gave. Containers: tests/cli/appetite.sh."""
+"""Expensive meshes: slivers, layered walls, and parts far apart. Each bake must end within tight limits of memory and time, with
+a result or with one line that names the file and only options that were given. For containers, see tests/cli/appetite.sh."""
 
 import math
 
 from cases import Cases
 from solids import BOX_FACES, box_corners, write_obj
 
-SECONDS = 60  # of a machine that others use too
+SECONDS = 60  # generous, for a shared machine
 MEMORY = 1500 << 20
 
 
@@ -41,7 +41,7 @@ def scattered_triangles(cases):
 
 
 def fan(cases):
-    """Slivers about a point: an umbrella, whole or in blades, or the pages of a book."""
+    """Slivers around a point: an umbrella, whole or in separate blades, or the pages of a book."""
     count = cases.random.randint(300, 1500)
     kind = cases.random.choice(("umbrella", "blades", "book"))
     width = 0.6 if kind == "blades" else 1.0
@@ -54,7 +54,7 @@ def fan(cases):
 
 
 def cells(cases):
-    """Walls of a block of cells: those inside once, or twice as those of boxes side by side."""
+    """Walls of a block of cells. Inner walls are single, or double as between adjacent boxes."""
     n = [cases.random.randint(2, 10) for _ in range(3)]
     if cases.random.random() < 0.5:
         mesh = [], []
@@ -80,7 +80,7 @@ def bake(cases, folder):
     positions, faces = make(cases)
     write_obj(folder / "a.obj", positions, faces)
     done = cases.run("relief", "bake", "a.obj", "-o", "a.relief", "--no-check", "-q", cwd=folder, seconds=SECONDS,
-                     memory=MEMORY + (4 << 30))  # the importer's own limit counts as address space
+                     memory=MEMORY + (4 << 30))  # the address space includes the importer's own limit
     if done is None:
         return
     if done.returncode == 0:

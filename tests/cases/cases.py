@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Random cases, as scripts/nightly.sh cases runs them: the frame that the generators beside this file share.
+"""The framework of the random-case generators in this folder, which scripts/nightly.sh cases runs.
 
-A generator is a program, NAME_cases.py BIN [--seed N] [--cases N]. It draws its cases from Cases.random alone, so that
-a seed repeats them, runs the tools in BIN, and calls fail() for each answer that is wrong. Each case has a seed of its own:
---only N repeats one, and leaves its files.
+A generator is a program, NAME_cases.py BIN [--seed N] [--cases N]. It draws its cases only from Cases.random, so a seed
+reproduces them, runs the tools in BIN, and calls fail() for each wrong result. Each case has its own seed: --only N repeats
+one case and keeps its files.
 """
 
 import argparse
@@ -16,12 +16,12 @@ import subprocess
 import sys
 import tempfile
 
-# Exit codes that bake/cli/README.md documents. Anything else, a signal above all, is a crash.
+# Exit codes documented in bake/cli/README.md. Any other code or signal is a crash.
 EXIT_CODES = range(0, 8)
 
 
 class Cases:
-    """Runs a number of cases in a folder of their own, and counts which of them fail."""
+    """Runs a number of cases in temporary folders and records failures."""
 
     def __init__(self, name, default_cases):
         parser = argparse.ArgumentParser(description=f"random cases: {name}")
@@ -37,7 +37,7 @@ class Cases:
         self.case = 0
 
     def each(self):
-        """Yields (number, empty folder) once a case."""
+        """Yields (number, empty folder) for each case."""
         for self.case in range(self.count) if self.only is None else [self.only]:
             self.random = random.Random(f"{self.name} {self.seed} {self.case}")
             if self.only is not None:
@@ -50,13 +50,13 @@ class Cases:
                 yield self.case, pathlib.Path(folder)
 
     def run(self, *command, seconds=60, memory=4 << 30, **keywords):
-        """Runs a tool, command[0] being its name in BIN. A hang, a signal, an undocumented exit code, more than
-        `memory` bytes, or an error without a message of one to three lines is a failure of the case. Returns the
-        subprocess.CompletedProcess, or None after a hang."""
+        """Runs a tool of BIN, named command[0]. The case fails on a hang, a signal, an undocumented exit code, use of more than
+        `memory` bytes, or an error without a message of one to three lines. Returns the subprocess.CompletedProcess, or None after
+        a hang."""
         command = [str(self.bin / command[0]), *map(str, command[1:])]
 
         def limit():
-            if "ASAN_OPTIONS" not in os.environ:  # whose shadow takes terabytes of addresses
+            if "ASAN_OPTIONS" not in os.environ:  # its shadow memory uses terabytes of address space
                 resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
 
         try:
@@ -77,12 +77,12 @@ class Cases:
         return condition
 
     def fail(self, why):
-        """Records that the current case failed; its first reason is kept."""
+        """Records that the current case failed, with its first reason."""
         if self.failures.setdefault(self.case, why) is why:
             print(f"{self.name}: {why}; repeat by: python3 {sys.argv[0]} {self.bin} --seed {self.seed} --only {self.case}",
                   file=sys.stderr)
 
     def finish(self):
-        """Prints the count, and exits with 1 if a case failed."""
+        """Prints the counts; exits with 1 if a case failed."""
         print(f"{self.name}: {self.count - len(self.failures)} passed, {len(self.failures)} failed (seed {self.seed})")
         sys.exit(1 if self.failures else 0)

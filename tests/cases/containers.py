@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Containers by hand (formats/README.md), so that a few kilobytes can hold maps of any size."""
+"""Writes containers (formats/README.md) with maps of any size in a few kilobytes."""
 
 import ctypes
 import struct
@@ -9,7 +9,7 @@ _XXHASH = ctypes.CDLL("libxxhash.so.0")
 _XXHASH.XXH3_64bits.restype = ctypes.c_uint64
 _ZSTD.ZSTD_compressBound.restype = _ZSTD.ZSTD_compress.restype = ctypes.c_size_t
 
-FIXED8, FRONT_BACK = 1, 4  # of collider.fbs
+FIXED8, FRONT_BACK = 1, 4  # values of collider.fbs
 LESS, BOTH = 0, 2
 NONE, ZSTD = 0, 1
 TEXEL = {FIXED8: 4, FRONT_BACK: 8}
@@ -27,16 +27,16 @@ def zstd(data, level=3):
 
 
 def zeros(size):
-    """A zstd frame of so many zeros, a multiple of 128 KiB: four bytes for each block of 128 KiB."""
+    """A zstd frame of `size` zeros, a multiple of 128 KiB, with four bytes for each 128 KiB."""
     block = 1 << 17
     blocks = size // block
     assert blocks * block == size
-    frame = struct.pack("<IBBQ", 0xFD2FB528, 0xC0, 0x38, size)  # a content size of 8 bytes, a window of 128 KiB
+    frame = struct.pack("<IBBQ", 0xFD2FB528, 0xC0, 0x38, size)  # an 8-byte content size, a window of 128 KiB
     return frame + b"".join(struct.pack("<I", block << 3 | 2 | (i + 1 == blocks))[:3] + b"\0" for i in range(blocks))
 
 
 class _Builder:
-    """Of FlatBuffers, no more than a collider needs: children come after their parents, at places known later."""
+    """A minimal FlatBuffers writer. Children follow their parents, and their offsets are filled in later."""
 
     def __init__(self):
         self.bytes = bytearray(8)
@@ -45,7 +45,7 @@ class _Builder:
         self.bytes += bytes(-len(self.bytes) % to)
 
     def table(self, fields):
-        """fields: (id, bytes or None, alignment); None is a place for an offset. Returns where each field lies."""
+        """fields: (id, bytes or None, alignment); None reserves an offset. Returns the position of each field."""
         at, end = {}, 4
         for number, value, alignment in sorted(fields, key=lambda field: -field[2]):
             end += -end % alignment
@@ -55,7 +55,7 @@ class _Builder:
         count = max(at) + 1
         vtable = struct.pack("<HH", 4 + 2 * count, end) + b"".join(
             struct.pack("<H", at.get(i, 0)) for i in range(count))
-        # The table itself is a multiple of 8.
+        # The size of the table is a multiple of 8.
         self.bytes += bytes((-len(self.bytes) - len(vtable)) % 8) + vtable
         start = len(self.bytes)
         self.bytes += bytes(end)
@@ -102,7 +102,7 @@ def _metadata(maps, offsets):
 
 
 def empty_map(width, height, form=FRONT_BACK):
-    """A map without a surface, as zstd packs it best."""
+    """A map without a surface, which zstd compresses best."""
     raw = width * height * TEXEL[form]
     stored = zeros(raw) if raw % (1 << 17) == 0 else zstd(bytes(raw))
     packing = ZSTD if len(stored) < raw else NONE
@@ -111,13 +111,13 @@ def empty_map(width, height, form=FRONT_BACK):
 
 
 def plain_map(width, height, texels, form=FRONT_BACK):
-    """A map of these texels, as they are."""
+    """A map with these texels, uncompressed."""
     return {"format": form, "compare": BOTH if form == FRONT_BACK else LESS, "width": width, "height": height,
             "raw_size": len(texels), "stored": texels, "packing": NONE}
 
 
 def container(maps):
-    """The bytes of a valid file."""
+    """The bytes of a valid container."""
     size = len(_metadata(maps, [0] * len(maps)))
     end, offsets = 64 + size, []
     for one in maps:

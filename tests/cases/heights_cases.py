@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Random height maps of every format against bilinear heights of their own samples: the ground is right up to the error that its
-bake states, holes have no ground, and `check` agrees. Raw samples read by another type or byte order are refused, or warned
-about."""
+"""Random height maps of every format, compared with bilinear interpolation of their samples: the ground is correct within the
+reported error, holes have no ground, and `check` agrees. Raw samples read with another type or byte order are rejected, or give a
+warning."""
 
 import json
 import math
@@ -13,9 +13,9 @@ from cases import Cases
 from solids import bake, query
 
 POINTS = 2000
-STEEPEST = 2.9  # rise over a side, above which a square counts as steep
-FLOOR = 0.05  # of the longest side, below the lowest point
-# As --heights names them, with struct's letters.
+STEEPEST = 2.9  # rise over a side above which a square counts as steep
+FLOOR = 0.05  # depth below the lowest point, as a fraction of the longest side
+# Types of --heights, with the codes of struct.
 TYPES = {"uint16": "H", "int16": "h", "float32": "f"}
 ORDERS = {"little": "<", "big": ">"}
 
@@ -32,7 +32,7 @@ def png(rows, most):
 
 
 def exr(rows):
-    """One channel of floats, a line at a time, not compressed."""
+    """An EXR with one float channel, one line per block, uncompressed."""
     columns = len(rows[0])
     window = struct.pack("<4i", 0, 0, columns - 1, len(rows) - 1)
     channel = b"Y\0" + struct.pack("<iB3xii", 2, 0, 1, 1) + b"\0"
@@ -57,14 +57,14 @@ def single(x):
 
 
 class Ground:
-    """Waves of a random size, sampled in a random format. heights[row][column] is None in a hole."""
+    """Waves of random size, sampled in a random format. heights[row][column] is None in a hole."""
 
     def __init__(self, random):
         self.format = random.choice(("png", "png", "exr", "raw", "raw", "raw", "raw", "hgt"))
         self.columns, self.rows = random.randint(9, 90), random.randint(9, 90)
         self.spacing = single(10 ** random.uniform(-1, 1.5))
         waves = [(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(0, 6)) for _ in range(3)]
-        # So steep that some squares count, at times.
+        # Sometimes so steep that squares count as steep.
         size = self.spacing * random.choice((0.3, 1.0, 1.0, 4.0))
         base = random.uniform(-10, 10) * size
         shape = [[sum(math.sin(a * x + b * z + c) for a, b, c in waves) for x in range(self.columns)] for z in range(self.rows)]
@@ -82,7 +82,7 @@ class Ground:
             samples = [[first + round((s + 3.2) / 6.4 * (most - first)) for s in row] for row in shape]
             height = lambda s: low + s * (high - low) / most
         elif self.kind == "int16":
-            # Whole metres, so the waves need some.
+            # Heights in whole metres need large waves.
             self.spacing = single(max(self.spacing, 5.0))
             self.settings = [f"spacing={self.spacing!r}"]
             size = self.spacing * random.choice((1.0, 4.0))
@@ -119,7 +119,7 @@ class Ground:
         return [self.heights[z + j][x + i] for j in (0, 1) for i in (0, 1)]
 
     def at(self, x, z):
-        """Bilinear at samples x, z; None in a square of a hole."""
+        """Bilinear height at samples x, z; None in a square with a hole."""
         i, j = min(int(x), self.columns - 2), min(int(z), self.rows - 2)
         a, b, c, d = self.corners(i, j)
         if None in (a, b, c, d):
@@ -128,7 +128,7 @@ class Ground:
         return (1 - t) * ((1 - s) * a + s * b) + t * ((1 - s) * c + s * d)
 
     def steep(self, x, z):
-        """As the report counts squares: along a side, or a diagonal of both triangles."""
+        """Whether the report counts the square as steep: along a side, or along a diagonal."""
         corners = self.corners(x, z)
         if None in corners:
             return False
@@ -174,7 +174,7 @@ def check_points(cases, folder, ground, stated):
 
 
 def check_other_formats(cases, folder, ground):
-    """Reads the samples as another type or in another byte order."""
+    """Bakes the samples as another type or with another byte order."""
     kind, order = cases.random.choice([(k, o) for k in TYPES for o in ORDERS if (k, o) != (ground.kind, ground.order)])
     settings = [f"spacing={ground.spacing!r}", f"width={ground.columns}", f"type={kind}", f"order={order}"]
     settings += ["low=0", f"high={100 * ground.spacing!r}"] if kind == "uint16" else []

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Drops at rest in the way of a box that a clip or keys of the scene shift, turn, scale or morph: each drop that the box passes
-over dies of its hit, and none that it stays clear of."""
+"""Resting drops near a box that a clip or scene keys translate, rotate, scale or morph: a drop dies exactly if the box passes
+over it."""
 
 import json
 import math
@@ -20,7 +20,7 @@ KINDS = ("keys", "shift", "turn", "scale", "morph")
 
 
 def turn(axis, angle, p):
-    """About a unit axis, right-handed: Rodrigues' formula."""
+    """Right-handed rotation about a unit axis, by Rodrigues' formula."""
     c, s = math.cos(angle), math.sin(angle)
     along = sum(a * b for a, b in zip(axis, p)) * (1 - c)
     cross = [axis[i - 2] * p[i - 1] - axis[i - 1] * p[i - 2] for i in range(3)]
@@ -28,7 +28,7 @@ def turn(axis, angle, p):
 
 
 class Motion:
-    """A box that a share u from 0 to 1 moves from `start`: by `way`, an angle and a scale."""
+    """A box moved from `start` by a fraction u in 0…1 of `way`, an angle and a scale."""
 
     def __init__(self, random, kind):
         self.kind = kind
@@ -38,7 +38,7 @@ class Motion:
         axis = [random.gauss(0, 1) for _ in range(3)]
         norm = math.sqrt(sum(a * a for a in axis)) or 1.0
         self.axis = [a / norm for a in axis]
-        # No more than half of its thinnest side in a step.
+        # At most half of its thinnest side per step.
         most = min(5.0, 0.5 * thin * STEPS)
         self.way = [random.uniform(-1, 1) * most / 2 for _ in range(3)] if kind in ("keys", "shift", "morph") else [0, 0, 0]
         self.angle = random.uniform(0.3, 2.8) if kind in ("keys", "turn") else 0.0
@@ -80,7 +80,7 @@ def check(cases, folder, kind):
     motion = Motion(random, kind)
     motion.write(folder / "a.gltf")
     if kind == "keys":
-        motion.start, place = [0, 0, 0], motion.start  # the container has the place
+        motion.start, place = [0, 0, 0], motion.start  # the baked mesh includes the position
         options = ["--budget", "256kB", "--no-check"]
     else:
         options = ["--animated"]
@@ -88,7 +88,7 @@ def check(cases, folder, kind):
         return
     resolution = random.choice((96, 128, 256))
     if kind == "keys":
-        # The box turns about the container's origin, from its place.
+        # The box rotates about the origin of the container.
         motion.local = lambda p, u: [c - s for c, s in zip(turn(motion.axis, -u * motion.angle,
                                                                 [c - u * w for c, w in zip(p, motion.way)]), place)]
         collider = "".join(f"[[collider.key]]\ntime = {u * STEPS * DT}\nposition = {[u * w for w in motion.way]}\n"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Broken meshes, and files of assimp-testmodels: `relief bake` makes a collider that `relief check` calls sound, or refuses in one
-line that names the mesh, and leaves nothing else behind: no file, no process."""
+"""Broken meshes, and files of assimp-testmodels: `relief bake` writes a collider that `relief check` accepts, or fails with one
+line that names the mesh. It leaves no other file and no process."""
 
 import collections
 import copy
@@ -17,18 +17,18 @@ import sys
 from cases import Cases
 
 MODELS = pathlib.Path('/usr/share/assimp/models')
-# Path below MODELS, and the file beside it.
+# A path below MODELS, and a file that it needs.
 PACKAGED = [('OBJ/box.obj', None), ('PLY/cube.ply', None), ('PLY/cube_binary.ply', None), ('STL/Spider_ascii.stl', None),
             ('STL/Spider_binary.stl', None), ('glTF2/BoxTextured-glTF-Binary/BoxTextured.glb', None),
             ('glTF2/BoxTextured-glTF-Embedded/BoxTextured.gltf', None), ('glTF2/BoxTextured-glTF/BoxTextured.gltf', 'BoxTextured0.bin')]
 TEXTS = ('box.obj', 'cube.ply', 'Spider_ascii.stl', 'BoxTextured.gltf')
 OPTIONS = ('-o', 'out.relief', '--map', 'fixed8:size=16', '-q', '--import-time', '10', '--import-memory', '1GB')
-UNSEEN = 'no map sees the surface'  # a flat mesh that the one map looks along: exit code 4, and no fault
+UNSEEN = 'no map sees the surface'  # a flat mesh seen edge-on by its only map: exit code 4, not a failure
 PR_SET_CHILD_SUBREAPER = 36
 
 
 def glb(text, rest):
-    """The chunks of a binary glTF: JSON text, and everything behind it."""
+    """The chunks of a binary glTF: the JSON text, and everything after it."""
     text += b' ' * (-len(text) % 4)
     return struct.pack('<4sIIII', b'glTF', 2, 20 + len(text) + len(rest), len(text), 0x4E4F534A) + text + rest
 
@@ -53,7 +53,7 @@ def truncate(data, r):
 
 
 def overwrite_word(data, r):
-    """32 bits; most often near the beginning, where headers are."""
+    """Changes 32 bits, mostly near the beginning, where headers are."""
     end = min(len(data), r.choice([32, 256, len(data)])) - 4
     if end > 0:
         struct.pack_into(r.choice(['<I', '>I']), data, r.randrange(end), r.choice(WORDS))
@@ -66,7 +66,7 @@ def change_float(data, r):
 
 
 def splice(data, r):
-    """Cuts a piece out, or puts it in elsewhere, or noise."""
+    """Deletes a piece, copies it elsewhere, or inserts noise."""
     begin = r.randrange(len(data))
     piece = bytes(data[begin:begin + r.choice([1, 4, 50, 1000])])
     what = r.randrange(3)
@@ -115,10 +115,10 @@ def nest(data, r):
 
 
 def mutate_json(text, r):
-    """Another document, whose syntax is right."""
+    """A changed document with valid syntax."""
     document = json.loads(text)
     for _ in range(r.choice([1, 1, 2, 4])):
-        places = []  # a container and a key each
+        places = []  # pairs of a container and a key
         open_ = [document]
         while open_:
             node = open_.pop()
@@ -139,7 +139,7 @@ def mutate_json(text, r):
             node[key:key] = [node[key]] * r.choice([1, 2, 1000])
         else:
             node[key] = r.choice(VALUES)
-        document = json.loads(json.dumps(document))  # no part is there twice
+        document = json.loads(json.dumps(document))  # copy shared parts
     return json.dumps(document).encode()
 
 
@@ -149,7 +149,7 @@ TEXT = [flip, truncate, splice, change_number, change_number, change_number, swa
 
 
 def mutate(data, text, r):
-    """Some mutations one after another."""
+    """Applies several mutations."""
     data = bytearray(data)
     for _ in range(r.choice([1, 1, 1, 2, 3])):
         if data:
@@ -158,18 +158,18 @@ def mutate(data, text, r):
 
 
 def write_mutant(folder, number, r):
-    """Returns its path."""
+    """Writes the mesh and returns its path."""
     path, beside = PACKAGED[number % len(PACKAGED)]
     path = MODELS / path
     data = path.read_bytes()
     other = (path.parent / beside).read_bytes() if beside else b''
     if number < len(PACKAGED):
-        pass  # as it is
+        pass  # unchanged
     elif other and r.randrange(4) == 0:
         other = mutate(other, False, r)
     elif path.suffix == '.gltf' and r.randrange(4) != 0:
         data = mutate_json(data, r)
-    elif path.suffix == '.glb' and r.randrange(2) == 0:  # the lengths fit, so that the document is read
+    elif path.suffix == '.glb' and r.randrange(2) == 0:  # the lengths are fixed up, so that the document is read
         size = struct.unpack_from('<I', data, 12)[0]
         document = data[20:20 + size]
         data = glb(mutate(document, True, r) if r.randrange(4) == 0 else mutate_json(document, r), data[20 + size:])
@@ -183,7 +183,7 @@ def write_mutant(folder, number, r):
 
 
 def orphans():
-    """Ends what lives on after a bake."""
+    """Kills processes that outlive a bake."""
     children = [int(pid) for pid in pathlib.Path(f'/proc/self/task/{os.getpid()}/children').read_text().split()]
     for pid in children:
         os.kill(pid, signal.SIGKILL)
@@ -192,7 +192,7 @@ def orphans():
 
 
 def check(cases, folder, mesh, must_bake):
-    """Returns how it ended."""
+    """Returns the outcome."""
     given = set(os.listdir(folder))
     (folder / 'tmp').mkdir()
     done = cases.run('relief', 'bake', mesh, *OPTIONS, seconds=15, cwd=folder, env={**os.environ, 'TMPDIR': folder / 'tmp'})

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Random outputs of both tools onto their inputs, through links, and onto each other: no input may change, no output
-may be lost to another, and a refusal names what it refuses."""
+"""Random outputs of both tools that collide with inputs, also through links, or with each other: no input may change, no output
+may overwrite another, and errors name the conflict."""
 
 import hashlib
 import os
@@ -84,7 +84,7 @@ def make_inputs(cases, folder):
 
 
 class Arena:
-    """A folder with every input, and names that lead to them."""
+    """A folder with every input, and names that resolve to them."""
 
     def __init__(self, cases, folder, pristine):
         self.random, self.folder = cases.random, folder
@@ -94,7 +94,7 @@ class Arena:
         self.count = 0
 
     def unchanged(self):
-        """The input that has changed, or None."""
+        """The name of a changed input, or None."""
         for name, digest in self.names.items():
             path = self.folder / name
             if not path.is_file() or hashlib.sha256(path.read_bytes()).digest() != digest:
@@ -106,7 +106,7 @@ class Arena:
         return f"new{self.count}{ending}"
 
     def lead(self, target, ending):
-        """A name by which an output lands on `target`, which may be missing."""
+        """A name that resolves to `target`, which may not exist."""
         name = self.fresh(ending)
         how = self.random.choice(["same", "symbolic", "hard"])
         path = self.folder / target
@@ -119,7 +119,7 @@ class Arena:
         return name
 
     def lead_frame(self, target, head, ending):
-        """A folder whose numbered file leads to `target`."""
+        """A folder whose numbered file resolves to `target`."""
         frames = self.folder / self.fresh("")
         frames.mkdir()
         frame = frames / f"{head}{self.random.randrange(3):04}{ending}"
@@ -131,7 +131,7 @@ class Arena:
 
 
 def sim_case(arena, random):
-    """-> command, whether it must be refused"""
+    """Returns a command, and whether it must be rejected."""
     scene = random.choice(sorted(SCENES))
     target = random.choice(SCENES[scene])
     options = {"--dump": ".ply", "--events": ".jsonl"}

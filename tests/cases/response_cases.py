@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Responses of contacts: physics materials of glTF with the defaults that their extension states, and those that are written into
-world.json by hand, which stay with their bodies when nodes change their order, are removed, renamed, moved or added."""
+"""Contact responses: glTF physics materials with the defaults of their extension, and manual edits of world.json, which stay with
+their bodies if nodes are reordered, removed, renamed, moved or added."""
 
 import json
 import re
@@ -9,7 +9,7 @@ import re
 from cases import Cases
 from solids import BOX_FACES, Gltf, bake, box_corners
 
-# Of KHR_physics_rigid_bodies, schema material.physics.
+# Defaults of KHR_physics_rigid_bodies, schema material.physics.
 DEFAULTS = {"restitution": 0.0, "dynamicFriction": 0.6}
 PHYSICS = "KHR_physics_rigid_bodies"
 NEAR = 2e-6
@@ -45,7 +45,7 @@ def check_physics(cases, folder):
 
 
 class Thing:
-    """A node: no two have the same size and place."""
+    """A node. No two nodes have both the same size and position."""
 
     def __init__(self, name, size, x):
         self.name, self.size, self.x = name, size, x
@@ -63,13 +63,13 @@ def write_level(path, things):
 
 
 def body_of(world, thing):
-    """The body at the thing's place."""
+    """The body at the position of the node."""
     return next(body for body in world["bodies"] if abs(body["position"][0] - 3 * thing.x) < 1e-3)
 
 
 def check_by_hand(cases, folder):
     random = cases.random
-    # Names and sizes are shared, places are not.
+    # Names and sizes can be shared, but not positions.
     things = [Thing(random.choice(("gate", "gate", "door", f"n{i}")), random.randrange(4), i) for i in range(random.randint(3, 9))]
     write_level(folder / "a.gltf", things)
     if not bake(cases, folder, "a.gltf", "--world", "w", "--budget", "64kB", "-q"):

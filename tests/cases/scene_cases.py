@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Scenes at random within the ranges that runtime/scene/README.md gives, ends included: every number of every particle is finite
-at the end, or one line names a place in the scene, or the type of particle that was lost."""
+"""Random scenes within the ranges of runtime/scene/README.md, including the ends. Finally all numbers of all particles are finite,
+or one line names a place in the scene or the type of a lost particle."""
 
 import collections
 import math
@@ -15,7 +15,7 @@ import ply  # noqa: E402
 
 BUNNY = '/usr/share/glmark2/models/bunny.obj'
 
-# Key, least, most: a number, or with * a vector of three. A least of 0+ is above 0.
+# Key, minimum, maximum: a number, or with * a vector of three. A minimum of 0+ excludes 0.
 TABLES = {
     'forces': [('*gravity', -1e6, 1e6), ('*wind', -1e6, 1e6), ('drag', 0, 1e6)],
     'attractor': [('*position!', -1e9, 1e9), ('strength!', -1e6, 1e6), ('radius!', '0+', 1e9), ('reach', '0+', 1e9),
@@ -32,7 +32,7 @@ EMITTER = [('*velocity', -1e6, 1e6), ('*velocity_spread', 0, 1e6), ('lifetime', 
 
 
 def number(r, least, most):
-    """Everyday, of any size, or an end."""
+    """A usual value, one of any magnitude, or an end of the range."""
     if least == 'of':
         return r.choice(most)
     low = 0.0 if least == '0+' else least
@@ -83,7 +83,7 @@ def scene(r, collider):
 
 
 def check(cases, folder, collider):
-    """Returns how it ended."""
+    """Returns the outcome."""
     (folder / 'scene.toml').write_text(scene(cases.random, collider))
     done = cases.run('relief-sim', 'scene.toml', '--dump', 'out.ply', '-q', seconds=300, cwd=folder)
     if not done:

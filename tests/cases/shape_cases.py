@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Turned boxes of random sizes, plates and rods among them, alone or as shells, against their closed form: the side of each
-point that is not next to the surface, the plane that decides up to 0.45 of the thickness in solid ones, and the normals beside
-their faces. Bakes of such flat shapes end early, whatever the budget."""
+"""Rotated boxes of random sizes, including plates and rods, as solids or shells, compared with closed forms: the side of points
+away from the surface, the deciding plane up to 0.45 of the thickness in solids, and normals near faces. Bakes of such flat shapes
+end early for any budget."""
 
 import json
 import math
@@ -12,11 +12,11 @@ from cases import Cases
 from solids import BOX_FACES, Frame, bake, box_corners, box_distance, query, turned_axes, write_obj
 
 POINTS = 3000
-NEAR = 2e-3  # of the longest side: nearer points may be on either side
+NEAR = 2e-3  # fraction of the longest side; nearer points may be on either side
 INSIDE_ANGLE, FACE_ANGLE = 3.0, 1.0  # degrees
-AT_FACE, BESIDE_FACE = 1e-3, 5e-3  # of the longest side
+AT_FACE, BESIDE_FACE = 1e-3, 5e-3  # fractions of the longest side
 LARGE = 16_000_000  # a budget
-LARGE_BYTES, LARGE_SECONDS = 3_500_000, 15  # that a flat shape takes of it, and of the processor
+LARGE_BYTES, LARGE_SECONDS = 3_500_000, 15  # maximum bytes and CPU seconds of a flat shape at that budget
 
 
 class Box(Frame):
@@ -31,12 +31,12 @@ class Box(Frame):
         write_obj(path, [self.to_world(p) for p in box_corners(self.half)], BOX_FACES)
 
     def off_normal(self, row, axis, sign, most):
-        """Whether the normal of a sample is off by more than `most` degrees."""
+        """Whether the normal of a sample has an error above `most` degrees."""
         return sign * sum(n * a for n, a in zip(row[4:7], self.axes[axis])) < math.cos(math.radians(most))
 
 
 def check_faces(cases, folder, box, what):
-    """Normals at points beside a face, but not near its edges."""
+    """Checks normals at points near a face, away from its edges."""
     points, faces = [], []
     for _ in range(POINTS // 2):
         axis, sign = cases.random.randrange(3), cases.random.choice((-1, 1))
@@ -89,7 +89,7 @@ def check(cases, folder, number):
             sides += (row[3] < 0) != (distance < 0)
         if thickness or distance > -near:
             continue
-        # Clear of edges, where two faces are as near, and of the middle of the thinnest side.
+        # Away from edges, where two faces are equally near, and from the middle of the thinnest side.
         gaps = sorted((h - abs(p), axis) for axis, (p, h) in enumerate(zip(local, box.half)))
         (depth, axis), (second, _) = gaps[0], gaps[1]
         if depth > 0.9 * box.half[axis] or second < 1.2 * depth + 0.05 * box.longest:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What generators of shapes share: meshes as lists of positions and faces, boxes in closed form, OBJ and glTF files, and queries."""
+"""Shared by shape generators: meshes as lists of positions and faces, closed-form boxes, OBJ and glTF files, and queries."""
 
 import base64
 import json
@@ -10,7 +10,7 @@ BOX_FACES = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2
 
 
 def turned_axes(random):
-    """Rows: the axes of a random turn."""
+    """The axes of a random rotation, as rows."""
     while True:
         q = [random.gauss(0, 1) for _ in range(4)]
         norm = math.sqrt(sum(c * c for c in q))
@@ -23,7 +23,7 @@ def turned_axes(random):
 
 
 class Frame:
-    """A turned space of its own."""
+    """A rotated frame."""
 
     def __init__(self, center, axes):
         self.center, self.axes = center, axes
@@ -37,7 +37,7 @@ def box_corners(half):
 
 
 def box_distance(local, half):
-    """Negative inside."""
+    """Signed distance, negative inside."""
     d = [abs(p) - h for p, h in zip(local, half)]
     return math.sqrt(sum(max(c, 0) ** 2 for c in d)) + min(max(d), 0)
 
@@ -49,14 +49,14 @@ def write_obj(path, positions, faces):
 
 
 class Gltf:
-    """A glTF document with its data inside."""
+    """A glTF document with embedded data."""
 
     def __init__(self):
         self.data, self.views, self.accessors = b"", [], []
         self.document = {"asset": {"version": "2.0"}, "scene": 0, "meshes": [], "nodes": []}
 
     def add(self, rows, component=5126, kind="VEC3"):
-        """Numbers as an accessor; returns its index."""
+        """Adds numbers as an accessor; returns its index."""
         letter = {5126: "f", 5125: "I"}[component]
         part = b"".join(struct.pack(f"<{len(row)}{letter}", *row) for row in rows)
         self.views.append({"buffer": 0, "byteOffset": len(self.data), "byteLength": len(part)})
@@ -66,7 +66,7 @@ class Gltf:
         return len(self.accessors) - 1
 
     def add_mesh(self, positions, faces, **more):
-        """Returns the mesh's index. `more` goes into its primitive."""
+        """Adds a mesh with `more` members in its primitive; returns its index."""
         corners = [(c,) for f in faces for i in range(1, len(f) - 1) for c in (f[0], f[i], f[i + 1])]
         primitive = {"attributes": {"POSITION": self.add(positions)}, "indices": self.add(corners, 5125, "SCALAR"), **more}
         self.document["meshes"].append({"primitives": [primitive]})
@@ -79,7 +79,7 @@ class Gltf:
 
 
 def query(cases, folder, file, points, *options):
-    """Rows of numbers, one a point; None after a failure."""
+    """Query results, one row per point; None after a failure."""
     with open(folder / "points.csv", "w", encoding="ascii") as out:
         out.writelines("%.9g,%.9g,%.9g\n" % tuple(p) for p in points)
     done = cases.run("relief", "query", file, "--points", "points.csv", "-o", "-", *options, cwd=folder)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Random valid files of the text formats, written as people write them: relief-import must read the polygons that were written.
-Every fourth case is a file with one word spoilt, which must be refused with its line.
+"""Random valid files of the text formats, in the styles found in practice: relief-import must read the polygons that were written.
+Every fourth case is a file with one damaged word, which must be rejected with its line.
 
     text_cases.py BIN [--seed N] [--cases N]      by default 200 files of each format
 """
@@ -20,7 +20,7 @@ FORMATS = ["obj", "off", "stl"]
 
 
 def answer_of(data):
-    """What relief-import answers (bake/import/import_message.h): triangles as three corners each, or the text of an error."""
+    """The result of relief-import (bake/import/import_message.h): triangles as three positions each, or an error message."""
     at = 4
 
     def take(size):
@@ -44,7 +44,7 @@ def answer_of(data):
     for _ in range(3):  # warnings, files, their hashes
         for _ in range(length()):
             text()
-    for _ in range(length()):  # names of surfaces, with restitution and friction
+    for _ in range(length()):  # surface names, with restitution and friction
         take(4)
         text()
         text()
@@ -54,7 +54,7 @@ def answer_of(data):
 
 
 def imported(run, path):
-    """Starts relief-import as importMeshInWorker does (bake/import/import_protocol.h)."""
+    """Runs relief-import like importMeshInWorker() (bake/import/import_protocol.h)."""
     mesh = os.memfd_create("mesh")
     os.write(mesh, path.read_bytes())
     result = os.memfd_create("result", os.MFD_ALLOW_SEALING)
@@ -77,14 +77,14 @@ def imported(run, path):
     return answer
 
 
-# --- files at random ---
+# --- random files ---
 
 
 class Writer:
     def __init__(self, random):
         self.random = random
         self.end = random.choice(["\n", "\r\n", "\r", None])  # None: mixed
-        self.words = []  # places of the numbers of the text, to spoil one of them
+        self.words = []  # positions of the numbers in the text, to damage one of them
         self.text = ""
 
     def blank(self, least=1):
@@ -103,7 +103,7 @@ class Writer:
         self.put(self.blank() if self.random.random() < 0.2 else "")
 
     def number(self, value):
-        """A decimal number in one of its forms."""
+        """A decimal number in a random notation."""
         text = self.random.choice(["%.6f", "%.3f", "%g", "%.9g", "%e", "%.2E"]) % value
         mantissa, exponent = re.match(r"([-+.\d]+)(.*)", text).groups()
         if self.random.random() < 0.3 and "." in mantissa:
@@ -120,7 +120,7 @@ class Writer:
         self.put(word)
 
     def numbers(self, values, between=None):
-        """Returns the values as they were rounded."""
+        """Returns the values after rounding."""
         written = [self.number(value) for value in values]
         for i, word in enumerate(written):
             if i:
@@ -130,8 +130,8 @@ class Writer:
 
 
 def polygons_of(random, most):
-    """Vertices, and polygons that are flat and convex, as lists of their indices; some far from the origin. The writers below
-    return the polygons that a reader must find, as lists of positions."""
+    """Vertices, and flat convex polygons as lists of indices; some far from the origin. The writers below return the expected
+    polygons as lists of positions."""
     vertices, polygons = [], []
     far = random.choice([0, 0, 10, 1.4e5])
     for _ in range(random.randint(1, 12)):
@@ -141,7 +141,7 @@ def polygons_of(random, most):
         axes = random.sample(range(3), 2)
         begin = len(vertices)
         for i in range(count):
-            # On a parabola: convex without sines.
+            # On a parabola, which is convex without trigonometry.
             at = list(centre)
             at[axes[0]] += size * i
             at[axes[1]] += size * i * i
@@ -248,12 +248,12 @@ WRITERS = {"obj": write_obj, "off": write_off, "stl": write_stl}
 
 
 def near(a, b):
-    """Within the rounding of floats."""
+    """Whether the values are equal within float rounding."""
     return all(abs(x - y) <= 2e-7 * abs(y) + 1e-44 for x, y in zip(a, b))
 
 
 def area(corners):
-    """The area of a polygon as a vector, twice."""
+    """Twice the area vector of a polygon."""
     total = [0.0, 0.0, 0.0]
     for one, other in zip(corners[1:], corners[2:]):
         u = [x - y for x, y in zip(one, corners[0])]
@@ -264,7 +264,7 @@ def area(corners):
 
 
 def difference(triangles, polygons):
-    """What differs, or None. A polygon of n corners is n - 2 triangles of them, with its area."""
+    """The difference, or None. A polygon with n corners must be n - 2 triangles of these corners with its area."""
     if len(triangles) != sum(len(polygon) - 2 for polygon in polygons):
         return f"{len(triangles)} triangles of {len(polygons)} polygons"
     at = 0

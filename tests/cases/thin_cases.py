@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Levels of large bodies with thin posts, as worlds and as one collider: `check` names the mesh whose posts are lost, and none whose
-posts are all there, by our own points within each post."""
+"""Levels of large bodies with thin posts, as worlds and as one collider: `check` names exactly the meshes with lost posts, as
+determined by points in each post."""
 
 import json
 
 from cases import Cases
 from solids import BOX_FACES, bake, box_corners, query
 
-INSIDE = 40  # points within each post
-LOST, HELD = 0.7, 0.03  # shares of them that are called outside
+INSIDE = 40  # points in each post
+LOST, HELD = 0.7, 0.03  # fractions of them classified as outside
 
 
 def add_box(mesh, center, half):
@@ -20,7 +20,7 @@ def add_box(mesh, center, half):
 
 
 class House:
-    """A slab with posts on it, their feet within the slab."""
+    """A slab with posts that start inside it."""
 
     def __init__(self, random, name, x):
         self.name = name
@@ -53,7 +53,7 @@ def write_level(path, houses):
 
 
 def lost_shares(cases, folder, file, house):
-    """For each post the share of the points within it, above the slab, that are called outside; None after a failure."""
+    """For each post the fraction of its points above the slab that are classified as outside; None after a failure."""
     points = []
     top = house.slab[1][1]
     for center, half in house.posts:
@@ -70,7 +70,7 @@ def check(cases, folder, as_world):
     houses, x = [], 0.0
     for i in range(random.randint(1, 3) if as_world else 1):
         houses.append(House(random, f"house{i}", x))
-        x += 150  # their slabs are up to 63 wide
+        x += 150  # slabs are up to 63 wide
     write_level(folder / "a.obj", houses)
     budget = int(10 ** random.uniform(4.5, 6) * len(houses))
     where = ["--world", "w"] if as_world else ["-o", "a.relief"]

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Random trees of boxes as glTF, FBX, COLLADA and AC3D, with hidden nodes, levels of detail, instances, and instances of missing
-objects: what is baked equals our own walk of the tree, warnings count what was left out, and `--hidden keep` bakes all. As levels
-they have a body for each box, whatever the names of their nodes."""
+"""Random hierarchies of boxes as glTF, FBX, COLLADA and AC3D, with hidden nodes, levels of detail, instances, and instances of
+missing objects. The collider matches a separate traversal, warnings count skipped objects, and `--hidden keep` bakes all objects.
+As levels they have a body for each box, for any node names."""
 
 import json
 import re
@@ -13,14 +13,14 @@ from solids import BOX_FACES, Gltf, bake, box_corners, query
 
 FORMATS = ("gltf", "fbx", "dae", "ac")
 HALF = 0.5
-FAR = 2.5  # between the centres of boxes
+FAR = 2.5  # distance between box centres
 NAMES = ("props/chair", "../../up", "a\u202eb", "x" * 300, "", "same", "same", "two words", "quote\"", "tab\there", "<b>&amp;",
          "CON", "ünï", "line\nbreak", "~root", "$(id)", "-o", ".", "..", "\u2028", "%s%n", "\x1b[31m")
 UNSAFE = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
 
 
 class Node:
-    """place: relative to the parent, with a turn of 90 degrees about y or none, and a scale."""
+    """place: relative to the parent, with a rotation of 0 or 90 degrees about y and a scale."""
 
     def __init__(self, random, parent):
         self.parent, self.children = parent, []
@@ -28,10 +28,10 @@ class Node:
         self.scale = random.choice((1.0, 1.0, 1.0, 0.5, 2.0))
         self.at = [random.randint(-9, 9) for _ in range(3)]
         self.box = False
-        self.hidden = False  # by itself, and with all below
-        self.unshown = False  # by itself only
-        self.levels = False  # children are levels of detail, the first the finest
-        self.loose = False  # does not inherit from above
+        self.hidden = False  # hides the node and its descendants
+        self.unshown = False  # hides only the node
+        self.levels = False  # children are levels of detail, the finest first
+        self.loose = False  # does not inherit visibility
         self.copy_of = None
         self.name = ""
 
@@ -108,13 +108,13 @@ class Tree:
                 return
 
     def copied(self):
-        """A node of the library that shows a box, instanced once or twice."""
+        """A library node with a box, instanced once or twice."""
         node = Node(self.random, None)
         node.scale, node.box = 1.0, True
         return node
 
     def shown(self, node, keep):
-        """None, or why a node's box is left out: 'hidden' or 'level'."""
+        """Why a node's box is skipped: 'hidden', 'level' or None."""
         if keep:
             return None
         if node.unshown:
@@ -149,7 +149,7 @@ def write_gltf(tree, path):
             entry["children"] = [index[id(child)] for child in node.children]
         gltf.document["nodes"].append(entry)
     for node in tree.all:
-        if node.levels:  # MSFT_lod is of the finest level
+        if node.levels:  # MSFT_lod belongs to the finest level
             first, *rest = (index[id(child)] for child in node.children)
             gltf.document["nodes"][first].setdefault("extensions", {})["MSFT_lod"] = {"ids": rest}
     required = {"extensionsRequired": ["KHR_node_visibility"]} if tree.random.random() < 0.3 else {}
@@ -284,7 +284,7 @@ def check_tree(cases, folder, kind):
 
 
 def check_names(cases, folder):
-    """A level of boxes in a row whose nodes and meshes have names of all kinds."""
+    """A level of boxes in a row, whose nodes and meshes have unusual names."""
     random = cases.random
     names = [random.choice(NAMES) + random.choice(("", "", ".001")) for _ in range(random.randint(2, 8))]
     gltf = Gltf()

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Turned vessels and pipes, of one surface or of two open ones whose rims face each other, and rods and straws as shells thinner or
-thicker than they are, of random sizes and tessellations, against their closed forms."""
+"""Random vessels and pipes, of one surface or of two open surfaces with facing rims, and rods and straws as shells thinner or
+thicker than the part. Compared with closed forms, for random sizes, rotations and tessellations."""
 
 import math
 
@@ -9,7 +9,7 @@ from cases import Cases
 from solids import Frame, bake, query, turned_axes, write_obj
 
 POINTS = 3000
-NEAR = 4e-3  # of the longest side: nearer points may be on either side
+NEAR = 4e-3  # fraction of the longest side; nearer points may be on either side
 MOST_WRONG = 0.01
 
 
@@ -26,7 +26,7 @@ class Profile:
         return self.low + (self.high - self.low) * y / self.height
 
     def beyond(self, p):
-        """Signed distance to the plane of the side that faces p, negative within."""
+        """Signed distance to the plane of the side that faces p, negative inside."""
         x, y, z = p
         part = 2 * math.pi / self.n
         angle = math.atan2(z, x) % part - part / 2
@@ -52,7 +52,7 @@ class Mesh:
         self.faces.append(tuple(ring[::-1] if up else ring))
 
     def write(self, random, path):
-        """Turned, and somewhere else. Returns the frame."""
+        """Writes the mesh with a random pose; returns its frame."""
         frame = Frame([random.uniform(-3, 3) for _ in range(3)], turned_axes(random))
         write_obj(path, [frame.to_world(p) for p in self.positions], self.faces)
         return frame
@@ -76,10 +76,10 @@ def check_vessel(cases, folder):
     floor = 0.0 if pipe else wall * random.uniform(0.6, 1.5)
     outer = Profile(n, low, high, height)
     inner = Profile(random.choice((n, random.randint(6, 48))), low - wall, high - wall, height)
-    if inner.n != n and wall < 0.3 * low:  # the corners of one polygon must lie within the sides of the other
+    if inner.n != n and wall < 0.3 * low:  # the inner polygon must lie inside the outer one
         inner = Profile(n, low - wall, high - wall, height)
     joined = inner.n == n and random.random() < 0.3
-    # The inner shell of some ends a little above or below the rim of the outer one.
+    # Some inner shells end slightly above or below the outer rim.
     rise = 0.0 if joined or random.random() < 0.5 else wall * random.uniform(-0.5, 0.5)
     mesh = Mesh()
     foot, rim = mesh.add(outer.ring(0, low)), mesh.add(outer.ring(height, high))
@@ -100,7 +100,7 @@ def check_vessel(cases, folder):
     if not bake(cases, folder, "a.obj", "-o", "a.relief", "--budget", f"{budget}kB", "-q"):
         return
     near = NEAR * max(height, 2 * max(low, high))
-    ends = near + abs(rise)  # in which the ring between the rims may lie
+    ends = near + abs(rise)  # the ring between the rims is within this distance of the ends
     points, truths = [], []
     while len(points) < POINTS:
         y = random.uniform(-0.1, 1.1) * height
@@ -144,7 +144,7 @@ def check_rod(cases, folder):
         planes = [rod.beyond(p)] + ([] if straw else [-y, y - height])
         if straw and not half < y < height - half:
             continue
-        # Of a convex solid the shell's outside has each plane moved; its mitres go beyond half the thickness.
+        # Shell of a convex solid: each plane moves outward. Mitres exceed half the thickness.
         beyond = max(planes)
         distance = abs(beyond) - half
         if abs(distance) < near:

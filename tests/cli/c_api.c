@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* relief.h from C99; tests/runtime/c_api calls every function. c_api POINTS.csv COLLIDER.relief prints x,y,z,f,nx,ny,nz,map of the
- * points. */
+/* Uses relief.h from C99; tests/runtime/c_api calls every function. c_api POINTS.csv COLLIDER.relief prints
+ * x,y,z,f,nx,ny,nz,map for each point. */
 #include <relief.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes height maps: heights.py FILE SIDE [KIND] with KIND hills or step65 (at sample 65); by the name of FILE a PNG or raw samples.
+"""Writes height maps: heights.py FILE SIDE [KIND], with KIND hills or step65 (at sample 65), as a PNG or raw samples by extension.
 
-heights.py --below DUMP.ply HIGH MOST: fails if one of more than 3,000 particles lies MOST below such hills at 1 m, whose sample
-65535 is HIGH.
+heights.py --below DUMP.ply HIGH MOST: fails if any of at least 3,001 particles is MOST or more below these hills, with a spacing of
+1 m and with sample 65535 at HIGH.
 """
 import math
 import struct
@@ -19,7 +19,7 @@ def sample(kind, x, z):
 
 
 def surface(x, z):
-    """Bilinear between samples."""
+    """The bilinear surface."""
     i, j = math.floor(x), math.floor(z)
     s, t = x - i, z - j
     return ((1 - t) * ((1 - s) * sample('hills', i, j) + s * sample('hills', i + 1, j)) +

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes a small level as glTF: level.py OUT.gltf|OUT.glb [KEY=VALUE…]
 
-Nodes: a floor, and three boxes by one mesh, turned and scaled, and one that is stretched. x=3 moves the first box, high=2
-makes the mesh of all boxes higher, box=0 leaves boxes out.
+Nodes: a floor, three boxes with one mesh, rotated and scaled, and a stretched box. x=3 moves the first box, high=2 raises the mesh
+of all boxes, box=0 omits the boxes.
 """
 import pathlib
 import sys

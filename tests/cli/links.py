@@ -1,20 +1,20 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""links.py FOLDER: every relative link of every .md below FOLDER leads to a file, and its #heading to a heading. Every row that
-begins with | belongs to a table with a header."""
+"""links.py FOLDER: checks that every relative link of every .md below FOLDER leads to an existing file and #heading, and that every
+row that starts with | belongs to a table with a header."""
 import pathlib
 import re
 import sys
 
 
 def prose(text):
-    """Without code, where brackets are no links."""
+    """The text without code, in which brackets are not links."""
     text = re.sub(r'^ *```.*?^ *```', '', text, flags=re.S | re.M)
     return re.sub(r'`[^`]*`', 'code', text)
 
 
 def headings(text):
-    """The anchors that a page of Markdown has, as Git hosts make them."""
+    """The anchors of a Markdown page, as Git hosts create them."""
     words = [re.sub(r'[^\w\- ]', '', line.lower()) for line in re.findall(r'^#+ +(.*?)\s*$', text, flags=re.M)]
     return {line.replace(' ', '-') for line in words}
 

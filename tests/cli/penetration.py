@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How deep particles lie inside a mesh, and how many rest on it, counted to 3,000:
+"""Measures how deep particles are inside a mesh, and how many rest on it (up to 3,000):
 
     penetration.py MESH.obj PARTICLES.ply    prints a JSON object
 
-Shares no code with the baker: a point is inside by the parity of the triangles on rays along three axes, by majority, for the
-mesh need not be closed; its depth is the distance to the nearest triangle.
+Shares no code with the baker. Sides are by majority of the parities of rays along three axes, since the mesh may be open. Depths
+are distances to the nearest triangle.
 """
 import collections
 import json
@@ -23,7 +23,7 @@ def read_obj(path):
 
 
 class Columns:
-    """Triangles by squares of a grid, seen along an axis."""
+    """Triangles in the squares of a grid across an axis."""
 
     def __init__(self, triangles, axis):
         self.triangles, self.axis = triangles, axis
@@ -38,10 +38,10 @@ class Columns:
                     self.squares[i, j].append(k)
 
     def crossings(self, p):
-        """Of the ray from p along the axis."""
+        """Number of crossings of the ray from p along the axis."""
         a, b, c = (self.triangles[self.squares.get(tuple(((p[self.sides] - self.low) // self.step).astype(int)), [])] - p).swapaxes(0, 1)
         u, v = self.sides
-        # The areas of the three parts, seen along the axis, have one sign where the line meets the triangle.
+        # The areas of the three parts, projected along the axis, have equal signs if the line hits the triangle.
         areas = np.stack([q[:, u] * r[:, v] - q[:, v] * r[:, u] for q, r in ((b, c), (c, a), (a, b))])
         met = (areas > 0).all(axis=0) | (areas < 0).all(axis=0)
         heights = np.stack([q[met, self.axis] for q in (a, b, c)])
@@ -83,7 +83,7 @@ for row in rows:
     if within:
         deepest = max(deepest, distance(p, triangles))
     if still:
-        # A triangle so near has its first corner no farther off than the longest edge more.
+        # The first corner of a triangle within `near` is at most the longest edge farther away.
         first, last = np.searchsorted(triangles[:, 0, 0], [p[0] - near - longest, p[0] + near + longest])
         close = triangles[first:last][(np.abs(triangles[first:last, 0] - p) <= near + longest).all(axis=1)]
         resting += int(len(close) > 0 and distance(p, close) <= near)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads binary PLY files of relief-sim without its code: read(path) -> a list of rows, each a dict by property."""
+"""Reads binary PLY files of relief-sim without its code: read(path) returns a list of rows, each a dict of properties."""
 import struct
 
 KINDS = {'float': 'f', 'int': 'i', 'uint': 'I', 'uchar': 'B', 'ushort': 'H'}

@@ -1,9 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Which processes run. One that has ended does not, though nobody has waited for it: not every container's first process
-waits for orphans.
+"""Finds running processes. Zombies do not count as running: not every container's first process reaps orphans.
 
-    processes.py PID    waits up to 5 s until neither the process nor one of its group runs; exit code 1: one does
+    processes.py PID    waits up to 5 s until the process and its group have ended; exit code 1 if one still runs
 """
 import os
 import sys
@@ -11,7 +10,7 @@ import time
 
 
 def runs(number):
-    """Whether a process of this number, or of this group, does."""
+    """Whether a process with this ID or in this group runs."""
     for name in os.listdir('/proc'):
         if name.isdigit():
             try:
@@ -25,7 +24,7 @@ def runs(number):
 
 
 def gone(number, seconds):
-    """Waits: the kernel takes its time to end the importer of a parent that is gone."""
+    """Waits, because the kernel may end the importer of a dead parent with a delay."""
     end = time.monotonic() + seconds
     while runs(number):
         if time.monotonic() > end:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Preloaded into an executable: a GPU that never finishes. libepoxy's entry points are pointers, replaced
-// here before the first call.
+// Preloaded into an executable to simulate a GPU that never finishes. libepoxy's entry points are pointers, which are
+// replaced here before the first call.
 #include <epoxy/gl.h>
 #include <unistd.h>
 

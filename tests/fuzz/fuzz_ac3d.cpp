@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// AC3D: whatever the bytes, parts whose corners exist and nodes that form trees, or one line.
+// AC3D: any input gives polygons with valid corners and nodes that form trees, or a one-line error.
 #include <span>
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small meshes of bad habits: solids on integers that touch, overlap, lie within each other, in the same place or inside
-// out; sheets, slivers and loose triangles. The sides of 2,000 points are compared with exact arithmetic, and none that
-// is deep in the solid may be outside of what is baked.
+// Small difficult meshes: integer solids that touch, overlap, nest, coincide or are inside out; sheets, slivers and
+// loose triangles. Compares the sides of 2,000 points with exact arithmetic. No point deep in the solid may be outside
+// the baked collider.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -23,14 +23,14 @@ namespace {
 using namespace relief;
 
 constexpr int kPoints = 2000;
-/// Coordinates are at most 64, and are counted in these steps: a determinant of differences has less than 127 bits.
+/// Coordinates are at most 64, in these steps: a determinant of differences has less than 127 bits.
 constexpr double kSteps = 0x1p30;
 constexpr double kThickness = 0.4;
 
 __extension__ using Int128 = __int128;
 using Exact = std::array<std::int64_t, 3>;
 
-/// The bytes of an input, one after the other, and zeros behind them.
+/// The bytes of an input, followed by zeros.
 class Bytes {
   public:
     explicit Bytes(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -83,7 +83,7 @@ class MeshMaker {
         add(corners, triangles);
     }
 
-    /// The last part again: as it is, inside out, smaller about its middle, or moved by a hair.
+    /// Repeats the last part: unchanged, inside out, smaller about its middle, or slightly moved.
     void addAgain(Bytes& bytes) {
         std::vector<glm::vec3> positions;
         std::vector<glm::uvec3> triangles;
@@ -120,7 +120,7 @@ class MeshMaker {
                 addBox(low, bytes.point(8) + 1.0F);
                 break;
             }
-            case 2: {  // a tetrahedron, maybe a sliver
+            case 2: {  // a tetrahedron, possibly a sliver
                 const glm::vec3 a = bytes.point(16);
                 const glm::vec3 b = bytes.point(16);
                 const glm::vec3 c = bytes.point(16);
@@ -144,7 +144,7 @@ class MeshMaker {
                 }
                 break;
             }
-            case 5: {  // a box without a triangle or two
+            case 5: {  // a box without one or two triangles
                 const glm::vec3 low = bytes.point(12);
                 addBox(low, bytes.point(8) + 1.0F);
                 mesh_.triangles.resize(mesh_.triangles.size() - 1 - bytes.below(2));
@@ -156,10 +156,10 @@ class MeshMaker {
     }
 
     TriangleMesh mesh_;
-    std::size_t last_first_ = 0;  // triangle of the last part
+    std::size_t last_first_ = 0;  // first triangle of the last part
 };
 
-/// Sides by exact arithmetic, along +x. Shares no code with the baker.
+/// Sides by exact arithmetic along +x. Shares no code with the baker.
 class Oracle {
   public:
     explicit Oracle(const PreparedMesh& mesh) : mesh_(mesh), shells_(mesh.woundShells()) {
@@ -173,13 +173,13 @@ class Oracle {
         return {one(p.x), one(p.y), one(p.z)};
     }
 
-    /// nullopt: the ray meets an edge.
+    /// \return nullopt if the ray hits an edge
     [[nodiscard]] std::optional<bool> inside(const glm::vec3& point) const {
         const Exact p = exact(point);
         const std::vector<std::uint32_t>& bodies = mesh_.bodies();
         int winding = 0;
         bool odd = false;
-        std::set<std::uint32_t> crossed;  // bodies, an odd number of times
+        std::set<std::uint32_t> crossed;  // bodies crossed an odd number of times
         for (std::size_t i = 0; i < mesh_->triangles.size(); ++i) {
             const glm::uvec3& t = mesh_->triangles[i];
             const std::optional<int> way = crosses(p, positions_[t.x], positions_[t.y], positions_[t.z]);
@@ -199,12 +199,12 @@ class Oracle {
   private:
     static int sign(Int128 v) { return v > 0 ? 1 : v < 0 ? -1 : 0; }
 
-    /// Of the triangle p, a, b seen along x.
+    /// Orientation of the triangle p, a, b in the view along x.
     static int turn(const Exact& p, const Exact& a, const Exact& b) {
         return sign(Int128{a[1] - p[1]} * (b[2] - p[2]) - Int128{a[2] - p[2]} * (b[1] - p[1]));
     }
 
-    /// The way in which the ray from p along +x crosses a triangle, or 0.
+    /// The direction in which the ray from p along +x crosses a triangle, or 0.
     static std::optional<int> crosses(const Exact& p, const Exact& a, const Exact& b, const Exact& c) {
         const std::array<int, 3> turns = {turn(p, a, b), turn(p, b, c), turn(p, c, a)};
         const int least = *std::min_element(turns.begin(), turns.end());
@@ -215,7 +215,7 @@ class Oracle {
         if (least == 0 || most == 0) {
             return std::nullopt;
         }
-        // On which side of the triangle's plane p lies: the crossing is ahead on one of them.
+        // The crossing is ahead if p is on the right side of the triangle's plane.
         const auto d = [&p](const Exact& corner, std::size_t k) { return Int128{corner[k] - p[k]}; };
         const auto minor = [&](std::size_t i, std::size_t k) {
             return d(b, i) * d(c, k) - d(b, k) * d(c, i);
@@ -229,7 +229,7 @@ class Oracle {
     std::vector<Exact> positions_;
 };
 
-/// How deep a point must be in the solid that its texel is solid all about it.
+/// The depth from which a point's texel is completely inside the solid.
 double boundAt(const DepthMap& map, const glm::vec3& p) {
     const glm::dvec3 scale = map.object_per_map;
     const double largest = std::max({scale.x, scale.y, scale.z});
@@ -268,13 +268,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     options.maps = mapsOf(bytes);
     Result<TriangleMesh> mesh = finishMesh(MeshMaker().make(bytes));
     if (!mesh) {
-        return 0;  // no triangle with an area
+        return 0;  // no triangle has an area
     }
     Result<Winding> winding = windOutwards(std::move(*mesh));
     mustHold(winding.has_value(), "any mesh can be wound");
     Result<ShapedMesh> shaped = shapeMesh(winding->mesh, {ShapeAs::kAuto, kThickness, {}});
     if (!shaped) {
-        return 0;  // one line says why
+        return 0;  // rejected with a one-line error
     }
     const PreparedMesh& solid = shaped->mesh;
     const Result<MeshQuery> query = MeshQuery::build(solid);
@@ -288,7 +288,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const glm::vec3 extent = solid->bounds.size();
     const double grain = 1e-5 * solid->bounds.longestSide();
     std::uint64_t state = size;
-    const auto share = [&] {  // Knuth's generator (MMIX)
+    const auto share = [&] {  // Knuth's MMIX generator
         state = state * 6364136223846793005U + 1442695040888963407U;
         return static_cast<float>(state >> 40U) * 0x1p-24F;
     };

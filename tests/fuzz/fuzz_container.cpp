@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Containers: whatever the bytes, a collider that can be written again or an error.
+// Containers: any input gives a collider that can be written again, or an error.
 #include <cmath>
 #include <span>
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace {
 
-/// Texels that one input may take: the reader's limits are for machines, this one is for speed.
+/// Limit of texels per input, for speed. The reader's own limits are higher.
 constexpr relief::ContainerLimits kLimits{16, std::uint64_t{1} << 22};
 
 }  // namespace
@@ -37,7 +37,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     mustHold(written_again.has_value() && *written_again == *written,
              "the same collider gives the same bytes");
 
-    // Votes and nearest surfaces about, in and far outside of the box, and where floats end.
+    // Votes and nearest surfaces near, in and far outside the box, and at the limits of floats.
     const auto ask = [&](const glm::vec3& p) {
         const relief::FieldSample vote = relief::evaluate(*collider, p);
         const relief::SurfaceSample nearest = relief::nearestSurface(*collider, p);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// glTF and GLB: whatever the bytes, triangles of positions that exist, or an error of one line.
+// glTF and GLB: any input gives triangles with valid positions, or a one-line error.
 #include <algorithm>
 #include <span>
 #include <string>

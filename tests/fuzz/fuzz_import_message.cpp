@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the import worker answers: whatever its bytes, a mesh that the baker may walk through or one line that
-// names the mesh file.
+// Results of the import worker: any bytes give a valid mesh, or a one-line error that names the mesh file.
 #include <stdlib.h>
 
 #include <cmath>
@@ -21,11 +20,11 @@ using relief::ImportSource;
 using relief::Result;
 using relief::TriangleMesh;
 
-constexpr double kCoordinateMax = 1e15;  // finishMesh's
+constexpr double kCoordinateMax = 1e15;  // the limit of finishMesh()
 constexpr std::size_t kErrorBytesMax = 5000;
-constexpr std::size_t kNames = 3;  // that were asked for, where there are marks
+constexpr std::size_t kNames = 3;  // number of requested names, for inputs with marks
 
-/// A mesh file that the messages pretend to be of; gone again as soon as it is read.
+/// The mesh file to which the messages belong. It is deleted after it is opened.
 ImportSource openSource() {
     std::string pattern = (fs::temp_directory_path() / "relief-fuzz-XXXXXX").string();
     mustHold(::mkdtemp(pattern.data()) != nullptr, "a folder can be made");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OBJ, OFF, PLY and STL, and what a file is: whatever the bytes, polygons whose corners exist, or one line.
+// OBJ, OFF, PLY and STL, and format detection: any input gives polygons with valid corners, or a one-line error.
 #include <numeric>
 #include <span>
 #include <string>
@@ -29,7 +29,7 @@ void mustBePolygons(const relief::PolygonMesh& mesh) {
     }
 }
 
-/// Everything that is said of a file before a reader has it.
+/// Format detection before a reader runs.
 void mustBeJudged(std::span<const std::byte> bytes) {
     for (const char* extension : {"obj", "stl", "dae", "glb", "blend"}) {
         mustHold(relief::otherFormat(extension, bytes) != extension, "another format is another");

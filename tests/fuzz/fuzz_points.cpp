@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lists of points, of an emitter (PLY or text) and of `relief query`.
+// Point lists of an emitter (PLY or text) and of `relief query`.
 #include <cmath>
 #include <string_view>
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recipes: assets whose options an ordinary bake could be given, or one line that names file, line and
-// column.
+// Recipes: any input gives assets with valid options of a bake, or one line with file, line and column.
 #include "bake/recipe/recipe.h"
 
 #include <regex>
@@ -49,7 +48,7 @@ void mustBeAsset(const RecipeAsset& asset) {
                      "a value is one");
         }
     }
-    // The words of a command line: an option each, whatever the value.
+    // Each command-line argument is one known option.
     for (const std::string& argument : relief::recipeArguments(asset.options)) {
         bool known = false;
         for (const RecipeKey& key : kKeys) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scene files: a scene or one line that names file, line and column.
+// Scene files: any input gives a scene, or one line with file, line and column.
 #include <string_view>
 
 #include "runtime/scene/scene.h"

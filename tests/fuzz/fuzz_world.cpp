@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// World files: a world that is written back the same, or one line.
+// World files: any input gives a world that round-trips, or a one-line error.
 #include <cmath>
 #include <string_view>
 

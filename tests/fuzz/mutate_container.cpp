@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mutants of a checksummed format die at the checksum. So most of them get all of theirs mended, and what
-// lies behind is met.
+// Mutations of a format with checksums are rejected early. So most mutants get correct checksums, to reach the code
+// behind.
 #include <cstring>
 #include <span>
 
@@ -12,10 +12,10 @@ namespace {
 
 using relief::ContainerHeader;
 
-/// The checksums of the payloads, in the metadata, if it can be read at all.
+/// Corrects the payload checksums in the metadata, if it can be read.
 void mendPayloads(std::span<std::uint8_t> bytes, const ContainerHeader& header) {
     std::uint8_t* metadata = bytes.data() + header.metadata_offset;
-    // FlatBuffers wants the metadata aligned as in the file; a vector's bytes are.
+    // FlatBuffers requires the file's alignment, which the vector has.
     flatbuffers::Verifier verifier(metadata, header.metadata_size);
     if (!relief::fb::VerifyColliderBuffer(verifier)) {
         return;
@@ -35,7 +35,7 @@ void mendPayloads(std::span<std::uint8_t> bytes, const ContainerHeader& header) 
     }
 }
 
-/// Makes the size and every checksum say what the bytes do.
+/// Corrects the size and every checksum.
 void mend(std::span<std::uint8_t> bytes) {
     ContainerHeader header;
     if (bytes.size() < sizeof(header)) {
@@ -54,7 +54,7 @@ void mend(std::span<std::uint8_t> bytes) {
 
 }  // namespace
 
-// Of libFuzzer.
+// Provided by libFuzzer.
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
 
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,

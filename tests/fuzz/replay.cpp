@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Feeds a fuzz target every file of the folders named on the command line: relief_replay_X FOLDER….
+// Runs a fuzz target on every file in the given folders: relief_replay_X FOLDER….
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
             std::fprintf(stderr, "%s cannot be read\n", file.c_str());
             return 1;
         }
-        std::printf("%s\n", file.filename().c_str());  // the last one, should the next line crash
+        std::printf("%s\n", file.filename().c_str());  // in case the run crashes
         std::fflush(stdout);
         LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
     }

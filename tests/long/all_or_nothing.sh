@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Kills relief while it writes, makes its writing fail, and races several writers (tests/cli/atomic_outputs.sh), for
-# RELIEF_ATOMIC_ROUNDS rounds (20 by default); and kills and fails its import worker (tests/cli/import_faults.sh). Prints
-# what it counted; with --page also into bake/measure/trust.md.
+# Kills relief during writes, injects write errors, and races several writers (tests/cli/atomic_outputs.sh), for
+# RELIEF_ATOMIC_ROUNDS rounds (default: 20). Also kills the import worker and injects errors (tests/cli/import_faults.sh).
+# Prints the counts; --page also writes them into bake/measure/trust.md.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Bakes meshes in surroundings that must not matter, and compares the bytes: tests/long/determinism.sh [--quick | --page].
-# Prints a table of SHA-256 and ends with 0 if no mesh has two; 7 if one has.
+# Bakes meshes in different environments and compares the bytes: tests/long/determinism.sh [--quick | --page].
+# Prints a table of SHA-256 hashes. Exit status: 0 if each mesh has one hash, otherwise 7.
 #
 #   (nothing)   204 bakes: ten meshes, the paper's maps and patches; threads, locale, time zone, folder, umask,
 #               GCC -O2, GCC -O0 and Clang, glibc without FMA and AVX2, and two other processors by QEMU
-#   --quick     two meshes in six cells, with the executables in RELIEF_BIN alone
-#   --page      the full run, and its summary into bake/measure/trust.md
+#   --quick     two meshes in six cells, with only the executables in RELIEF_BIN
+#   --page      the full run; writes its summary into bake/measure/trust.md
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
@@ -26,7 +26,7 @@ tar -xzf /usr/share/doc/libcgal-dev/data.tar.gz -C "$work" data/meshes
 bunny=/usr/share/glmark2/models/bunny.obj
 off() { echo "$work/data/meshes/$1.off"; }
 
-# relief_of BUILD: builds relief another way, in a build folder of its own; prints the executable.
+# relief_of BUILD OPTION…: builds relief with these options in a separate folder; prints the path of the executable.
 relief_of() {
     local folder=build/determinism-$1
     shift
@@ -44,7 +44,7 @@ else
     executable[clang]=$(relief_of clang -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=RelWithDebInfo)
     executable[debug]=$(relief_of debug -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0)
 fi
-cpu() { # MODEL: QEMU speaks of features that it lacks; relief's own errors come through its exit code.
+cpu() { # MODEL: QEMU prints warnings about missing features, so errors are detected by exit code.
     command -v qemu-x86_64-static >/dev/null || {
         echo "determinism.sh: qemu-x86_64-static is missing; run scripts/setup.sh" >&2
         exit 2
@@ -52,7 +52,7 @@ cpu() { # MODEL: QEMU speaks of features that it lacks; relief's own errors come
     echo "qemu-x86_64-static -cpu $1"
 }
 no_fma=GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX2_Usable,-FMA_Usable
-# Where a locale is not installed, setlocale() fails, and that must not matter either.
+# If the locale is not installed, setlocale() fails, which must not matter either.
 turkish=LC_ALL=tr_TR.UTF-8
 
 paper=(--paper --resolution 128)
@@ -87,7 +87,7 @@ cell() {
     printf '%s|%s|%s|%s\n' "$(basename "$mesh")" "$kind" "$name" "$hash" >>"$work/rows"
 }
 
-# under KIND MESH: the cells that need one executable alone.
+# under KIND MESH: the cells that need only one executable.
 threads() {
     local n
     for n in 1 2 3 8; do

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Looks for bugs with libFuzzer, under the sanitizers: tests/long/fuzz.sh [SECONDS [TARGET…]], by default 60 seconds a
-# target and all of tests/fuzz. What it finds is in out/fuzz/: fix the bug, and put the input into tests/fuzz/corpus/.
+# Runs libFuzzer under sanitizers: tests/long/fuzz.sh [SECONDS [TARGET…]], by default 60 seconds for each target in
+# tests/fuzz. Failing inputs are in out/fuzz/: fix the bug, and add the input to tests/fuzz/corpus/.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
@@ -22,7 +22,7 @@ for target in "${targets[@]}"; do
     found=out/fuzz/$target
     mkdir -p "$found/corpus"
     timeout=10
-    [ "$target" != bake ] || timeout=60 # it draws some hundred thousand points, under sanitizers
+    [ "$target" != bake ] || timeout=60 # tests several hundred thousand points under sanitizers
     options=(-max_total_time="$seconds" -timeout="$timeout" -rss_limit_mb=2048 -print_final_stats=1 -artifact_prefix="$found/")
     cat {tests/fuzz,out/fuzz/dictionaries}/"$target".dict >"$found/dict" 2>/dev/null || true
     [ ! -s "$found/dict" ] || options+=(-dict="$found/dict")

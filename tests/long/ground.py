@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Hills for scripts/nightly.sh ground: heights that are a sum of one over x and one over z, so that any is known at once.
+"""Hills for scripts/nightly.sh ground. Heights are the sum of a profile over x and one over z, so any height is cheap to compute.
 
-ground.py write OUT.r16 SIDE [--high 300]             samples of 16 bits
-ground.py points OUT.csv SIDE COUNT [--aside 256]     a metre above all seams of tiles of 512, or so many metres beside them
-ground.py scene WORLD SIDE KIND POINTS COUNT [--stream MB]  a scene to standard output, of drops or balls from there
-ground.py below DUMP.ply SIDE [--high 300]            how many particles lie below the surface, by how much at most, the highest
-ground.py kicks BEFORE.ply AFTER.ply                  the energy, J/kg, that 999 of 1000 balls have gained at most, and that any has
+ground.py write OUT.r16 SIDE [--high 300]             writes 16-bit samples
+ground.py points OUT.csv SIDE COUNT [--aside 256]     writes points a metre above all seams of tiles of 512, or ASIDE beside them
+ground.py scene WORLD SIDE KIND POINTS COUNT [--stream MB]  prints a scene with drops or balls from these points
+ground.py below DUMP.ply SIDE [--high 300]            prints counts, the maximum depth and the maximum height
+ground.py kicks BEFORE.ply AFTER.ply                  prints the 99.9th percentile and the maximum of energy gains in J/kg
 """
 import argparse
 import array
@@ -24,7 +24,7 @@ GRAVITY = 9.81
 
 
 def profile(side, turn):
-    """Slopes up to 0.4 at 300 m, in samples' units."""
+    """Heights in sample units, with slopes up to 0.4 at 300 m."""
     waves = [(120.0, 0.43), (47.0, 0.2), (19.0, 0.06)]
     return [HIGHEST / 4 * (1 + sum(share * math.sin(i / length + turn * (k + 1)) for k, (length, share) in enumerate(waves)))
             for i in range(side)]
@@ -41,7 +41,7 @@ def write(out, side):
 
 
 class Surface:
-    """Bilinear between the samples as they were written."""
+    """The bilinear surface of the written samples."""
 
     def __init__(self, side, high):
         self.side, self.scale = side, high / 65535
@@ -60,7 +60,7 @@ def particles(dump):
 
 
 def points(out, side, count, aside):
-    """On both sides of every line, a metre above the surface."""
+    """Points on both sides of every line, a metre above the surface."""
     chance = random.Random(7)
     surface = Surface(side, 300)
     seams = range(TILE + aside, side - 20, TILE)

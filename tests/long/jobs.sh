@@ -1,18 +1,18 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# The jobs of scripts/nightly.sh: tests/long/jobs.sh JOB runs one and shows all of its output; without JOB it prints name, group
-# and minutes of each. A job ends with an error if a command fails, and prints its figures as "JOB: …". tests/README.md
-# says what each proves.
+# The jobs of scripts/nightly.sh. tests/long/jobs.sh JOB runs one job and prints all of its output; without JOB it prints the
+# name, group and minutes of each job. A job fails if a command fails, and prints its results as "JOB: …". tests/README.md
+# describes the jobs.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
-threads=$(($(nproc) + 1)) # some tests wait more than they work
+threads=$(($(nproc) + 1)) # some tests mostly wait
 jobs=()
 
 # job GROUP MINUTES NAME: declares the function job_NAME below it.
 job() {
     ! declare -F "job_$3" >/dev/null || {
-        echo "jobs.sh: two jobs are called '$3'" >&2
+        echo "jobs.sh: two jobs have the name '$3'" >&2
         exit 2
     }
     jobs+=("$3 $1 $2")
@@ -20,17 +20,17 @@ job() {
 
 say() { echo "$name: $*"; }
 
-# built NAME OPTION…: a build of another configuration; sets `build`. A job that runs again compiles only what changed.
+# built NAME OPTION…: builds another configuration incrementally; sets `build`.
 built() {
     build=build/nightly/$1
     cmake -G Ninja -S . -B "$build" -DCMAKE_BUILD_TYPE=RelWithDebInfo "${@:2}"
     cmake --build "$build"
 }
 
-# release TARGET…: the release build, or only these targets of it; sets `bin`.
+# release [TARGET…]: builds release, or only these targets; sets `bin`.
 release() { bin=$(scripts/build.sh release "$@"); }
 
-# tested BUILD OPTION…: runs tests of a build by ctest.
+# tested BUILD OPTION…: runs the tests of a build with ctest.
 tested() {
     local status=0
     ctest --test-dir "$1" --no-tests=error --output-on-failure -j "$threads" "${@:2}" | tee "$work/ctest.log" || status=$?
@@ -38,7 +38,7 @@ tested() {
     return $status
 }
 
-# programs FILTER PROGRAM…: runs those cases of test programs; a program may have none.
+# programs FILTER PROGRAM…: runs the matching cases of test programs; a program may have none.
 programs() {
     local program count=0 status=0
     for program in "${@:2}"; do
@@ -53,7 +53,7 @@ programs() {
 
 # --- nightly ---
 
-# These have jobs of their own.
+# These tests have separate jobs.
 strace_tests='^cli[.](atomic_outputs|import_faults)$'
 sample_tests='^cli[.](samples|demo|lead_through)$'
 other_tests='^(python[.]|fuzz[.]|docs$|bench|oracle[.]|vdb[.])|^cli[.]vdb$'
@@ -127,7 +127,7 @@ job_web() {
     return $status
 }
 
-# sanitized OPTION…: tests in a build with all sanitizers in all folders, and -O1, because numbers take long at -O0.
+# sanitized OPTION…: runs tests in a build with all sanitizers, and -O1, because -O0 is too slow.
 sanitized() {
     built sanitize --preset sanitize -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG='-O1 -g1'
     export ASAN_OPTIONS=detect_leaks=1:intercept_tls_get_addr=0:strict_string_checks=1:allocator_may_return_null=1
@@ -171,7 +171,7 @@ job nightly 5 seeds
 job_seeds() {
     local seed=${RELIEF_TEST_SEED:-$(date +%Y%m%d)} next
     release relief relief-sim relief_{unit,import,bake}_test
-    # All that draws its cases by seedFrom() (tests/seeds.h).
+    # All tests that use seedFrom() (tests/seeds.h).
     RELIEF_TEST_SEED=$seed programs 'Voxels.*:ImportGltf.*:ImportFormat.*:ImportParts.*:ImportMessage.*:Shape.*:Winding.*:Mutated*.*' \
         "$bin"/relief_{unit,import,bake}_test
     for next in 1 2 3 4 5 6 7 8 9; do
@@ -187,7 +187,7 @@ job_import() {
     python3 - "$work/import.json" <<'P'
 import json, sys
 test = json.load(open(sys.argv[1]))['testsuites'][0]['testsuite'][0]
-print(f"import: {test['tried']} files, {test['read']} of them read, the others refused")
+print(f"import: {test['tried']} files, {test['read']} of them read, the others rejected")
 P
 }
 
@@ -206,7 +206,7 @@ print(f"level: {verdict['wrong_percent']:.2g} % wrong near the surface, {verdict
       f"worst nodes: {', '.join('%s %.0f %%' % (node['name'], node['wrong_percent']) for node in nodes[:3])}")
 sys.exit(0 if verdict['grade'] != 'good' and verdict['lost_parts'] > 0 and nodes[0]['name'] != 'terrain' else 1)
 P
-    # As a world of the same bytes it is right.
+    # A world with the same budget is accurate.
     "$bin/relief" bake "$work/level.glb" --world "$work/world" --budget 16MB -q
     "$bin/relief" check "$work/world/world.json" --mesh "$work/level.glb" --within 0.5 --max-error 2
 }
@@ -234,7 +234,7 @@ job_packages() {
     mkdir -p "$room/doc"
     scripts/build.sh web # for the pages of scenes
     scripts/build.sh packages
-    # Twice: the same sources give the same packages.
+    # Packages are reproducible.
     for round in 1 2; do
         rm -rf build/packages/deb
         SOURCE_DATE_EPOCH=$(git log -1 --format=%ct) cpack --preset packages
@@ -247,7 +247,7 @@ job_packages() {
     cp build/packages/deb/*.deb tests/long/try_packages.sh /usr/share/glmark2/models/bunny.obj "$room/"
     python3 tests/cli/level.py "$room/level.glb"
     cp --parents README.md bake/python/README.md "$room/doc/"
-    # First the users' packages, without a compiler or documentation; then the programmers'; then none.
+    # Installs the packages for users, without a compiler or documentation, then those for developers, then removes all.
     in_bare 'cd /srv/relief
         export DEBIAN_FRONTEND=noninteractive
         apt-get update -qq
@@ -259,7 +259,7 @@ job_packages() {
         apt-get remove -y -qq relief librelief1 librelief-dev python3-relief
         left=$(find /usr -ipath "*relief*" ! -path "/usr/share/doc/*")
         [ -z "$left" ] || { echo "left behind: $left"; exit 1; }'
-    say "removed, they leave nothing behind"
+    say "removal leaves no files"
 }
 
 # --- weekly ---
@@ -282,7 +282,7 @@ job_core() {
     cmake --build --preset core --target clean
     begun=$SECONDS
     cmake --build --preset core
-    say "builds alone in $((SECONDS - begun)) s"
+    say "builds separately in $((SECONDS - begun)) s"
     programs '*' build/core/bin/relief_core_test
     ! ldd build/core/bin/relief_core_test | grep -E 'assimp|embree|OpenEXR|png|spdlog|tbb'
 }
@@ -308,7 +308,7 @@ job_embree4() {
             cmp "$work/3.relief" "$work/4.relief"
         done
     done
-    # All but how long it took.
+    # The report without times.
     checked() { # EXECUTABLE COLLIDER
         "$1" check "$work/$2" --mesh "$mesh" --json | sed "s/$2/the.relief/" |
             python3 -c 'import json, sys; d = json.load(sys.stdin); del d["times_ms"]; print(json.dumps(d, indent=1))'
@@ -316,7 +316,7 @@ job_embree4() {
     checked "$bin/relief" 3.relief >"$work/3.json"
     checked "$build/bin/relief" 4.relief >"$work/4.json"
     diff "$work/3.json" "$work/4.json"
-    say "nine bakes of three meshes are the same bytes"
+    say "nine bakes of three meshes give equal bytes"
 }
 
 job weekly 90 sweep
@@ -336,7 +336,7 @@ P
     return $status
 }
 
-# RELIEF_SOAK_SETTLED and RELIEF_SOAK_STEPS give other steps.
+# RELIEF_SOAK_SETTLED and RELIEF_SOAK_STEPS override the steps.
 job weekly 60 rest
 job_rest() {
     local steps settled=${RELIEF_SOAK_SETTLED:-5000} end=${RELIEF_SOAK_STEPS:-100000}
@@ -344,7 +344,7 @@ job_rest() {
     "$bin/relief" bake /usr/share/glmark2/models/bunny.obj -o "$work/bunny.relief" -q
     printf '%s\n' '[collider]' 'file = "bunny.relief"' '[particles]' 'capacity = 10000' '[emitter]' 'burst = 10000' \
         'rate = 0.0' 'lifetime = 10000.0' >"$work/rest.toml"
-    # The same scene gives the same particles, so two runs are the same run, looked at twice.
+    # Runs are deterministic, so two runs show one run at two times.
     for steps in "$settled" "$end"; do
         "$bin/relief-sim" "$work/rest.toml" --steps "$steps" --dump "$work/$steps.ply" -q
     done
@@ -355,7 +355,7 @@ work, settled, steps = sys.argv[1:]
 def positions(name):
     data = open(f'{work}/{name}.ply', 'rb').read()
     body = data[data.index(b'end_header\n') + 11:]
-    # x y z vx vy vz age lifetime id type; compares the bits of x y z, because -0 is not 0.
+    # x y z vx vy vz age lifetime id type; x y z are compared bitwise, to distinguish -0 and 0.
     return {row[8]: row[:3] for row in struct.iter_unpack('<10I', body)}
 
 before, after = positions(settled), positions(steps)
@@ -431,7 +431,7 @@ drops, stream, balls, aside = ([float(word) for word in open(f'{sys.argv[1]}/{na
 print(f'ground: {drops[0]:.0f} drops on seams, {drops[1]:.0f} deeper than 5 cm, the deepest {1000 * drops[2]:.0f} mm, the highest '
       f'{1000 * drops[3]:.0f} mm; with 6 MB the deepest {stream[2]:.2f} m; of balls 999 of 1000 gain at most {balls[1]:.3f} J/kg, beside '
       f'seams {aside[1]:.3f}, and any at most {balls[2]:.2f} and {aside[2]:.2f}')
-# Coarse tiles, of every fourth sample, are up to 1.5 m off.
+# Coarse tiles use every fourth sample and have errors up to 1.5 m.
 sys.exit(0 if drops[1] == 0 and drops[3] < 0.05 and stream[2] < 1.5 and stream[0] == drops[0] and balls[1] < 0.05 and
          balls[2] < 1.1 * aside[2] + 0.05 else 1)
 P
@@ -467,7 +467,7 @@ job_slurm() {
     RELIEF=$bin/relief tests/long/slurm.sh "$work"
 }
 
-# in_bare COMMAND: runs it there as root. Its mounts and processes end with it.
+# in_bare COMMAND: runs COMMAND in $work/bare as root. Its mounts and processes end with it.
 in_bare() {
     # shellcheck disable=SC2016
     unshare --mount --pid --fork bash -c '
@@ -479,33 +479,33 @@ in_bare() {
 # make_bare PACKAGES: a minimal Debian 12 with PACKAGES in $work/bare.
 make_bare() {
     [ "$(id -u)" = 0 ] || {
-        say "needs root, because it makes a system; use sudo"
+        say "needs root to create a system; use sudo"
         return 1
     }
     scripts/setup.sh mmdebstrap
-    # From where this system has its packages.
+    # Uses the package sources of this system.
     # shellcheck disable=SC2016
     apt-get indextargets --format 'deb $(REPO_URI) $(RELEASE) $(COMPONENT)' 'Created-By: Packages' 'Origin: Debian' |
         grep -E ' bookworm(-updates|-security)? ' >"$work/sources.list"
     mmdebstrap --quiet --variant=minbase --include="$1" bookworm "$work/bare" - <"$work/sources.list"
     cp /etc/resolv.conf "$work/bare/etc/"
-    # It trusts whom this system trusts: a mirror may have a certificate of its own.
+    # Copies the trusted certificates of this system, because a mirror can have its own certificate.
     mkdir -p "$work/bare/etc/ssl/certs"
     cp /etc/ssl/certs/ca-certificates.crt "$work/bare/etc/ssl/certs/"
     echo 'cafile=/etc/ssl/certs/ca-certificates.crt' >"$work/bare/etc/npmrc"
 }
 
-# The README's test command where nothing is installed; then without root, and without a GL.
+# The README's test command on a minimal system, then without root, and without OpenGL.
 job nightly 25 bare
 job_bare() {
     make_bare ca-certificates,git
     git clone -q --no-hardlinks . "$work/bare/srv/relief"
     in_bare '/srv/relief/.ci/run' 2>&1 | tee "$work/ci.log"
     say ".ci/run passes: $(sed -n 's/^test.sh: //p' "$work/ci.log" | paste -sd, | sed 's/,/, /g')"
-    # The same tree, so that its builds are there already: whose they are matters to tests, not to compilers.
+    # Uses the existing builds of this tree: permissions affect the tests, not the compiler.
     in_bare 'useradd -m user && chown -R user: /srv/relief && su user -s /bin/bash -c "/srv/relief/scripts/test.sh"'
     say "scripts/test.sh passes without root"
-    # No driver, and no library of EGL: a command that needs a GPU says so in a line, and the others work.
+    # Without a driver and EGL, commands that need a GPU fail with one line, and the others work.
     in_bare 'apt-get remove -y -qq libegl-mesa0 libegl1 libgl1-mesa-dri
         cd /root
         bin=/srv/relief/build/test/bin
@@ -518,7 +518,7 @@ job_bare() {
         $bin/relief-sim bunny.relief --steps 3 >out 2>err || code=$?
         # one line that names what to install
         [ $code = 5 ] && [ ! -s out ] && [ "$(wc -l <err)" = 1 ] && grep "error: .*libegl1" err'
-    say "without a GL the CPU bakes, and what needs a GPU says what to install"
+    say "without OpenGL, bakes work, and commands that need a GPU name the missing package"
 }
 
 if [ $# -eq 0 ]; then

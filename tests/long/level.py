@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Makes a level to judge colliders by: level.py OUT.glb [--props 200] [--size 1000] [--cells 500] [--seed 1]
+"""Writes a level for accuracy tests: level.py OUT.glb [--props 200] [--size 1000] [--cells 500] [--seed 1]
 
-A terrain of hills, a node, and as many pieces of Debian's sweethome3d-furniture on it, 1.6 m long, a node each: fifty
-models by turns. The same arguments give the same bytes.
+A node with hilly terrain, and `props` nodes with furniture of Debian's sweethome3d-furniture, 1.6 m long: fifty models in turn.
+Equal arguments give equal bytes.
 """
 import argparse
 import math
@@ -22,7 +22,7 @@ LONG = 1.6
 
 
 def read_obj(text):
-    """Positions and triangles; polygons as fans."""
+    """Positions and triangles; polygons become fans."""
     points, triangles = [], []
     for line in text.splitlines():
         words = line.split()
@@ -36,7 +36,7 @@ def read_obj(text):
 
 
 def furniture():
-    """Fifty models, evenly from all that have 200 to 20,000 triangles, by name."""
+    """Fifty models, selected evenly by name from those with 200 to 20,000 triangles."""
     found = []
     for archive in 'KatorLegaz', 'Scopia':
         with zipfile.ZipFile(f'{FURNITURE}/{archive}.sh3f') as file:

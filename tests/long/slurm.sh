@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# samples/slurm on a cluster of this machine only: slurm.sh FOLDER, with RELIEF naming the executable. Bakes models and a level
-# with a task that is requeued, a task that is killed, and broken meshes; a second run bakes the rest, a third nothing, and
-# a fourth the level, of which a container is gone. Needs root.
+# Runs samples/slurm on a cluster of only this machine: slurm.sh FOLDER, with the executable in RELIEF. Bakes models and a
+# level with a requeued task, a killed task, and broken meshes. A second run bakes the rest, a third nothing, and a fourth the
+# level, after a container was deleted. Needs root.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 scripts/setup.sh slurm-wlm munge sweethome3d-furniture unzip
@@ -67,7 +67,7 @@ report() { python3 -c "import json; d = json.load(open('$out/reports/report.json
 counts="[d['baked'], d['failed'], d['unfinished_tasks']]"
 submit
 sleep 20
-# A node that dies: Slurm begins its task again. And one that is killed for good.
+# A task on a node that dies, which Slurm restarts, and a task that is killed permanently.
 scontrol requeue "$((job - 1))_1" || true
 sleep 2
 pkill -KILL -f "shard 2/$tasks" || true

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Tries installed packages as their users would: try_packages.sh MESH PART…, on a system that has nothing else of Relief.
-# Part `tools` also reads level.glb from the folder of MESH. `scripts/nightly.sh packages` runs it in a bare Debian. Parts:
+# Tests installed packages as their users would: try_packages.sh MESH PART…, on a system without other parts of Relief.
+# Part `tools` also reads level.glb from the folder of MESH. `scripts/nightly.sh packages` runs it in a minimal Debian. Parts:
 #
 #   tools        the commands of README.md, "Use"; the manual
 #   python       the program of bake/python/README.md
 #   development  the projects of scripts/install/README.md, a program in C
 #
-# Pages are read where librelief-dev puts them; RELIEF_DOC says another place.
+# Pages are read from the folder of librelief-dev, or from RELIEF_DOC.
 set -euo pipefail
 
 doc=${RELIEF_DOC:-/usr/share/doc/relief}
@@ -26,23 +26,23 @@ tools() {
     mkdir -p meshes/rocks && cp "$mesh" meshes/rocks/a.obj
     printf 'version = 1\n[[asset]]\nmesh = "meshes/**/*.obj"\noutput = "baked/{stem}.relief"\nbudget = "64kB"\n' >colliders.toml
     sed -n '/^## Use$/,/ --world level /s/^    \(relief.*[^ ]\)  *#.*/\1/p' "$doc/README.md" >commands
-    [ "$(wc -l <commands)" -ge 5 ] || die "README.md shows $(wc -l <commands) commands"
+    [ "$(wc -l <commands)" -ge 5 ] || die "README.md contains $(wc -l <commands) commands"
     while read -r line; do
         bash -euc "$line" >said 2>&1 </dev/null || die "$line: $(tail -5 said)"
         echo "  $line"
     done <commands
     for file in bunny.relief bunny.html end.ply slice.png frames/frame_0000.png baked/a.relief level/world.json; do
-        [ -s $file ] || die "no $file was written"
+        [ -s $file ] || die "$file was not written"
     done
-    relief bake --recipe colliders.toml -j 2 >said 2>&1 || die "the recipe fails the second time: $(tail -5 said)"
-    # Manual pages where man finds them, if it is there.
-    [ -s /usr/share/man/man1/relief-bake.1.gz ] || die "no manual of relief bake"
+    relief bake --recipe colliders.toml -j 2 >said 2>&1 || die "the second run of the recipe fails: $(tail -5 said)"
+    # Manual pages are in the folder of man. If man is installed, it finds them.
+    [ -s /usr/share/man/man1/relief-bake.1.gz ] || die "the manual page of relief bake is missing"
 }
 
 python() {
     cp "$mesh" bunny.obj
     sed -n '/^```python$/,/^```$/{//!p}' "$doc/bake/python/README.md" >program.py
-    [ "$(wc -l <program.py)" -ge 5 ] || die "bake/python/README.md shows no program"
+    [ "$(wc -l <program.py)" -ge 5 ] || die "bake/python/README.md contains no program"
     python3 program.py >said 2>&1 || die "Python: $(tail -5 said)"
     python3 - said bunny.relief <<'P'
 import pathlib, sys
@@ -64,10 +64,10 @@ development() {
     between install:recipe >consumer/colliders.toml
     cp "$mesh" consumer/bunny.obj
     cp "$mesh" consumer/box.obj
-    { cmake -G Ninja -S consumer -B out && cmake --build out; } >said 2>&1 || die "the project of the page: $(tail -20 said)"
-    out/snowfall out/bunny.relief | grep -qE '^[0-9]+ maps, ' || die "the project's program says something else"
+    { cmake -G Ninja -S consumer -B out && cmake --build out; } >said 2>&1 || die "the project of the page does not build: $(tail -20 said)"
+    out/snowfall out/bunny.relief | grep -qE '^[0-9]+ maps, ' || die "the project's program prints something else"
     read -ra flags < <(pkg-config --cflags --libs relief-runtime)
-    g++ -std=c++20 consumer/main.cpp -o by_pkg_config "${flags[@]}" || die "pkg-config"
+    g++ -std=c++20 consumer/main.cpp -o by_pkg_config "${flags[@]}" || die "does not build by pkg-config"
     cat >load.c <<'C'
 #include <relief.h>
 #include <stdio.h>

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """blender -b --factory-startup --python-exit-code 1 -P blender_addon.py -- ADDON RELIEF RELIEF_SIM FOLDER [PICTURE.png]
 
-Bakes, checks and plays in Blender, and holds it against the tools and against closed forms. PYTHONPATH names the package.
+Bakes, checks and plays in Blender, and compares the results with the tools and with closed forms. PYTHONPATH must contain the
+package.
 """
 import importlib.util
 import math
@@ -39,7 +40,7 @@ bpy.context.scene.collection.objects.link(light)
 bpy.context.view_layer.objects.active = light
 refused(bpy.ops.relief.bake, "not a mesh")
 
-# A sphere, moved, turned, and scaled by a negative number: a closed form in the world's space.
+# A translated and rotated sphere with negative scale: a closed form in world space.
 bpy.ops.mesh.primitive_uv_sphere_add(segments=96, ring_count=48, radius=1.0, location=(2, -1, 3), rotation=(0.3, 0.2, 0.1),
                                      scale=(-0.5, 0.5, 0.5))
 ball = bpy.context.active_object
@@ -58,7 +59,7 @@ for up in ("Z", "Y"):
     assert ((distance < 0) == (truth < 0))[clear].all(), f"{up} up: sides"
     assert 0 <= ball.relief.wrong < 1, ball.relief.wrong
 
-# The same maps as the tool bakes from the same triangles.
+# The tool bakes the same maps from the same triangles.
 vertices, triangles = addon.world_mesh(bpy.context, ball)
 with open(folder / "ball.obj", "w") as out:
     for v in addon.to_relief(vertices, "Y"):
@@ -71,7 +72,7 @@ for name in ("ball_Y", "tool"):
 for file in (folder / "tool").iterdir():
     assert file.read_bytes() == (folder / "ball_Y" / file.name).read_bytes(), f"the add-on bakes another {file.name}"
 
-# The overlay is coloured by the distance that the collider says of the surface, and white where that is 0.
+# The overlay's colours show the collider's distance at the surface; white is 0.
 bpy.ops.mesh.primitive_monkey_add(size=2)
 monkey = bpy.context.active_object
 monkey.modifiers.new("subsurf", "SUBSURF").levels = 2
@@ -120,7 +121,7 @@ if picture:
     scene.camera = camera
     bpy.ops.render.render(write_still=True)
 
-# Edits since are noticed; hiding brings the object back.
+# Later edits are detected, and hiding the overlay restores the object.
 bpy.context.view_layer.objects.active = monkey
 monkey.location.x += 1
 bpy.context.view_layer.update()
@@ -129,7 +130,7 @@ assert bpy.ops.relief.hide_errors() == {"FINISHED"}
 assert not monkey.hide_get() and addon.OVERLAY + monkey.name not in bpy.data.objects
 assert not [one for one in bpy.data.objects if one.get("relief_of")]
 
-# A cache of relief-sim, on the monkey, frame by frame.
+# A particle cache of relief-sim, on the monkey, frame by frame.
 (folder / "s.toml").write_text("""
 [collider]
 file = "ball_Y.relief"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Animated colliders in Python: baked with the options of the tool, and played by a scene."""
+"""Animated colliders in Python: baked with the tool's options and played by a scene."""
 import os
 import pathlib
 import subprocess

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the package makes of arguments that are wrong, odd or hostile: never a silent answer, never an error of the binding."""
+"""Wrong, unusual and hostile arguments: never a silent result, never an internal error of the binding."""
 import copy
 import gc
 import inspect
@@ -147,7 +147,7 @@ def test_colliders_are_pickled_and_copied(collider):
     one = pickle.loads(pickle.dumps(collider.maps[0]))
     assert np.array_equal(one.texels, collider.maps[0].texels) and copy.copy(one).format == one.format
     assert relief.load(bytearray(collider.to_bytes(19))).to_bytes() == collider.to_bytes()
-    for method in ("fork", "spawn"):  # a pool that is forked after this process has used its threads
+    for method in ("fork", "spawn"):  # a pool that is forked after this process has started threads
         with multiprocessing.get_context(method).Pool(2) as pool:
             assert pool.map_async(ask, [collider] * 4).get(timeout=60) == [ask(collider)] * 4
     with pytest.raises(TypeError, match="relief.bake"):
@@ -256,7 +256,7 @@ def test_another_thread_is_refused(scene):
     assert simulation.time == pytest.approx(11 / 60, rel=1e-3)
     holder = [simulation]
     del simulation
-    thread = threading.Thread(target=lambda: (holder.clear(), gc.collect()))  # its last reference
+    thread = threading.Thread(target=lambda: (holder.clear(), gc.collect()))  # drops the last reference
     thread.start()
     thread.join()
     relief.Simulation(scene).step(1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Ctrl-C, a real SIGINT to a program of its own, is obeyed within about a second, whatever the package is at."""
+"""Ctrl-C, a real SIGINT to a separate program, stops any work of the package within about a second."""
 import os
 import pathlib
 import signal
@@ -11,7 +11,7 @@ import pytest
 
 BIN = pathlib.Path(os.environ["RELIEF_BIN"])
 BUNNY = "/usr/share/glmark2/models/bunny.obj"
-# Prints "begun", works for much more than a second, and tells what ended it.
+# Prints "begun", works for much more than a second, and prints what stopped it.
 PROGRAM = """
 import sys, time
 import numpy as np
@@ -25,7 +25,7 @@ except KeyboardInterrupt:
     {after}
     print("goes on", flush=True)
 """
-LIMIT = 4.0  # seconds; a moment where nothing else runs, and the work takes at least ten times as long
+LIMIT = 4.0  # seconds; an idle machine needs far less, and the work takes at least ten times as long
 BAKE = 'relief.bake("%s", budget="64MB", quality="best")' % BUNNY
 WORK = {
     "planned": (BAKE, "", 0.3),
@@ -40,8 +40,8 @@ WORK = {
 
 
 def interrupt(program, wait):
-    """Runs the program, and sends SIGINT a while after it says that it has begun, which it must obey in time. Returns the rest of
-    what it says, its errors and its exit status."""
+    """Runs the program and sends SIGINT `wait` seconds after it prints "begun". It must react in time. Returns the rest of its
+    output, its errors and its exit status."""
     process = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     try:
         assert process.stdout.readline() == "begun\n", process.stderr.read()

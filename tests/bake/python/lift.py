@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A cube of side 2 as glTF, whose node moves as clips say: lift.py FILE NAME=X,Y,Z…, the place within 1 s."""
+"""Writes a cube of side 2 as glTF with one clip per argument: lift.py FILE NAME=X,Y,Z…, the position after 1 s."""
 import base64
 import json
 import pathlib

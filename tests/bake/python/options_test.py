@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""relief.bake() and relief.check() are `relief bake` and `relief check`: the same options, bytes and verdicts."""
+"""relief.bake() and relief.check() have the options, bytes and verdicts of `relief bake` and `relief check`."""
 import inspect
 import json
 import os
@@ -15,7 +15,7 @@ import relief
 
 BIN = pathlib.Path(os.environ["RELIEF_BIN"])
 
-# Two parts: a closed box, and a sheet over it, which is open.
+# Two parts: a closed box, and an open sheet above it.
 SCENE = """o box
 {}
 f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8
@@ -33,7 +33,7 @@ def mesh(tmp_path_factory):
     return path
 
 
-# Each with the words of the command line that mean the same; every option is in one. A bake of 60 kB is small and quick.
+# Arguments with the equivalent command line. They cover every option. A bake of 60 kB is small and fast.
 PATCHES = {"budget": "60kB", "no_check": True}
 WAYS = [
     (dict(budget=np.int64(60_000), quality="fast", threads=1), ["--budget", "60kB", "--quality", "fast", "--threads", "1"]),
@@ -56,7 +56,7 @@ WAYS = [
 
 
 def by_themselves():
-    """Fields that are flags or whose values the help of the tool names, and that no other way has: one way for each."""
+    """A way for each remaining field that is a flag or whose values the tool's help lists."""
     tried = set().union(*(arguments for arguments, _ in WAYS))
     said = tool("bake", "--help").stdout
     for name, kind, *_ in relief._relief.bake_fields():
@@ -97,7 +97,7 @@ def test_no_option_of_the_tool_is_missing():
     assert others < said
     assert {"map" if name == "maps" else name.rstrip("_").replace("_", "-") for name in has} == said - others
     used = set().union(*(arguments for arguments, _ in WAYS))
-    assert has - used == {"heights", "animated", "clips"}  # the next tests'
+    assert has - used == {"heights", "animated", "clips"}  # covered by the next tests
 
 
 def test_height_maps_are_ground(mesh, tmp_path):
@@ -136,7 +136,7 @@ CHECKS = [dict(samples=3000), dict(samples=3000, detail=0.5),
     (bake, dict(samples=4e3, seed=7)) for bake in (dict(holes="keep"), dict(repair="wrap=0.05"), dict(as_="shell"),
                                                    dict(as_="sheet=terrain"), dict(thickness=0.3))], ids=str)
 def test_a_check_judges_as_the_tool_does(bake, arguments, mesh, tmp_path):
-    """Each option of a check, and the solid of each way to bake one."""
+    """Every option of a check, and the solid of every way to bake."""
     assert set().union(*CHECKS) | {"seed"} == set(inspect.signature(relief.check).parameters) - {"collider", "mesh", "triangles"}
     frame = {name: arguments[name] for name in ("unit", "up") if name in arguments}
     words = [f"--{name.replace('_', '-')}={value if isinstance(value, str) else format(value, 'g')}"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The package relief against the tools and against closed forms."""
+"""The Python package compared with the tools and with closed forms."""
 import json
 import os
 import pathlib
@@ -18,7 +18,7 @@ BUNNY = "/usr/share/glmark2/models/bunny.obj"
 
 
 def sphere(stacks=64, slices=128):
-    """A unit sphere's vertices and triangles, wound outwards."""
+    """Vertices and triangles of a unit sphere, wound outward."""
     theta = np.linspace(0, np.pi, stacks + 1)[1:-1]
     phi = np.linspace(0, 2 * np.pi, slices, endpoint=False)
     ring = np.stack([np.outer(np.sin(theta), np.cos(phi)), np.outer(np.cos(theta), np.ones(slices)),
@@ -106,14 +106,14 @@ def test_maps_are_arrays():
     texels = collider.maps[0].texels
     before = texels.copy()
     del collider, one
-    assert np.array_equal(texels, before)  # the array keeps the collider
+    assert np.array_equal(texels, before)  # the array keeps the collider alive
 
 
 def test_patches_have_a_tree_and_no_depths(tmp_path):
     one = relief.bake(*sphere(24, 24), maps="patches:bytes=8kB").maps[0]
     assert one.format == "patches" and one.texels.dtype == np.uint16 and one.texels.shape == (1, one.height, one.width, 4)
     roots = one.texels[0, 0, 0, :3].astype(int)
-    # Its first texels are the header and the records of the roots, and some root holds a piece of the sphere.
+    # The first texels are the header and the root records. At least one root must contain a part of the sphere.
     kinds = one.texels[0].reshape(-1, 4)[1:1 + roots.prod(), 0] & 3
     assert roots.min() >= 1 and (kinds >= 2).any()
     for name in ("depth", "back_depth"):
@@ -198,7 +198,7 @@ def test_a_simulation_and_its_hits_are_those_of_relief_sim(bunny, tmp_path):
 
 
 def test_the_stub_has_what_the_module_has():
-    """_relief.pyi names each class, function and member of the compiled module, and nothing else."""
+    """_relief.pyi lists exactly the classes, functions and members of the compiled module."""
     import ast
     import inspect
 

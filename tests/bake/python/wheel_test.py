@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`pip install .` in a fresh virtual environment, without a network: what it installs bakes, and lacks nothing."""
+"""`pip install .` in a fresh virtual environment without a network: the installed package is complete and bakes."""
 import base64
 import hashlib
 import os
@@ -15,14 +15,14 @@ BUILD = pathlib.Path(os.environ["RELIEF_BIN"]).parent
 SOURCE = pathlib.Path(os.environ["RELIEF_SOURCE"])
 BUNNY = "/usr/share/glmark2/models/bunny.obj"
 VERSION = re.search(r"project\(Relief VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text())[1]
-# Neither this build nor an index of packages is to be found.
+# Hides this build and the package index.
 ENVIRONMENT = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"} | {
     "PIP_NO_INDEX": "1", "PIP_DISABLE_PIP_VERSION_CHECK": "1", "PIP_NO_CACHE_DIR": "1"}
 
 
 @pytest.fixture(scope="module")
 def python(tmp_path_factory):
-    """Of an environment that has Debian's numpy, and relief as pip installs it from the sources and this build."""
+    """The interpreter of an environment with Debian's numpy and with relief, installed by pip from the sources and this build."""
     folder = tmp_path_factory.mktemp("venv")
     subprocess.run([sys.executable, "-m", "venv", "--without-pip", "--system-site-packages", folder], check=True)
     before = sorted(SOURCE.iterdir())

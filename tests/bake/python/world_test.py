@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Worlds in Python: the union of placed colliders, by numpy from the colliders themselves."""
+"""Worlds in Python, compared with a union of the placed colliders by numpy."""
 import json
 import os
 import pathlib
@@ -29,7 +29,7 @@ def world(folder):
 
 
 def matrix(x, y, z, w):
-    """Of a quaternion, in doubles."""
+    """The rotation matrix of a quaternion, in doubles."""
     return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
                      [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
                      [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
