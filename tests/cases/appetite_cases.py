@@ -84,13 +84,13 @@ def bake(cases, folder):
     if done is None:
         return
     if done.returncode == 0:
-        cases.expect((folder / "a.relief").exists(), "exit code 0 without a file")
+        cases.expect((folder / "a.relief").exists(), "exit code 0, but no file")
         return
-    cases.expect(not (folder / "a.relief").exists(), "an error, and a file")
+    cases.expect(not (folder / "a.relief").exists(), "an error, but a file exists")
     cases.expect(done.returncode in (3, 4, 6) and "a.obj" in done.stderr,
                  f"{make.__name__}: exit code {done.returncode}: {done.stderr}")
     for option in ("--map", "dir or box", "--resolution"):
-        cases.expect(option not in done.stderr, f"names what nobody gave: {done.stderr}")
+        cases.expect(option not in done.stderr, f"names an option that was not given: {done.stderr}")
 
 
 def main():

@@ -79,7 +79,7 @@ class Cases:
     def fail(self, why):
         """Records that the current case failed, with its first reason."""
         if self.failures.setdefault(self.case, why) is why:
-            print(f"{self.name}: {why}; repeat by: python3 {sys.argv[0]} {self.bin} --seed {self.seed} --only {self.case}",
+            print(f"{self.name}: {why}; repeat with: python3 {sys.argv[0]} {self.bin} --seed {self.seed} --only {self.case}",
                   file=sys.stderr)
 
     def finish(self):

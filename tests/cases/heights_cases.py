@@ -170,7 +170,7 @@ def check_points(cases, folder, ground, stated):
             truths[-1] = None
     rows = query(cases, folder, "a.relief", points)
     wrong = [(p, truth) for p, row, truth in zip(points, rows or [], truths) if truth is not None and (row[3] < 0) != truth]
-    cases.expect(not wrong, f"{len(wrong)} of {POINTS} points are on the wrong side, first {wrong[:1]}, stated error {stated}")
+    cases.expect(not wrong, f"{len(wrong)} of {POINTS} points are wrong, first {wrong[:1]}, reported error {stated}")
 
 
 def check_other_formats(cases, folder, ground):
@@ -180,7 +180,7 @@ def check_other_formats(cases, folder, ground):
     settings += ["low=0", f"high={100 * ground.spacing!r}"] if kind == "uint16" else []
     done = cases.run("relief", "bake", ground.name, "-o", "b.relief", "--heights", ",".join(settings), cwd=folder)
     named = done and any(words in done.stderr for words in ("another format", "hole=", "type and order", "give --heights", "rows of"))
-    cases.expect(named, f"{ground.kind} {ground.order} is read as {kind} {order} without a word of the format: {done and done.stderr}")
+    cases.expect(named, f"{ground.kind} {ground.order} is read as {kind} {order} without a warning about the format: {done and done.stderr}")
 
 
 def check(cases, folder):
@@ -193,11 +193,11 @@ def check(cases, folder):
     if not done:
         return
     report = json.loads(done.stdout)
-    cases.expect((report["columns"], report["rows"]) == (ground.columns, ground.rows), "another size")
+    cases.expect((report["columns"], report["rows"]) == (ground.columns, ground.rows), "wrong size")
     if report["error_max"] is not None:
         check_points(cases, folder, ground, report["error_max"])
     checked = cases.run("relief", "check", "a.relief", "--mesh", ground.name, "--samples", "2000", "--json", cwd=folder)
-    if cases.expect(checked and checked.returncode == 0, f"not checked: {checked and checked.stderr}"):
+    if cases.expect(checked and checked.returncode == 0, f"check failed: {checked and checked.stderr}"):
         wrong = json.loads(checked.stdout)["near"]["wrong_percent"]
         cases.expect(wrong < 1, f"check finds {wrong} % wrong")
     if ground.format == "raw" and not any(None in row for row in ground.heights):  # holes are spikes in another format

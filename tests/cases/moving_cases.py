@@ -111,16 +111,16 @@ def check(cases, folder, kind):
         '[[type]]\non_collision = "die"\n[[emitter]]\nshape = "points"\npoints = "points.csv"\nvelocity = [0, 0, 0]\n'
         f"velocity_spread = [0, 0, 0]\nrate = 0\nburst = {DROPS}\nlifetime = [1000, 1000]\n")
     done = cases.run("relief-sim", "s.toml", "--dump", "a.ply", "--events", "a.jsonl", "-q", cwd=folder, seconds=120)
-    if not cases.expect(done and done.returncode == 0, f"not played: {done and done.stderr}"):
+    if not cases.expect(done and done.returncode == 0, f"not simulated: {done and done.stderr}"):
         return
     what = f"{kind}: half {motion.half}, way {motion.way}, angle {motion.angle}, scale {motion.scale}"
     left = [(row["x"], row["y"], row["z"]) for row in ply.read(folder / "a.ply")]
     passed = [p for p in left if min(motion.distance(p, i / STEPS) for i in range(1, STEPS + 1)) < -margin]
-    cases.expect(not passed, f"{len(passed)} of {DROPS} drops live, first {passed[:1]}, which the box passes over; {what}")
+    cases.expect(not passed, f"{len(passed)} of {DROPS} drops in the path of the box live, first {passed[:1]}; {what}")
     hits = [json.loads(line) for line in (folder / "a.jsonl").read_text().splitlines()]
     cases.expect(len(hits) + len(left) == DROPS, f"{len(hits)} hits and {len(left)} left of {DROPS}; {what}")
     clear = [hit for hit in hits if min(motion.distance(hit["position"], i / STEPS) for i in range(STEPS + 1)) > margin + 0.05 * texel]
-    cases.expect(not clear, f"{len(clear)} drops were hit that the box stays clear of, first {clear[:1]}; {what}")
+    cases.expect(not clear, f"{len(clear)} drops outside the path of the box were hit, first {clear[:1]}; {what}")
 
 
 def main():

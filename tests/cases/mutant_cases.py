@@ -197,14 +197,14 @@ def check(cases, folder, mesh, must_bake):
     (folder / 'tmp').mkdir()
     done = cases.run('relief', 'bake', mesh, *OPTIONS, seconds=15, cwd=folder, env={**os.environ, 'TMPDIR': folder / 'tmp'})
     left = orphans()
-    cases.expect(not left, f'{mesh.name}: processes are left: {left}')
+    cases.expect(not left, f'{mesh.name}: processes are still running: {left}')
     if not done:
         return 'hung'
     files = sorted(set(os.listdir(folder)) - given - {'tmp'}) + os.listdir(folder / 'tmp')
     cases.expect(files == (['out.relief'] if done.returncode == 0 else []), f'{mesh.name}: exit code {done.returncode}, files {files}')
     if done.returncode == 0:
         sound = cases.run('relief', 'check', 'out.relief', cwd=folder)
-        cases.expect(sound and sound.returncode == 0, f'{mesh.name}: baked, and not sound: {sound and sound.stdout}')
+        cases.expect(sound and sound.returncode == 0, f'{mesh.name}: baked, but invalid: {sound and sound.stdout}')
         return 'baked'
     lines = done.stderr.splitlines()
     cases.expect(len(lines) == 1 and lines[0].startswith('relief: error: ') and mesh.name in lines[0], f'{mesh.name}: {done.stderr}')
@@ -223,7 +223,7 @@ def main():
         mesh = models[number // 4 % len(models)] if packaged else write_mutant(folder, number, cases.random)
         ends[check(cases, folder, mesh, number < len(PACKAGED))] += 1
     print('mutants: ' + ', '.join(f'{count} {end}' for end, count in sorted(ends.items())))
-    cases.expect(cases.only is not None or {'baked', 'exit code 3'} <= set(ends), f'the mutants try nothing: {ends}')
+    cases.expect(cases.only is not None or {'baked', 'exit code 3'} <= set(ends), f'the mutants test nothing: {ends}')
     cases.finish()
 
 

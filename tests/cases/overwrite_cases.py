@@ -215,9 +215,9 @@ def main():
                 continue
             text = " ".join(command)
             lost = arena.unchanged()
-            cases.expect(lost is None, f"{lost} is lost: {text}")
+            cases.expect(lost is None, f"{lost} was overwritten: {text}")
             cases.expect(not refused or done.returncode == 1, f"exit code {done.returncode}, not 1: {text}: {done.stderr}")
-            cases.expect(refused or done.returncode == 0, f"refused: {text}: {done.stderr}")
+            cases.expect(refused or done.returncode == 0, f"rejected: {text}: {done.stderr}")
             left = [path.name for path in folder.rglob(".relief-*") if path.name != ".relief-cache.json"]
             cases.expect(not left, f"left behind: {left}: {text}")
     cases.finish()

@@ -39,7 +39,7 @@ def check_physics(cases, folder):
     for number in used:
         stated = {**DEFAULTS, **materials[number]}
         got = found.get(stated["name"])
-        if cases.expect(got, f"{stated} is lost: {found}"):
+        if cases.expect(got, f"{stated} is missing: {found}"):
             cases.expect(abs(got["restitution"] - min(stated["restitution"], 1)) < NEAR
                          and abs(got["friction"] - min(stated["dynamicFriction"], 1)) < NEAR, f"{materials[number]} became {got}")
 
@@ -107,7 +107,7 @@ def check_by_hand(cases, folder):
         kind = "added" if thing in added else "renamed" if thing in renamed else "moved" if thing in moved else "kept"
         cases.expect(friction == thing.friction, f"{kind} '{thing.name}' at {thing.x} has {friction}, not {thing.friction}")
     for thing in removed:
-        cases.expect(not thing.friction or re.search(f"'{thing.name}'", done.stderr), f"'{thing.name}' is gone: {done.stderr}")
+        cases.expect(not thing.friction or re.search(f"'{thing.name}'", done.stderr), f"'{thing.name}' is not reported: {done.stderr}")
 
 
 def main():

@@ -88,11 +88,11 @@ def check(cases, folder, collider):
     done = cases.run('relief-sim', 'scene.toml', '--dump', 'out.ply', '-q', seconds=300, cwd=folder)
     if not done:
         return 'hung'
-    cases.expect((done.returncode == 0) == (folder / 'out.ply').exists(), f'exit code {done.returncode} beside a dump')
+    cases.expect((done.returncode == 0) == (folder / 'out.ply').exists(), f'exit code and dump do not match: {done.returncode}')
     if done.returncode == 0:
         rows = ply.read(folder / 'out.ply')
         wrong = sum(not all(map(math.isfinite, row.values())) for row in rows)
-        cases.expect(wrong == 0, f'{wrong} of {len(rows)} particles are no numbers')
+        cases.expect(wrong == 0, f'{wrong} of {len(rows)} particles have values that are not finite')
         return 'played'
     named = 'scene.toml:' in done.stderr and (done.returncode == 3 or 'type' in done.stderr)
     cases.expect(done.returncode in (3, 4) and len(done.stderr.splitlines()) == 1 and named, f'exit code {done.returncode}: {done.stderr}')
@@ -110,7 +110,7 @@ def main():
         (folder / 'bunny.relief').write_bytes(collider)
         ends[check(cases, folder, 'bunny.relief')] += 1
     print('scenes: ' + ', '.join(f'{count} {end}' for end, count in sorted(ends.items())))
-    cases.expect(cases.only is not None or 2 * ends['played'] >= cases.count, f'most are not played: {ends}')
+    cases.expect(cases.only is not None or 2 * ends['played'] >= cases.count, f'most scenes were rejected: {ends}')
     cases.finish()
 
 

@@ -51,7 +51,7 @@ def check_faces(cases, folder, box, what):
     for far in AT_FACE, BESIDE_FACE:
         own = [(row, axis, sign) for row, (axis, sign, other) in zip(rows or [], faces) if other == far]
         off = sum(box.off_normal(row, axis, sign, FACE_ANGLE) for row, axis, sign in own)
-        cases.expect(off <= 0.002 * len(own), f"{off} of {len(own)} normals within {far} of faces are off by {FACE_ANGLE} degrees: {what}")
+        cases.expect(off <= 0.002 * len(own), f"{off} of {len(own)} normals within {far} of faces have errors above {FACE_ANGLE} degrees: {what}")
 
 
 def check_large(cases, folder):
@@ -61,7 +61,7 @@ def check_large(cases, folder):
     seconds = used.ru_utime + used.ru_stime - before.ru_utime - before.ru_stime
     if done:
         taken = sum(one["bytes"] for one in json.loads(done.stdout)["maps"])
-        cases.expect(taken <= LARGE_BYTES and seconds <= LARGE_SECONDS, f"a box takes {taken} bytes and {seconds:.1f} s of {LARGE}")
+        cases.expect(taken <= LARGE_BYTES and seconds <= LARGE_SECONDS, f"a box uses {taken} bytes of {LARGE} and {seconds:.1f} s")
 
 
 def check(cases, folder, number):
@@ -98,10 +98,10 @@ def check(cases, folder, number):
         normals += box.off_normal(row, axis, 1 if local[axis] > 0 else -1, INSIDE_ANGLE)
         depths += abs(row[3] + depth) > near + 0.1 * depth
     what = f"half {box.half}, {budget} kB, shell {thickness}"
-    cases.expect(sides <= POINTS // 200, f"{sides} of {POINTS} points are on the wrong side: {what}")
+    cases.expect(sides <= POINTS // 200, f"{sides} of {POINTS} points are wrong: {what}")
     most = judged * (3 if budget == 64 else 1) // 100
-    cases.expect(normals <= most, f"{normals} of {judged} normals are off by more than {INSIDE_ANGLE} degrees: {what}")
-    cases.expect(depths <= most, f"{depths} of {judged} depths are off: {what}")
+    cases.expect(normals <= most, f"{normals} of {judged} normals have errors above {INSIDE_ANGLE} degrees: {what}")
+    cases.expect(depths <= most, f"{depths} of {judged} depths are wrong: {what}")
     return None if thickness else check_faces(cases, folder, box, what)
 
 

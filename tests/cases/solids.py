@@ -91,4 +91,4 @@ def query(cases, folder, file, points, *options):
 def bake(cases, folder, mesh, *options, seconds=60):
     """The finished process, or None after a failure."""
     done = cases.run("relief", "bake", mesh, *options, cwd=folder, seconds=seconds)
-    return done if cases.expect(done and done.returncode == 0, f"not baked: {done and done.stderr}") else None
+    return done if cases.expect(done and done.returncode == 0, f"bake failed: {done and done.stderr}") else None

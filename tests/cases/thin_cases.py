@@ -79,7 +79,7 @@ def check(cases, folder, as_world):
         return
     done = cases.run("relief", "check", file, "--mesh", "a.obj", "--samples", "20000", "--json", cwd=folder)
     text = cases.run("relief", "check", file, "--mesh", "a.obj", "--samples", "20000", cwd=folder)
-    if not cases.expect(done and text and done.returncode == text.returncode == 0, f"not checked: {done and done.stderr}"):
+    if not cases.expect(done and text and done.returncode == text.returncode == 0, f"check failed: {done and done.stderr}"):
         return
     report = json.loads(done.stdout)
     for house in houses:
@@ -92,12 +92,12 @@ def check(cases, folder, as_world):
         if as_world:
             named = [one for one in report["accuracy"]["lost_parts"] if one["mesh"] == house.name]
             lost = named[0]["lost"] if named else 0
-            cases.expect(not lost or house.name in text.stdout + text.stderr, f"the text names no {house.name}")
+            cases.expect(not lost or house.name in text.stdout + text.stderr, f"the text does not name {house.name}")
         else:
             lost = report["parts"]["lost"]
         cases.expect(lost >= count, f"check names {lost} lost parts; {what}")
         if all(share < HELD for share in shares):
-            cases.expect(not lost, f"check names {lost} lost parts that are there; {what}")
+            cases.expect(not lost, f"check names {lost} lost parts that exist; {what}")
 
 
 def main():

@@ -246,7 +246,7 @@ def check_warnings(cases, tree, stderr, left_out):
     for reason, words in (("hidden", r"left out (\d+) hidden object"), ("level", r"left out (\d+) lower level")):
         said = re.search(words, stderr)
         count = left_out.count(reason)
-        cases.expect((int(said[1]) if said else 0) == count, f"{count} boxes are left out ({reason}), and it says: {stderr}")
+        cases.expect((int(said[1]) if said else 0) == count, f"{count} boxes are skipped ({reason}), but the output is: {stderr}")
     if tree.missing:
         said = re.search(r"'#nothing\d'.*?(?:and (\d+) more)?$", stderr, re.MULTILINE | re.DOTALL)
         more = re.search(r"and (\d+) more like it", stderr)
@@ -266,7 +266,7 @@ def check_tree(cases, folder, kind):
         reasons = [tree.shown(node, keep) for node in boxes]
         if None not in reasons:
             done = cases.run("relief", "bake", file, "-o", "a.relief", "-q", cwd=folder)
-            cases.expect(done and done.returncode == 3 and "--hidden keep" in done.stderr, f"nothing is shown: {done}")
+            cases.expect(done and done.returncode == 3 and "--hidden keep" in done.stderr, f"everything is hidden: {done}")
             continue
         options = ["--hidden", "keep"] if keep else []
         done = bake(cases, folder, file, "-o", "a.relief", "--budget", "256kB", "--no-check", "--warnings-only", *options)
@@ -301,12 +301,12 @@ def check_names(cases, folder):
     cases.expect(len(world["bodies"]) == len(names), f"{len(world['bodies'])} bodies of {names}")
     for file in sorted(path.name for path in (folder / "w").rglob("*")):
         cases.expect(re.fullmatch(r"[^/\x00-\x1f\u202a-\u202e\u2066-\u2069]{1,255}", file), f"file {file!r}")
-    cases.expect(sorted(path.name for path in folder.iterdir()) == ["a.gltf", "w"], f"files beside the world: {names}")
+    cases.expect(sorted(path.name for path in folder.iterdir()) == ["a.gltf", "w"], f"unexpected files: {names}")
     for command in (["check"], ["info"], ["check", "--mesh", "a.gltf"]):
         checked = cases.run("relief", command[0], "w/world.json", *command[1:], cwd=folder)
         cases.expect(checked and checked.returncode == 0, f"{command} of {names}: {checked and checked.stderr}")
         texts += [checked.stdout, checked.stderr] if checked else []
-    cases.expect(not any(UNSAFE.search(text) for text in texts), f"control characters are printed: {names}")
+    cases.expect(not any(UNSAFE.search(text) for text in texts), f"control characters in the output: {names}")
     rows = query(cases, folder, "w/world.json", [(3 * i, 0, 0) for i in range(len(names))])
     cases.expect(rows and all(row[3] < 0 for row in rows), f"a body is missing: {names}")
 

@@ -31,7 +31,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::vector<int> parents(scene->nodes.size(), 0);
     for (std::uint32_t i = 0; i < scene->nodes.size(); ++i) {
         for (const std::uint32_t child : scene->nodes[i].children) {
-            mustHold(child > i && child < parents.size(), "kids come later");
+            mustHold(child > i && child < parents.size(), "children follow their parents");
             ++parents[child];
         }
         for (const std::uint32_t part : scene->nodes[i].parts) {
@@ -42,10 +42,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         ++parents[root];
     }
     for (const int count : parents) {
-        mustHold(count == 1, "each node has one place");
+        mustHold(count == 1, "each node has one parent or is a root");
     }
     const relief::MeshParts& counts = scene->counts;
-    mustHold(counts.loose <= counts.unused && counts.unused <= counts.vertices,
-             "loose vertices are unused ones");
+    mustHold(counts.loose <= counts.unused && counts.unused <= counts.vertices, "loose vertices are unused");
     return 0;
 }

@@ -278,7 +278,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     const PreparedMesh& solid = shaped->mesh;
     const Result<MeshQuery> query = MeshQuery::build(solid);
-    mustHold(query.has_value(), "a solid can be asked");
+    mustHold(query.has_value(), "a solid can be queried");
     const Result<Baked> baked = bake(solid, options);
     if (!solid.closed()) {
         return 0;
@@ -304,12 +304,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (!inside) {
             continue;
         }
-        mustHold(query->inside(p) == *inside, "the truth is the exact one");
+        mustHold(query->inside(p) == *inside, "the truth equals exact arithmetic");
         if (*inside && baked) {
             const FieldSample sample = evaluate(baked->collider, p);
             mustHold(sample.map < 0 || sample.inside() ||
                          distance <= boundAt(baked->collider.maps[static_cast<std::size_t>(sample.map)], p),
-                     "nothing deep is outside");
+                     "no deep point is outside");
         }
     }
     return 0;

@@ -26,13 +26,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         mustBeLine(collider.error().message);
         return 0;
     }
-    mustHold(info.has_value(), "what can be read has a header and metadata");
-    mustHold(info->payloads.size() == collider->maps.size(), "one payload a map");
+    mustHold(info.has_value(), "a readable container has a header and metadata");
+    mustHold(info->payloads.size() == collider->maps.size(), "one payload per map");
 
     const auto written = relief::writeContainer(*collider);
-    mustHold(written.has_value(), "what was read can be written");
+    mustHold(written.has_value(), "a collider can be written");
     const auto again = relief::readContainer(*written, kLimits);
-    mustHold(again.has_value(), "what was written can be read");
+    mustHold(again.has_value(), "a written container can be read");
     const auto written_again = relief::writeContainer(*again);
     mustHold(written_again.has_value() && *written_again == *written,
              "the same collider gives the same bytes");

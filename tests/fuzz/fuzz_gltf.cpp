@@ -25,7 +25,7 @@ void mustBeTriangles(const relief::TriangleMesh& mesh, std::size_t names) {
         mustHold(std::max({t.x, t.y, t.z}) < mesh.positions.size(), "corners exist");
     }
     for (const std::uint8_t mark : mesh.marks) {
-        mustHold(mark <= names, "marks are of names");
+        mustHold(mark <= names, "marks have names");
     }
     for (const std::string& warning : mesh.warnings) {
         mustHold(isLine(warning), "a warning is one line");

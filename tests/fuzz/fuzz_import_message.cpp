@@ -27,7 +27,7 @@ constexpr std::size_t kNames = 3;  // number of requested names, for inputs with
 /// The mesh file to which the messages belong. It is deleted after it is opened.
 ImportSource openSource() {
     std::string pattern = (fs::temp_directory_path() / "relief-fuzz-XXXXXX").string();
-    mustHold(::mkdtemp(pattern.data()) != nullptr, "a folder can be made");
+    mustHold(::mkdtemp(pattern.data()) != nullptr, "a folder can be created");
     const fs::path path = fs::path(pattern) / "m.obj";
     std::ofstream(path) << "v 0 0 0\n";
     Result<ImportSource> source = ImportSource::open(path);
@@ -55,17 +55,18 @@ void mustBeMesh(const TriangleMesh& mesh) {
         mustHold(used[i], "every position is used");
         for (int k = 0; k < 3; ++k) {
             const float x = mesh.positions[i][k];
-            mustHold(std::isfinite(x) && std::abs(x) <= kCoordinateMax, "coordinates are numbers");
-            mustHold(x >= mesh.bounds.min[k] && x <= mesh.bounds.max[k], "and within the bounds");
+            mustHold(std::isfinite(x) && std::abs(x) <= kCoordinateMax, "coordinates are finite");
+            mustHold(x >= mesh.bounds.min[k] && x <= mesh.bounds.max[k], "coordinates are in the bounds");
         }
     }
-    mustHold(mesh.marks.empty() || mesh.marks.size() == mesh.triangles.size(), "a mark a triangle, or none");
+    mustHold(mesh.marks.empty() || mesh.marks.size() == mesh.triangles.size(),
+             "each triangle has a mark, or none has");
     for (const std::uint8_t mark : mesh.marks) {
-        mustHold(mark <= kNames, "a mark is that of a name");
+        mustHold(mark <= kNames, "a mark has a name");
     }
     mustHold(mesh.unit.empty() || mesh.unit == "m", "the unit is known");
-    mustHold(mesh.name == "m.obj", "the name is the file's, not the worker's");
-    mustHold(mesh.dependencies.size() == mesh.dependency_hashes.size(), "a hash a file");
+    mustHold(mesh.name == "m.obj", "the name is that of the file");
+    mustHold(mesh.dependencies.size() == mesh.dependency_hashes.size(), "one hash per file");
     const std::string folder = fs::path(mesh.dependencies.at(0)).parent_path().string() + "/";
     for (std::size_t i = 0; i < mesh.dependencies.size(); ++i) {
         const fs::path normal = fs::path(mesh.dependencies[i]).lexically_normal();
@@ -87,12 +88,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     Result<TriangleMesh> raw = relief::readImportMessage(bytes);
     if (!raw) {
         mustBeLine(raw.error().message);
-        mustHold(raw.error().message.size() <= kErrorBytesMax, "and not a long one");
+        mustHold(raw.error().message.size() <= kErrorBytesMax, "a message is short");
         return 0;
     }
     const std::vector<std::byte> sent = bytesOf(raw);
     const Result<TriangleMesh> again = relief::readImportMessage(sent);
-    mustHold(again.has_value() && bytesOf(again) == sent, "what was read can be sent, and arrives as it was");
+    mustHold(again.has_value() && bytesOf(again) == sent, "a mesh survives the message");
     const std::size_t names = raw->marks.empty() ? 0 : kNames;
     const Result<TriangleMesh> mesh = kSource.finish(std::move(*raw), names);
     if (!mesh) {

@@ -32,7 +32,8 @@ void mustBePolygons(const relief::PolygonMesh& mesh) {
 /// Format detection before a reader runs.
 void mustBeJudged(std::span<const std::byte> bytes) {
     for (const char* extension : {"obj", "stl", "dae", "glb", "blend"}) {
-        mustHold(relief::otherFormat(extension, bytes) != extension, "another format is another");
+        mustHold(relief::otherFormat(extension, bytes) != extension,
+                 "the other format differs from the extension");
     }
 }
 
@@ -43,7 +44,7 @@ void mustBeRead(const relief::Result<relief::PolygonMesh>& mesh) {
     }
     mustBePolygons(*mesh);
     const relief::MeshParts parts = relief::partsOf(*mesh);
-    mustHold(parts.loose <= parts.unused && parts.unused <= parts.vertices, "loose vertices are unused ones");
+    mustHold(parts.loose <= parts.unused && parts.unused <= parts.vertices, "loose vertices are unused");
     relief::PolygonCutter cutter;
     std::vector<glm::vec3> places;
     std::size_t first = 0;

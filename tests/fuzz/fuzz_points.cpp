@@ -11,7 +11,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto bytes = std::as_bytes(std::span(data, size));
     if (const auto list = relief::parsePointList(bytes, "points.ply")) {
         mustHold(!list->positions.empty(), "a list has points");
-        mustHold(list->normals.empty() || list->normals.size() == list->positions.size(), "a normal a point");
+        mustHold(list->normals.empty() || list->normals.size() == list->positions.size(),
+                 "one normal per point");
         for (const glm::vec3& p : list->positions) {
             for (int k = 0; k < 3; ++k) {
                 mustHold(std::abs(p[k]) <= static_cast<float>(relief::kPointCoordinateMax), "in range");

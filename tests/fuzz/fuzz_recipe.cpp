@@ -25,13 +25,14 @@ void mustBePlace(const std::string& place) {
 }
 
 void mustBeText(const std::string& text) {
-    mustHold(!text.empty() && text.find('\0') == std::string::npos, "no value is empty or holds a zero byte");
+    mustHold(!text.empty() && text.find('\0') == std::string::npos,
+             "no value is empty or contains a zero byte");
 }
 
 void mustBeAsset(const RecipeAsset& asset) {
     mustHold(!asset.meshes.empty() && asset.meshes.size() <= relief::kRecipePatternsMax,
-             "an asset has a mesh, and not too many");
-    mustHold(asset.exclude.size() <= relief::kRecipePatternsMax, "nor too many exceptions");
+             "an asset has one mesh or more, but not too many");
+    mustHold(asset.exclude.size() <= relief::kRecipePatternsMax, "an asset has not too many exclusions");
     for (const std::vector<std::string>* texts : {&asset.meshes, &asset.exclude}) {
         for (const std::string& text : *texts) {
             mustBeText(text);
@@ -45,7 +46,7 @@ void mustBeAsset(const RecipeAsset& asset) {
         mustBePlace(value.place);
         for (const RecipeKey& key : kKeys) {
             mustHold(key.name != name || key.kind != relief::FieldKind::kValue || value.values.size() == 1,
-                     "a value is one");
+                     "the option has one value");
         }
     }
     // Each command-line argument is one known option.
@@ -55,8 +56,7 @@ void mustBeAsset(const RecipeAsset& asset) {
             const std::string option = "--" + key.name;
             known = known || argument == option || argument.starts_with(option + "=");
         }
-        mustHold(known && argument.find('\0') == std::string::npos,
-                 "an argument is an option that was offered");
+        mustHold(known && argument.find('\0') == std::string::npos, "an argument is a known option");
     }
 }
 

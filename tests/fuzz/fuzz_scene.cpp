@@ -17,6 +17,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     mustHold(!scene->colliders.empty(), "a scene has a collider");
     mustHold(!scene->emitters.empty(), "a scene has an emitter");
     const auto whole = relief::withDefaults(*std::move(scene), {{-1.0F, -2.0F, -3.0F}, {1.0F, 2.0F, 3.0F}});
-    mustHold(whole.has_value() || !whole.error().message.empty(), "an error has words");
+    mustHold(whole.has_value() || !whole.error().message.empty(), "an error has a message");
     return 0;
 }

@@ -10,7 +10,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string_view text(reinterpret_cast<const char*>(data), size);
     const auto world = relief::parseWorld(text);
     if (!world) {
-        mustHold(world.error().message.find("; ") != std::string::npos, "an error has a cure");
+        mustHold(world.error().message.find("; ") != std::string::npos, "an error has advice");
         mustBeLine(world.error().message);
         return 0;
     }
@@ -26,7 +26,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     const std::string written = relief::worldText(*world);
     const auto again = relief::parseWorld(written);
-    mustHold(again.has_value(), "a world that was read can be written and read");
+    mustHold(again.has_value(), "a world round-trips");
     mustHold(
         again->bodies.size() == world->bodies.size() && again->colliders.size() == world->colliders.size(),
         "and is the same");

@@ -28,9 +28,9 @@ def refused(operator, words, **arguments):
     try:
         operator(**arguments)
     except RuntimeError as error:
-        assert words in str(error), f"{error} does not say '{words}'"
+        assert words in str(error), f"{error} does not contain '{words}'"
     else:
-        raise AssertionError(f"not refused: {words}")
+        raise AssertionError(f"not rejected: {words}")
 
 
 bpy.ops.wm.read_factory_settings(use_empty=True)
@@ -56,7 +56,7 @@ for up in ("Z", "Y"):
     distance = collider.query(points, distance="nearest").distance
     truth = np.linalg.norm(random, axis=1) - 0.5
     clear = np.abs(truth) > 0.01
-    assert ((distance < 0) == (truth < 0))[clear].all(), f"{up} up: sides"
+    assert ((distance < 0) == (truth < 0))[clear].all(), f"{up} up: wrong sides"
     assert 0 <= ball.relief.wrong < 1, ball.relief.wrong
 
 # The tool bakes the same maps from the same triangles.
@@ -70,7 +70,7 @@ subprocess.run([tool, "bake", folder / "ball.obj", "-o", folder / "tool.relief",
 for name in ("ball_Y", "tool"):
     subprocess.run([tool, "export", folder / f"{name}.relief", "--gpu", folder / name, "-q"], check=True)
 for file in (folder / "tool").iterdir():
-    assert file.read_bytes() == (folder / "ball_Y" / file.name).read_bytes(), f"the add-on bakes another {file.name}"
+    assert file.read_bytes() == (folder / "ball_Y" / file.name).read_bytes(), f"the add-on bakes a different {file.name}"
 
 # The overlay's colours show the collider's distance at the surface; white is 0.
 bpy.ops.mesh.primitive_monkey_add(size=2)
@@ -169,4 +169,4 @@ os.makedirs(folder / "wrong", exist_ok=True)
 refused(bpy.ops.relief.load_cache, "is not a particle file of relief-sim", directory=str(folder / "wrong"))
 
 addon.unregister()
-print("blender: bakes as the tool does, shows errors where they are, plays particles")
+print("blender: bakes match the tool, errors are shown, particles play")

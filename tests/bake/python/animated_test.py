@@ -10,7 +10,7 @@ from lift import lift
 BIN = pathlib.Path(os.environ["RELIEF_BIN"])
 
 
-def test_it_is_what_the_tool_bakes_and_plays(tmp_path):
+def test_bake_and_playback_match_the_tool(tmp_path):
     (tmp_path / "lift.gltf").write_text(lift({"rise": (0, 1, 0)}))
     (tmp_path / "more.gltf").write_text(lift({"slide": (2, 0, 0)}))
     done = subprocess.run([BIN / "relief", "bake", tmp_path / "lift.gltf", "--animated", "--clips", tmp_path / "more.gltf", "-q",

@@ -29,7 +29,7 @@ def scene(tmp_path, collider):
     return tmp_path / "s.toml"
 
 
-def test_unknown_arguments_are_named_with_the_nearest_one(collider, scene):
+def test_unknown_arguments_suggest_the_nearest_one(collider, scene):
     calls = [
         (lambda: relief.bake(VERTICES, TRIANGLES, budgte="20kB"), r"bake\(\) has no argument 'budgte'; did you mean 'budget'\?"),
         (lambda: relief.bake(VERTICES, TRIANGLES, map="cube"), "'map'; did you mean 'maps'"),
@@ -47,7 +47,7 @@ def test_unknown_arguments_are_named_with_the_nearest_one(collider, scene):
             call()
 
 
-def test_dir_shows_the_api_only(collider):
+def test_dir_lists_only_the_api(collider):
     assert set(dir(relief)) == {*relief.__all__, "__version__", "__doc__", "__name__", "__file__"}
     assert all(hasattr(relief, name) for name in dir(relief))
     assert {"format", "width", "height", "texels"} <= set(dir(collider.maps[0]))
@@ -55,7 +55,7 @@ def test_dir_shows_the_api_only(collider):
 
 
 @pytest.mark.parametrize("number", [2**32 + 1, 2**64 - 1])
-def test_indices_do_not_wrap_round(number, collider):
+def test_indices_do_not_wrap_around(number, collider):
     triangles = TRIANGLES.astype(np.uint64)
     triangles[2, 1] = number
     for use in (relief.bake, lambda *mesh: relief.check(collider, *mesh)):
@@ -85,13 +85,13 @@ def test_indices_do_not_wrap_round(number, collider):
     ("mesh\0.obj", None, ValueError, "null character"),
     (b"mesh.obj", TRIANGLES, ValueError, "shape"),
 ], ids=range(20))
-def test_meshes_that_are_none(vertices, triangles, error, words, collider):
+def test_invalid_meshes(vertices, triangles, error, words, collider):
     for use in (relief.bake, lambda *mesh: relief.check(collider, *mesh)):
         with pytest.raises(error, match=words):
             use(vertices, triangles)
 
 
-def test_names_are_text(collider):
+def test_names_must_be_text(collider):
     with pytest.raises(ValueError, match="^name has 256 bytes, 255 are allowed"):
         relief.bake(VERTICES, TRIANGLES, name="ä" * 128)
     for name in ("", "a\nb\x1b[2J", "\udcff", "ä" * 127):
@@ -100,7 +100,7 @@ def test_names_are_text(collider):
         assert relief.load(made.to_bytes()).to_bytes() == made.to_bytes()
 
 
-def test_points_that_are_not_finite_give_nan(collider):
+def test_non_finite_points_give_nan(collider):
     points = np.array([[0.1, 0.1, 0.1], [np.nan, 0, 0], [0, np.inf, 0], [0, 0, -np.inf], [1e300, 0, 0], [9, 9, 9]])
     for distance in ("plane", "nearest"):
         said = collider.query(points, distance)
@@ -117,12 +117,12 @@ def test_points_that_are_not_finite_give_nan(collider):
     ([[1, 2], [3]], ValueError), ([[1j, 0, 0]], TypeError), ([["a", "b", "c"]], TypeError), ([[None, 1, 2]], TypeError),
     (np.zeros((2, 3), bool), TypeError), (np.zeros((2, 3), "datetime64[s]"), TypeError), (np.zeros((1, 2, 3)), ValueError),
 ], ids=range(12))
-def test_points_that_are_none(points, error, collider):
+def test_invalid_points(points, error, collider):
     with pytest.raises(error, match="^points must be an array of"):
         collider.query(points)
 
 
-def test_points_of_every_layout(collider):
+def test_points_in_every_layout(collider):
     points = np.random.default_rng(1).uniform(-1, 2, (100_000, 3)).astype(np.float32)
     expected = collider.query(points)
     assert len(collider.query(np.zeros((0, 3))).distance) == 0
@@ -139,7 +139,7 @@ def ask(collider):
     return collider.query(np.array([[0.1, 0.1, 0.1]])).distance.tolist()
 
 
-def test_colliders_are_pickled_and_copied(collider):
+def test_colliders_can_be_pickled_and_copied(collider):
     for protocol in range(2, pickle.HIGHEST_PROTOCOL + 1):
         again = pickle.loads(pickle.dumps(collider, protocol))
         assert again.to_bytes() == collider.to_bytes() and repr(again) == repr(collider)
@@ -155,14 +155,14 @@ def test_colliders_are_pickled_and_copied(collider):
 
 
 @pytest.mark.parametrize("compression", [-1, 20, 1.5, float("nan"), 2**70])
-def test_compressions_that_are_none(compression, collider, tmp_path):
+def test_invalid_compression_levels(compression, collider, tmp_path):
     for write in (lambda: collider.save(tmp_path / "x.relief", compression), lambda: collider.to_bytes(compression)):
         with pytest.raises(ValueError, match="^compression is .* but must be a whole number from 0 to 19$"):
             write()
     assert not (tmp_path / "x.relief").exists()
 
 
-def test_a_dash_is_a_file(collider, tmp_path, monkeypatch):
+def test_dash_is_a_file_name(collider, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(relief.FileError):
         relief.load("-")
@@ -172,7 +172,7 @@ def test_a_dash_is_a_file(collider, tmp_path, monkeypatch):
         relief.bake("-")
 
 
-def test_names_that_are_no_utf8(collider, tmp_path):
+def test_non_utf8_names(collider, tmp_path):
     name = "\udcff\udcfe"
     with pytest.raises(relief.FileError, match=name):
         relief.load(tmp_path / name)
@@ -184,7 +184,7 @@ def test_names_that_are_no_utf8(collider, tmp_path):
     assert relief.check(made, tmp_path / f"{name}.obj", samples=100).wrong_percent < 100
 
 
-def test_paths_that_are_none(collider, tmp_path):
+def test_invalid_paths(collider, tmp_path):
     for call in (collider.save, relief.load, relief.Simulation):
         for wrong in (None, 3, ["a"]):
             with pytest.raises(TypeError, match="is of type .* but must be a path"):
@@ -204,7 +204,7 @@ def test_paths_that_are_none(collider, tmp_path):
 
 @pytest.mark.parametrize("count,error", [(-1, ValueError), (2**32, ValueError), (0.5, ValueError), (float("inf"), ValueError),
                                          ("3", TypeError), (None, TypeError), (True, TypeError), ([1], TypeError)])
-def test_steps_that_are_none(count, error, scene):
+def test_invalid_step_counts(count, error, scene):
     with relief.Simulation(scene) as simulation:
         with pytest.raises(error, match="^count is"):
             simulation.step(count)
@@ -215,7 +215,7 @@ def test_steps_that_are_none(count, error, scene):
         assert simulation.time == pytest.approx(3 / 60, rel=1e-3)
 
 
-def test_simulations_end_and_take_turns(scene):
+def test_simulations_close_and_alternate(scene):
     with pytest.raises(ValueError, match="^seed is -1"):
         relief.Simulation(scene, seed=-1)
     alone = relief.Simulation(scene, seed=5)
@@ -237,7 +237,7 @@ def test_simulations_end_and_take_turns(scene):
         pickle.dumps(one)
 
 
-def test_another_thread_is_refused(scene):
+def test_other_threads_are_rejected(scene):
     simulation = relief.Simulation(scene)
     simulation.step(10)
     failed = []

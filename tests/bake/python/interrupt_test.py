@@ -56,14 +56,14 @@ def interrupt(program, wait):
 
 
 @pytest.mark.parametrize("name", WORK)
-def test_work_ends_at_once_and_the_program_goes_on(name):
+def test_interrupted_work_raises_and_the_program_continues(name):
     work, before, wait = WORK[name]
     after = 'assert relief.bake("%s", budget="20kB", no_check=True).maps' % BUNNY if name == "baked" else "pass"
     said, errors, status = interrupt(PROGRAM.format(before=before, work=work, after=after), wait)
     assert (said, status) == ("interrupted\ngoes on\n", 0), errors
 
 
-def test_steps_end_between_two(tmp_path):
+def test_interrupt_stops_between_steps(tmp_path):
     subprocess.run([BIN / "relief", "bake", BUNNY, "-q", "-o", tmp_path / "b.relief", "--budget", "50kB"], check=True)
     scene = '[collider]\nfile = "b.relief"\n[particles]\ncapacity = 1000\n'
     (tmp_path / "s.toml").write_text(scene)
@@ -76,13 +76,13 @@ def test_steps_end_between_two(tmp_path):
         assert (said, status) == ("interrupted\ngoes on\n", 0), errors
 
 
-def test_a_program_that_catches_nothing_ends_by_the_signal():
+def test_uncaught_interrupt_ends_the_program_by_the_signal():
     program = f"import relief\nprint('begun', flush=True)\n{BAKE}"
     said, errors, status = interrupt(program, 2)
     assert status == -signal.SIGINT and errors.rstrip().endswith("KeyboardInterrupt") and said == ""
 
 
-def test_a_handler_of_the_programs_own_is_called():
+def test_custom_handler_is_called():
     program = ("import relief, signal\nsignal.signal(signal.SIGINT, lambda *_: print('mine', flush=True))\n"
                "c = []\nprint('begun', flush=True)\n"
                f'c.append(relief.bake("{BUNNY}", budget="2MB")); print(c[0].gpu_bytes > 1e6)')

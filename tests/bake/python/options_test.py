@@ -77,7 +77,7 @@ WAYS += by_themselves()
 
 
 @pytest.mark.parametrize("arguments,words", WAYS, ids=[" ".join(words) for _, words in WAYS])
-def test_every_option_gives_the_bytes_and_warnings_of_the_tool(arguments, words, mesh, tmp_path):
+def test_every_option_matches_the_tool(arguments, words, mesh, tmp_path):
     done = tool("bake", mesh, "--warnings-only", "-o", tmp_path / "tool.relief", *words,
                 *(["--no-check"] if arguments.get("no_check") else []))
     assert done.returncode == 0, done.stderr
@@ -100,7 +100,7 @@ def test_no_option_of_the_tool_is_missing():
     assert has - used == {"heights", "animated", "clips"}  # covered by the next tests
 
 
-def test_height_maps_are_ground(mesh, tmp_path):
+def test_height_maps_match_the_tool(mesh, tmp_path):
     path = tmp_path / "hills.raw"
     path.write_bytes(np.arange(40 * 40, dtype="<u2").tobytes())
     words = "spacing=0.5,low=-1,high=300,hole=77"
@@ -115,7 +115,7 @@ def test_height_maps_are_ground(mesh, tmp_path):
         relief.bake(np.eye(3), np.array([[0, 1, 2]]), heights=words)
 
 
-def test_arrays_are_baked_as_their_file_is(mesh):
+def test_arrays_match_their_file(mesh):
     rows = [line.split() for line in SCENE.splitlines()]
     vertices = np.array([row[1:] for row in rows if row[0] == "v"], dtype=float)
     quads = np.array([row[1:] for row in rows if row[0] == "f"], dtype=int) - 1
@@ -135,7 +135,7 @@ CHECKS = [dict(samples=3000), dict(samples=3000, detail=0.5),
 @pytest.mark.parametrize("bake,arguments", [({}, arguments) for arguments in CHECKS] + [
     (bake, dict(samples=4e3, seed=7)) for bake in (dict(holes="keep"), dict(repair="wrap=0.05"), dict(as_="shell"),
                                                    dict(as_="sheet=terrain"), dict(thickness=0.3))], ids=str)
-def test_a_check_judges_as_the_tool_does(bake, arguments, mesh, tmp_path):
+def test_checks_match_the_tool(bake, arguments, mesh, tmp_path):
     """Every option of a check, and the solid of every way to bake."""
     assert set().union(*CHECKS) | {"seed"} == set(inspect.signature(relief.check).parameters) - {"collider", "mesh", "triangles"}
     frame = {name: arguments[name] for name in ("unit", "up") if name in arguments}
@@ -160,7 +160,7 @@ def test_a_check_judges_as_the_tool_does(bake, arguments, mesh, tmp_path):
     assert [str(one.message) for one in caught] == said["warnings"]
 
 
-def test_checks_refuse_other_meshes(mesh, tmp_path):
+def test_checks_reject_other_meshes(mesh, tmp_path):
     collider = relief.bake(mesh, budget="60kB", as_="sheet=terrain")
     (tmp_path / "other.obj").write_text(SCENE.replace("v 1 2 1", "v 1 2 9"))
     with pytest.raises(relief.InputError, match="the mesh that it was baked from"):
@@ -177,7 +177,7 @@ WRONG = [dict(budget="much"), dict(budget=-1), dict(budget=0.5), dict(budget=flo
 @pytest.mark.parametrize("arguments,words", [(one, "^" + next(iter(one))) for one in WRONG] + [
     (dict(maps=["cube:size=0"]), "size"), (dict(as_="sheets"), "sheets"), (dict(as_="nothing=shell"), "nothing"),
     (dict(repair="all"), "all")], ids=str)
-def test_wrong_values_are_value_errors_that_name_the_argument(arguments, words, mesh):
+def test_value_errors_name_the_argument(arguments, words, mesh):
     with pytest.raises(ValueError, match=words) as error:
         relief.bake(mesh, **arguments)
     assert isinstance(error.value, relief.UsageError) and "\n" not in str(error.value)
@@ -185,12 +185,12 @@ def test_wrong_values_are_value_errors_that_name_the_argument(arguments, words, 
 
 @pytest.mark.parametrize("arguments", [dict(budget=[]), dict(budget=True), dict(paper=1), dict(maps=[1]), dict(as_={"a": 1}),
                                        dict(quality=b"fast"), dict(budget=1j), dict(name=3), dict(budget=np.ones(2))])
-def test_wrong_types_are_type_errors_that_name_the_argument(arguments):
+def test_type_errors_name_the_argument(arguments):
     with pytest.raises(TypeError, match=f"^{next(iter(arguments))} is of type .* but must be"):
         relief.bake(np.eye(3), [[0, 1, 2]], **arguments)
 
 
-def test_the_time_limit_is_kept(mesh):
+def test_time_limit(mesh):
     with pytest.raises(relief.LimitError, match="time_limit"):
         relief.bake(mesh, budget="64MB", quality="best", time_limit=0.05)
     with pytest.raises(relief.UsageError, match="^unit applies only to a mesh read from a file"):

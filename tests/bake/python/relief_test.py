@@ -46,7 +46,7 @@ def random_points(count, seed=1):
     return np.random.default_rng(seed).uniform(-1.1, 1.1, (count, 3)).astype(np.float32)
 
 
-def test_a_sphere_is_one():
+def test_sphere():
     collider = relief.bake(*sphere(), budget=200_000)
     points = random_points(100_000)
     radius = np.linalg.norm(points.astype(np.float64), axis=1)
@@ -65,7 +65,7 @@ def test_a_sphere_is_one():
     assert accuracy.wrong_percent < 0.5 and accuracy.distance_mean < 0.003
 
 
-def test_it_says_what_relief_query_says(bunny, tmp_path):
+def test_queries_match_relief_query(bunny, tmp_path):
     points = random_points(10_000)
     np.savetxt(tmp_path / "points.csv", points, delimiter=",", fmt="%.9g")
     text = subprocess.run([BIN / "relief", "query", bunny, "--points", tmp_path / "points.csv", "-o", "-",
@@ -80,7 +80,7 @@ def test_it_says_what_relief_query_says(bunny, tmp_path):
             assert list(normal[i]) == [np.float32(value) for value in row[4:7]]
 
 
-def test_files_and_bytes_are_the_same(bunny, tmp_path):
+def test_files_equal_bytes(bunny, tmp_path):
     collider = relief.load(bunny)
     collider.save(tmp_path / "plain.relief")
     collider.save(tmp_path / "packed.relief", compression=19)
@@ -109,7 +109,7 @@ def test_maps_are_arrays():
     assert np.array_equal(texels, before)  # the array keeps the collider alive
 
 
-def test_patches_have_a_tree_and_no_depths(tmp_path):
+def test_patches_have_a_tree_but_no_depths(tmp_path):
     one = relief.bake(*sphere(24, 24), maps="patches:bytes=8kB").maps[0]
     assert one.format == "patches" and one.texels.dtype == np.uint16 and one.texels.shape == (1, one.height, one.width, 4)
     roots = one.texels[0, 0, 0, :3].astype(int)
@@ -126,7 +126,7 @@ def sphere_of(path):
         return np.array([line.split()[1:4] for line in file if line.startswith("v ")], dtype=np.float64)
 
 
-def test_files_that_are_none(tmp_path):
+def test_invalid_files(tmp_path):
     with pytest.raises(relief.FileError, match="missing.relief"):
         relief.load(tmp_path / "missing.relief")
     with pytest.raises(relief.Error):
@@ -135,7 +135,7 @@ def test_files_that_are_none(tmp_path):
         relief.load(b"nonsense")
 
 
-def test_queries_let_other_threads_run(bunny):
+def test_queries_release_the_interpreter_lock(bunny):
     collider, points, ticks, done = relief.load(bunny), random_points(2_000_000), [], threading.Event()
 
     def tick():
@@ -152,14 +152,14 @@ def test_queries_let_other_threads_run(bunny):
     assert len(ticks) > 5 or took < 0.05
 
 
-def test_the_sample_makes_three_plots(tmp_path):
+def test_sample_creates_three_plots(tmp_path):
     sample = pathlib.Path(os.environ["RELIEF_SOURCE"]) / "samples/python/plots.py"
     subprocess.run([sys.executable, sample, BUNNY], cwd=tmp_path, check=True)
     for name in ("slice.png", "maps.png", "budgets.png"):
         assert (tmp_path / name).read_bytes().startswith(b"\x89PNG") and (tmp_path / name).stat().st_size > 10_000
 
 
-def test_a_simulation_and_its_hits_are_those_of_relief_sim(bunny, tmp_path):
+def test_simulation_matches_relief_sim(bunny, tmp_path):
     (tmp_path / "scenes").mkdir()
     scene = tmp_path / "scenes" / "scene.toml"
     scene.write_text('[time]\nsteps = 90\nprewarm = 0.2\n[collider]\nfile = "../bunny.relief"\n'
@@ -197,7 +197,7 @@ def test_a_simulation_and_its_hits_are_those_of_relief_sim(bunny, tmp_path):
     assert [-1 if hit["body"] is None else hit["body"] for hit in said] == hits.body.tolist()
 
 
-def test_the_stub_has_what_the_module_has():
+def test_stub_matches_the_module():
     """_relief.pyi lists exactly the classes, functions and members of the compiled module."""
     import ast
     import inspect

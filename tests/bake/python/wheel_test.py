@@ -32,7 +32,7 @@ def python(tmp_path_factory):
     return folder / "bin/python"
 
 
-def test_it_bakes_and_checks_from_anywhere(python, tmp_path):
+def test_works_from_any_folder(python, tmp_path):
     program = tmp_path / "program.py"
     program.write_text(f'''
 import pathlib
@@ -52,7 +52,7 @@ print(sorted(path.name for path in home.iterdir() if path.is_file()))
     assert (tmp_path / "own.relief").read_bytes() == (tmp_path / "tool.relief").read_bytes()
 
 
-def test_pip_knows_it_and_takes_it_away(python):
+def test_pip_shows_and_uninstalls(python):
     pip = [python, "-m", "pip"]
     shown = subprocess.run([*pip, "show", "-f", "relief"], check=True, env=ENVIRONMENT, capture_output=True, text=True).stdout
     assert f"Version: {VERSION}" in shown and "Requires: numpy" in shown and "relief/relief-import" in shown
@@ -60,7 +60,7 @@ def test_pip_knows_it_and_takes_it_away(python):
     assert not list(python.parents[1].rglob("relief*"))
 
 
-def test_wheels_are_sound_and_always_the_same(tmp_path):
+def test_wheels_are_valid_and_reproducible(tmp_path):
     sys.path.insert(0, str(SOURCE / "bake/python"))
     try:
         import build_wheel

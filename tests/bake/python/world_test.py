@@ -35,7 +35,7 @@ def matrix(x, y, z, w):
                      [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
 
 
-def test_it_is_its_file(folder, world):
+def test_members_match_the_file(folder, world):
     file = json.loads((folder / "world.json").read_text())
     assert len(world) == 5 and repr(world) == "<World: 5 bodies of 3 colliders>" and world.unit == "m"
     assert world.nodes == [body["node"] for body in file["bodies"]]
@@ -52,7 +52,7 @@ def test_it_is_its_file(folder, world):
     assert np.allclose(low, [-20, -0.5, -20], atol=0.1) and high[1] == pytest.approx(2, abs=0.1)
 
 
-def test_it_is_the_union_of_its_bodies(world):
+def test_field_is_the_union_of_the_bodies(world):
     points = np.random.default_rng(3).uniform([-8, -1, -8], [8, 3, 8], (20_000, 3)).astype(np.float32)
     distances, normals = [], []
     for body in range(len(world)):
@@ -67,22 +67,22 @@ def test_it_is_the_union_of_its_bodies(world):
     best = np.min(distances, axis=0)
     clear = np.sort(distances, axis=0)[1] - best > 1e-3
     off = np.abs(distance - best) > 1e-3
-    assert np.mean(off) < 1e-3, "but at edges, where roundings decide for another map"
+    assert np.mean(off) < 1e-3, "except at edges, where rounding selects another map"
     assert np.mean((distance < 0) != (best < 0)) < 1e-3
     known = clear & ~off & (best < 1e29)
     assert known.sum() > 5000 and np.mean(body[known] != nearest[known]) < 1e-3
     of_best = np.take_along_axis(np.array(normals), nearest[None, :, None], axis=0)[0]
     assert np.mean(np.linalg.norm(normal - of_best, axis=1)[known] > 0.01) < 1e-3
-    assert {0, 1, 2, 3, 4} == set(body[distance < 0].tolist()), "points inside of each"
+    assert {0, 1, 2, 3, 4} == set(body[distance < 0].tolist()), "every body contains points"
 
 
-def test_points_that_are_not_finite_give_nan(world):
+def test_non_finite_points_give_nan(world):
     distance, normal, body = world.query([[np.nan, 0, 0], [0, 0.5, 0]])
     assert np.isnan(distance[0]) and np.isnan(normal[0]).all() and body[0] == -1
     assert distance[1] < 0 and body[1] == 1
 
 
-def test_a_simulation_plays_it(folder):
+def test_simulation_plays_the_world(folder):
     with relief.Simulation(folder / "world.json", hits=True) as simulation:
         simulation.step(120)
         assert len(simulation.positions) > 0
