@@ -25,7 +25,7 @@ for page in bake/recipe/README.md bake/measure/trust.md bake/measure/accuracy.md
 done
 echo '[dead](nowhere.md)' >"$prefix/share/doc/relief/dead.md"
 ! python3 "$RELIEF_SOURCE/tests/cli/links.py" "$prefix" >links || die "a dead link is not detected"
-grep -q 'dead.md: nowhere.md is not there' links || die "the dead link is not named: $(cat links)"
+grep -q 'dead.md: nowhere.md does not exist' links || die "the dead link is not named: $(cat links)"
 
 # The separately installed Python package finds its importer and provides types.
 if [ -d "$build/python" ]; then

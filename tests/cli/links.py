@@ -38,7 +38,7 @@ def main(folder):
             path, _, anchor = target.partition('#')
             there = page.parent / path if path else page
             if not there.exists():
-                dead.append(f'{page}: {target} is not there')
+                dead.append(f'{page}: {target} does not exist')
             elif anchor and there.suffix == '.md' and anchor not in headings(there.read_text()):
                 dead.append(f'{page}: {there.name} has no heading #{anchor}')
     print('\n'.join(dead) if dead else f'{links} links of {pages} pages')

@@ -26,9 +26,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     const std::string written = relief::worldText(*world);
     const auto again = relief::parseWorld(written);
-    mustHold(again.has_value(), "a world round-trips");
+    mustHold(again.has_value(), "a written world can be read");
     mustHold(
         again->bodies.size() == world->bodies.size() && again->colliders.size() == world->colliders.size(),
-        "and is the same");
+        "a world keeps its bodies and colliders");
     return 0;
 }
