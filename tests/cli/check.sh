@@ -29,7 +29,7 @@ assert d['check']['verdict']['grade'] == 'poor' and len(d['check']['worst_places
 P
 
 # The first matching advice achieves the promised accuracy.
-promises() { # MESH COLLIDER PATTERN
+check_advice() { # MESH COLLIDER PATTERN
     "$relief" check "$2" --mesh "$1" --samples 20000 --json >before.json 2>/dev/null
     bash -c "$(python3 -c 'import json, sys; print(next(a["command"] for a in json.load(open("before.json"))["advice"] if sys.argv[1] in a["about"] + a["command"]))' "$3" |
         sed "s#^relief#'$relief'#") -q" 2>/dev/null
@@ -44,10 +44,10 @@ sys.exit(0 if advice['helps'] and abs(said - found) <= 0.15 * said + 0.2 and sai
 P
 }
 "$relief" bake "$bunny" -o few.relief --budget 20kB -q
-promises "$bunny" few.relief '--budget 40kB'
+check_advice "$bunny" few.relief '--budget 40kB'
 json before.json '{p["cause"] for p in d["worst_places"]} == {"texel"} and [a["about"] for a in d["advice"]] == ["patches of twice the size"]'
 "$relief" bake "$bunny" -o maps.relief -q --map front-back:dir=-x,size=64 --map front-back:dir=-y,size=64 --map front-back:dir=-z,size=64
-promises "$bunny" maps.relief 'patches of the same size'
+check_advice "$bunny" maps.relief 'patches of the same size'
 json after.json 'd["accuracy"]["gpu_bytes"] <= 1e5 and [p["map"] for p in d["worst_places"]] == [0] * 3'
 
 # An unseen cavity, a ball in a box: patches help.
@@ -70,7 +70,7 @@ for f in faces:
     print('f', *(v + 1 for v in f))
 P
 "$relief" bake hollow.obj -o h.relief -q --map front-back:dir=-x,size=64 --map front-back:dir=-y,size=64 --map front-back:dir=-z,size=64
-promises hollow.obj h.relief 'patches of the same size'
+check_advice hollow.obj h.relief 'patches of the same size'
 json before.json '{p["cause"] for p in d["worst_places"]} == {"unseen"} and d["accuracy"]["unseen_area_percent"] > 9'
 json before.json 'all(abs(math.dist(p["position"], (0.2, 0, 0)) - 0.5) < 0.06 for p in d["worst_places"])'
 
@@ -79,7 +79,7 @@ json before.json 'all(abs(math.dist(p["position"], (0.2, 0, 0)) - 0.5) < 0.06 fo
 tar -xzf /usr/share/doc/libcgal-dev/data.tar.gz data/meshes/mushroom.off
 mv data/meshes/mushroom.off "a mesh's.off"
 "$relief" bake "a mesh's.off" -o m.relief --holes keep --resolution 64 -q 2>/dev/null
-promises "a mesh's.off" m.relief 'bake'
+check_advice "a mesh's.off" m.relief 'bake'
 json before.json 'd["verdict"]["grade"] == "poor" and d["worst_places"][0]["cause"] == "open" and "--holes" not in d["advice"][0]["command"]'
 "$relief" bake "a mesh's.off" -o m.relief --budget 100kB --repair wrap=0.05 -q 2>/dev/null
 "$relief" check m.relief --mesh "a mesh's.off" --samples 20000 --json >wrapped.json 2>/dev/null
@@ -87,7 +87,7 @@ json wrapped.json 'd["repaired"]["repair"] == "wrap=0.05" and d["repaired"]["tri
 json wrapped.json 'd["verdict"]["wrong_percent"] == d["repaired"]["accuracy"]["near"]["wrong_percent"] < 3'
 json wrapped.json 'd["accuracy"]["near"]["wrong_percent"] > d["verdict"]["wrong_percent"] + 1'
 
-# --max-error: the report is printed, and the exit code means a difference.
+# --max-error: the report is printed, and the exit code signals a difference.
 expect 7 "$relief" check b.relief --mesh "$bunny" --samples 5000 --max-error 0.01 --json
 json stdout 'd["max_error_percent"] == 0.01 and not d["passed"]'
 grep -q 'max-error' stderr || die "no reason given: $(cat stderr)"

@@ -116,8 +116,8 @@ grep -qE '^[0-9]+ maps, [0-9]+ bytes on the GPU$' stdout || die "the program pri
 expect 0 "$relief" check out/box.relief
 
 no_work() { cmake --build out | matches 'no work to do' || die "$1, but there is work to do"; }
-# bakes FILES CHANGED…: after CHANGED change, exactly FILES are baked again.
-bakes() {
+# expect_bakes FILES CHANGED…: after CHANGED change, exactly FILES are baked again.
+expect_bakes() {
     local wanted=$1 one
     shift
     sleep 0.01
@@ -130,21 +130,21 @@ bakes() {
     no_work "$* was changed and baked"
 }
 no_work "all is built"
-bakes 'box.relief ' consumer/box.obj
-bakes 'bunny.relief ' consumer/bunny.obj
-bakes 'box.relief ' consumer/box.mtl
+expect_bakes 'box.relief ' consumer/box.obj
+expect_bakes 'bunny.relief ' consumer/bunny.obj
+expect_bakes 'box.relief ' consumer/box.mtl
 
 # Errors are reported at configure time.
-refused() { # PATTERN LINES
+rejects() { # PATTERN LINES
     mkdir -p wrong
     printf 'cmake_minimum_required(VERSION 3.25)\nproject(wrong LANGUAGES CXX)\n%s\n' "$2" >wrong/CMakeLists.txt
     ! cmake -G Ninja -S wrong -B wrong/out >log 2>&1 || die "is not rejected: $2"
     tr -s ' \n' ' ' <log | matches -E "$1" || die "'$(cat log)' does not match '$1'"
     rm -r wrong
 }
-refused 'no component nonsense' 'find_package(Relief REQUIRED COMPONENTS nonsense)'
-refused 'expected RECIPE' $'find_package(Relief REQUIRED)\nrelief_add_colliders(c MESHES a.obj)'
-refused '0\.9' 'find_package(Relief 0.9 REQUIRED)'
+rejects 'no component nonsense' 'find_package(Relief REQUIRED COMPONENTS nonsense)'
+rejects 'expected RECIPE' $'find_package(Relief REQUIRED)\nrelief_add_colliders(c MESHES a.obj)'
+rejects '0\.9' 'find_package(Relief 0.9 REQUIRED)'
 
 # Recipes.
 mkdir recipe

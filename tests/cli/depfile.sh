@@ -37,8 +37,8 @@ expect_error 2 'missing' "$relief" bake missing.obj -o m.relief --depfile m.d
 expect_error 1 'depfile' "$relief" bake "$odd/m.gltf" -o - --depfile m.d
 expect_error 1 'two outputs' "$relief" bake "$odd/m.gltf" -o m.relief --depfile m.relief
 
-# follows BUILD IDLE: BUILD bakes first, then prints IDLE, and bakes again after each change of a dependency.
-follows() {
+# check_rebuilds BUILD IDLE: BUILD bakes first, then prints IDLE, and bakes again after each change of a dependency.
+check_rebuilds() {
     local build=$1 idle=$2 changed
     for changed in '' "$odd/m.gltf" "$odd/buffer.bin" rocks/r.mtl rocks/r1.obj r.toml new; do
         sleep 0.1
@@ -66,7 +66,7 @@ rule recipe
 build m.relief: bake a\$ b#c\$\$d\$:e/m.gltf
 build stamp: recipe r.toml
 N
-follows ninja 'ninja: no work to do'
+check_rebuilds ninja 'ninja: no work to do'
 
 cat >Makefile <<M
 all: m.relief stamp
@@ -78,4 +78,4 @@ stamp:
 M
 sed -i "s/b#c/b\\\\#c/" Makefile
 sed -i "s/^\(\t.*\)b\\\\#c/\1b#c/" Makefile
-follows make "Nothing to be done for 'all'"
+check_rebuilds make "Nothing to be done for 'all'"

@@ -87,18 +87,18 @@ expect 0 "$relief" bake wide.png --heights low=0,high=655.35,tile=64 --world wid
 grep -q 'warning: wide.png: 129 squares are steep:' stderr || die "the cliff: $(cat stderr)"
 
 # Invalid calls and files: one line, and nothing is written.
-bad() { # CODE PATTERN FILE SETTINGS
+rejects() { # CODE PATTERN FILE SETTINGS
     expect_error "$1" "$2" "$relief" bake "$3" --heights "$4" -o bad.relief
     [ ! -e bad.relief ] || die "a failed bake writes a file"
 }
-bad 1 "spacing" hills.png spacin=1
+rejects 1 "spacing" hills.png spacin=1
 head -c 3000 hills.png >cut.png
-bad 3 "cut.png" cut.png low=0,high=1
+rejects 3 "cut.png" cut.png low=0,high=1
 expect_error 3 "cut.png" "$relief" check ground.relief --mesh cut.png
-bad 2 "none.png" none.png low=0,high=1
-bad 5 "points.csv" points.csv low=0,high=1
+rejects 2 "none.png" none.png low=0,high=1
+rejects 5 "points.csv" points.csv low=0,high=1
 truncate -s 2000000000 large.raw # 10⁹ samples; the sparse file uses no space
-bad 6 "large.raw" large.raw low=0,high=1
+rejects 6 "large.raw" large.raw low=0,high=1
 rm large.raw
 expect_error 5 "hills.png.*--heights" "$relief" bake hills.png -o bad.relief
 expect_error 1 "--budget" "$relief" bake hills.png --heights $settings -o bad.relief --budget 1MB

@@ -82,7 +82,7 @@ start() {
     [ -n "$worker" ] || die "no worker was started"
     kill -STOP "$worker"
 }
-ends() { # CODE PATTERN
+expect_end() { # CODE PATTERN
     local code=0
     wait "$parent" || code=$?
     [ "$code" -eq "$1" ] && [ "$(wc -l <"$work/stderr")" -eq 1 ] && grep -qE "^relief: error: .*unfold\.dae.*$2" "$work/stderr" ||
@@ -90,15 +90,15 @@ ends() { # CODE PATTERN
 }
 
 start --import-time 2
-ends 6 'import-time'
+expect_end 6 'import-time'
 gone "$worker" || die "a worker outlived its time limit"
 start
 kill -KILL "$worker"
-ends 4 'SIGKILL'
+expect_end 4 'SIGKILL'
 start
 kill -SEGV "$worker"
 kill -CONT "$worker"
-ends 3 'SIGSEGV'
+expect_end 3 'SIGSEGV'
 start --import-time 600
 kill -KILL "$parent"
 wait "$parent" || true

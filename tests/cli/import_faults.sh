@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-# The import worker with kills and errors at its system calls, and its parent without descriptors, processes or memory.
-# The collider is the same, or one line gives the system's error and a fix, the existing file is kept, and no other file
-# is left.
+# Kills the import worker and injects errors at its system calls, and at those of its parent. Either the collider is the
+# same, or one line gives the system's error and a fix, and the existing file is kept. No other file is left.
 #   RELIEF_FAULTS_PAGE=FILE  tests every call, not every ninth of the dynamic loader, and writes the counts,
-#                           for bake/measure/trust.md
+#                            for bake/measure/trust.md
 . "$(dirname "$0")/lib.sh"
 
 command -v strace >/dev/null || die "strace is missing; run scripts/setup.sh"
@@ -68,8 +67,8 @@ for name in mmap prctl prlimit64 landlock_restrict_self seccomp openat2 fallocat
 done
 grep -q 'loader$' calls || die "the trace shows no call of the dynamic loader"
 
-# ends WHAT: the bake leaves exactly one complete file.
-ends() {
+# expect_complete WHAT: the bake leaves exactly one complete file.
+expect_complete() {
     [ "$(ls -A out)" = a.relief ] || die "$1 leaves $(ls -A out)"
     [ ! -e /proc/"$(head -1 trace | cut -d' ' -f1)" ] || die "$1 leaves a worker"
     if [ "$code" -eq 0 ]; then
@@ -85,7 +84,7 @@ while read -r name number _; do
     cp old.relief out/a.relief
     code=0
     { INJECT="$name:signal=KILL:when=$number" bin/relief bake "${bake[@]}" out/a.relief 2>stderr; } 2>/dev/null || code=$?
-    ends "SIGKILL of the worker at $name $number"
+    expect_complete "SIGKILL of the worker at $name $number"
     [ "$code" -eq 4 ] && grep -q 'SIGKILL' stderr || die "SIGKILL of the worker at $name $number: $code, $(cat stderr)"
     kills=$((kills + 1))
 done < <(grep -v '^execve' calls)
@@ -112,7 +111,7 @@ while read -r name number part; do
         # Replaces the call with one that the sandbox allows.
         INJECT="$name:error=$errno:syscall=getpid:when=$number" bin/relief bake "${bake[@]}" out/a.relief 2>stderr || code=$?
         grep -q INJECTED trace || continue # the call was made fewer times in this run
-        ends "$errno at the worker's $name $number"
+        expect_complete "$errno at the worker's $name $number"
         errors=$((errors + 1))
         case $code in
             0) endured=$((endured + 1)) ;;
@@ -131,8 +130,8 @@ done
 
 # --- the parent ---
 
-# parent WANTED PATTERN INJECTION…: injects into the parent's calls; the worker is not traced.
-parent() {
+# inject_parent WANTED PATTERN INJECTION…: injects into the parent's calls; the worker is not traced.
+inject_parent() {
     local wanted=$1 pattern=$2 code=0 options=()
     shift 2
     for injection in "$@"; do options+=(-e "inject=$injection"); done
@@ -140,7 +139,7 @@ parent() {
     strace -o trace "${options[@]}" "$relief" bake "${bake[@]}" out/a.relief 2>stderr || code=$?
     grep -q INJECTED trace || die "$* was not injected"
     errors=$((errors + 1))
-    ends "$*"
+    expect_complete "$*"
     [ "$code" -eq "$wanted" ] && { [ "$wanted" -eq 0 ] || grep -qE "$pattern" stderr; } || die "$*: exit code $code: $(cat stderr)"
     [ "$code" -ne 0 ] || endured=$((endured + 1))
 }
@@ -148,17 +147,17 @@ parent() {
 for injection in fallocate:error=EINTR poll:error=ENOMEM poll:error=EINTR; do
     grep -q "^${injection%%:*}(" trace 2>/dev/null || strace -o trace "$relief" bake "${bake[@]}" out/a.relief
     grep -q "^${injection%%:*}(" trace || continue
-    parent 0 '' "$injection:when=1"
+    inject_parent 0 '' "$injection:when=1"
 done
 # Shortages are named.
 strace -o trace "$relief" bake "${bake[@]}" out/a.relief
 clone=$(grep -oE '^(clone3|clone|vfork)' trace | head -1)
-parent 4 'importer could not be started \(Resource temporarily unavailable\); .*end processes.*ulimit.*-u' \
+inject_parent 4 'importer could not be started \(Resource temporarily unavailable\); .*end processes.*ulimit.*-u' \
     "$clone:error=EAGAIN"
-parent 4 'importer could not be started \(Cannot allocate memory\); .*free memory' "$clone:error=ENOMEM"
-parent 4 'importer could not be started \(Too many open files\); close files.*ulimit -n' memfd_create:error=EMFILE
-parent 4 'importer could not be started \(Too many open files in system\); close files' memfd_create:error=ENFILE
-parent 4 'importer could not be started \(No space left on device\); .*free memory' fallocate:error=ENOSPC
+inject_parent 4 'importer could not be started \(Cannot allocate memory\); .*free memory' "$clone:error=ENOMEM"
+inject_parent 4 'importer could not be started \(Too many open files\); close files.*ulimit -n' memfd_create:error=EMFILE
+inject_parent 4 'importer could not be started \(Too many open files in system\); close files' memfd_create:error=ENFILE
+inject_parent 4 'importer could not be started \(No space left on device\); .*free memory' fallocate:error=ENOSPC
 
 # Few descriptors, without a tracer, which needs some itself.
 few=0
@@ -169,7 +168,7 @@ for ((limit = 4; limit < 200; ++limit)); do
     [ "$code" -ne 0 ] || break
     # The parent's own loader prints its own messages.
     ! grep -q 'error while loading shared libraries' stderr || continue
-    ends "$limit descriptors"
+    expect_complete "$limit descriptors"
     grep -q 'ulimit -n' stderr || die "$limit descriptors: $(cat stderr)"
     few=$((few + 1))
 done
@@ -193,28 +192,28 @@ cat >bin/relief-import <<'W'
 printf '\1' >&6
 cat "$ANSWER" >&5
 W
-size() { # COLUMNS ROWS MOST
+image_size() { # COLUMNS ROWS MOST
     python3 -c 'import struct, sys; sys.stdout.buffer.write(struct.pack("<IQQQ", 0, *map(int, sys.argv[1:])))' "$@"
 }
-lies() { # CODE PATTERN
+rejects_answer() { # CODE PATTERN
     ANSWER=answer expect_error "$1" "'hills\.png': $2" bin/relief bake hills.png --heights low=0,high=9 -o x.relief
 }
 : >answer
-lies 4 'the importer returned no result'
-size 33 33 65535 | head -c 20 >answer
-lies 4 'the importer returned no result'
-size 33 33 7 >answer
-lies 3 'the importer returned an invalid image size'
-size 1099511627776 33 65535 >answer
-lies 6 'it has 1099511627776x33 samples'
-{ size 33 33 255 && head -c 1000 /dev/zero; } >answer
-lies 4 'the importer returned no result'
+rejects_answer 4 'the importer returned no result'
+image_size 33 33 65535 | head -c 20 >answer
+rejects_answer 4 'the importer returned no result'
+image_size 33 33 7 >answer
+rejects_answer 3 'the importer returned an invalid image size'
+image_size 1099511627776 33 65535 >answer
+rejects_answer 6 'it has 1099511627776x33 samples'
+{ image_size 33 33 255 && head -c 1000 /dev/zero; } >answer
+rejects_answer 4 'the importer returned no result'
 printf '\x63\0\0\0\0\0\0\0' >answer
-lies 3 'the importer returned an unknown error'
+rejects_answer 3 'the importer returned an unknown error'
 printf '\x03\0\0\0\xff\xff\xff\xff boom' >answer
-lies 4 'the importer returned no result'
+rejects_answer 4 'the importer returned no result'
 printf '\x03\0\0\0\x06\0\0\0a\nb\x1bcd' >answer
-lies 3 'a.b.*cd$'
+rejects_answer 3 'a.b.*cd$'
 
 cat >counts <<C
 | what | times | another collider, a torn file or a process left |

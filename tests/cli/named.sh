@@ -25,8 +25,8 @@ open('points.csv', 'w').write('x,y,z\n0,0,0\n4,0,0\n0.2,1.05,0.3\n0.2,-1.02,0.3\
 P
 python3 meshes.py
 
-# bakes MESH COUNTS OPTIONS…: COUNTS are solids, solids with holes, sheets and terrains.
-bakes() {
+# expect_bake MESH COUNTS OPTIONS…: COUNTS are solids, solids with holes, sheets and terrains.
+expect_bake() {
     expect 0 "$relief" bake "$1" -o out.relief --budget 60kB --no-check --json "${@:3}"
     cp stdout report.json
     json report.json "[d['shape'][k] for k in ('solids', 'solids_with_holes', 'sheets', 'terrains')] == [$2]"
@@ -37,9 +37,9 @@ fields() { # EXPRESSION over the fields f of the points
 }
 
 # Two groups of different kinds. The check and queries agree.
-bakes two.obj '1, 0, 1, 0'
+expect_bake two.obj '1, 0, 1, 0'
 cp out.relief plain.relief
-bakes two.obj '0, 1, 1, 0' --as tub=solid --as garden=shell --thickness 0.2
+expect_bake two.obj '0, 1, 1, 0' --as tub=solid --as garden=shell --thickness 0.2
 json report.json "d['shape']['named'] == [{'name': 'tub', 'as': 'solid', 'triangles': 10}, {'name': 'garden', 'as': 'shell', 'triangles': 12}]"
 json report.json "d['provenance']['options'].endswith(' --as tub=solid --as garden=shell --thickness 0.2')"
 fields 'f[0] < 0 < f[1]'
@@ -48,18 +48,18 @@ expect 0 "$relief" check two.relief --mesh two.obj --samples 2000 --max-error 3 
 json stdout "d['mesh']['shape']['named'][1] == {'name': 'garden', 'as': 'shell', 'triangles': 12} and d['mesh']['shape']['solids_with_holes'] == 1"
 sed 's/^g tub left/g tab/' two.obj >renamed.obj
 expect_error 3 "renamed\.obj.*'tub'" "$relief" check two.relief --mesh renamed.obj --samples 1000
-bakes two.obj '0, 0, 2, 0' --as garden=auto --as wood=shell
+expect_bake two.obj '0, 0, 2, 0' --as garden=auto --as wood=shell
 grep -q 'warning: two.obj: --as garden=auto' stderr || die "no warning: $(cat stderr)"
 
 # A name without effect changes no texel. Without names not even a byte changes.
-bakes two.obj '1, 0, 1, 0' --as tub=auto --as garden=solid
+expect_bake two.obj '1, 0, 1, 0' --as tub=auto --as garden=solid
 "$relief" export plain.relief --gpu plain -q && "$relief" export out.relief --gpu same -q
 diff -r plain same || die "names without effect change the texels"
-bakes two.obj '1, 0, 1, 0' --as auto
+expect_bake two.obj '1, 0, 1, 0' --as auto
 cmp plain.relief out.relief || die "--as auto is not the default"
 
 # A material that shares edges is a separate part.
-bakes car.obj '0, 1, 1, 0' --as glass=shell --as paint=solid --thickness 0.2
+expect_bake car.obj '0, 1, 1, 0' --as glass=shell --as paint=solid --thickness 0.2
 fields 'f[0] < 0 and f[2] < 0 < f[3]'
 expect 0 "$relief" check out.relief --mesh car.obj --samples 2000 --max-error 3
 

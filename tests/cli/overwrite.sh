@@ -19,13 +19,13 @@ printf '%s\n' '[collider]' 'file = "box.relief"' '[time]' 'steps = 4' '[[type]]'
     'atlas = "frames/frame_0002.png"' 'size = [16, 16]' 'every = 2' >scene.toml
 printf 'version = 1\n[[asset]]\nmesh = "box.obj"\noutput = "{stem}.new.relief"\nmap = "cube:size=16"\n' >r.toml
 sha256sum box.* points.csv atlas.png scene.toml r.toml frames/frame_0002.png >before
-kept() { # PATTERN COMMAND…: fails with a usage error, and no file changes
+expect_kept() { # PATTERN COMMAND…: fails with a usage error, and no file changes
     expect_error 1 "$@"
     sha256sum --quiet -c before || die "an input was overwritten: $*"
 }
 
 # A frame is an input only if its number is written.
-kept "frame_0002\.png' is the input" "$relief_sim" scene.toml --first-frame 0 --frames frames
+expect_kept "frame_0002\.png' is the input" "$relief_sim" scene.toml --first-frame 0 --frames frames
 expect 0 "$relief_sim" scene.toml --frames frames -q
 
 # Every file of a scene is an input, even if this run does not read it: meshes of pictures, finer or coarser containers.
@@ -35,8 +35,8 @@ ln -s stored meshes/box.obj
 printf '%s\n' '[collider]' 'file = "box.relief"' '[render]' 'meshes = "meshes"' >pictured.toml
 sha256sum meshes/stored >>before
 for output in meshes/box.obj meshes/stored; do
-    kept "'$output' is the input" "$relief_sim" pictured.toml --steps 1 --dump $output
-    kept "'$output' is the input" "$relief_sim" pictured.toml --steps 1 --events $output
+    expect_kept "'$output' is the input" "$relief_sim" pictured.toml --steps 1 --dump $output
+    expect_kept "'$output' is the input" "$relief_sim" pictured.toml --steps 1 --events $output
 done
 
 # A bake owns the folder of a world: its containers, present or not, and its caches.
@@ -52,12 +52,12 @@ for bake in level ground recipe; do
     ln -s "$(echo $bake/*.relief)" $bake.symbolic
     find $bake -type f -exec sha256sum {} + >>before
     for output in $bake/*.relief $bake/new.relief $bake/world.json $bake.hard $bake.symbolic $bake/.relief-cache.json; do
-        kept "and --depfile would both write '$output'.*; choose another" "${command[@]}" --depfile $output
+        expect_kept "and --depfile would both write '$output'.*; choose another" "${command[@]}" --depfile $output
     done
 done
-kept "and --stamp would both write 'recipe.symbolic', which is '.*recipe/.*relief'; choose" "${recipe[@]}" --stamp recipe.symbolic
-kept "'box.obj' and --events would both write" "${recipe[@]}" --events "$(echo recipe/*.relief)"
-kept "and --depfile would both write" "${level[@]}" --depfile level/.relief-curves.json
+expect_kept "and --stamp would both write 'recipe.symbolic', which is '.*recipe/.*relief'; choose" "${recipe[@]}" --stamp recipe.symbolic
+expect_kept "'box.obj' and --events would both write" "${recipe[@]}" --events "$(echo recipe/*.relief)"
+expect_kept "and --depfile would both write" "${level[@]}" --depfile level/.relief-curves.json
 
 # A rejected run creates no folder.
 expect_error 2 'makes a folder there' "$relief" bake box.obj --world fresh/sub --budget 20kB --depfile fresh
@@ -69,19 +69,19 @@ expect_error 2 'missing.png' "$relief" bake missing.png --heights low=0,high=1 -
 expect 0 "$relief" bake box.obj --world fresh/sub --budget 20kB --depfile fresh/d -q
 
 # A page of a world, and the report next to a page.
-kept "is the input" "$relief" view level/world.json -o "$(echo level/*.relief)"
-kept "the report and --html would both write" "$relief" check box.relief --mesh box.obj --html /dev/stdout
+expect_kept "is the input" "$relief" view level/world.json -o "$(echo level/*.relief)"
+expect_kept "the report and --html would both write" "$relief" check box.relief --mesh box.obj --html /dev/stdout
 
 # Standard input and output are files, too.
-kept "'points.csv' is the input standard input" sh -c "'$relief' query box.relief --points - -o points.csv <points.csv"
+expect_kept "'points.csv' is the input standard input" sh -c "'$relief' query box.relief --points - -o points.csv <points.csv"
 code=0
 "$relief_sim" scene.toml --events shared >shared 2>stderr </dev/null || code=$?
 [ "$code" -eq 1 ] && grep -q 'the report' stderr || die "the report and --events share a file: $code, $(cat stderr)"
 
 # A recipe: dependencies of its meshes, in every shard; its cache, which is neither a recipe nor a link.
-for shard in 1/2 2/2; do kept "'box.obj' is the input" "$relief" bake --recipe r.toml --stamp box.obj --shard $shard; done
+for shard in 1/2 2/2; do expect_kept "'box.obj' is the input" "$relief" bake --recipe r.toml --stamp box.obj --shard $shard; done
 cp r.toml .relief-cache.json
-kept "recipe.s cache" "$relief" bake --recipe .relief-cache.json
+expect_kept "recipe.s cache" "$relief" bake --recipe .relief-cache.json
 cmp r.toml .relief-cache.json || die "the cache overwrote the recipe"
 rm .relief-cache.json
 mkdir elsewhere

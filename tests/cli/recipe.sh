@@ -87,7 +87,7 @@ for state in baked 'up to date'; do
     [ "$state" != baked ] || grep -qE '/3\] a.relief: baked, .* % wrong, ' stderr || die "no error in progress: $(cat stderr)"
 done
 
-# A bake that exceeds its time is stopped, and the exit code means a limit.
+# A bake that exceeds its time is stopped, and the exit code signals a limit.
 printf '%s\n' 'version = 1' '[[asset]]' "mesh = \"bunny.obj\"" 'output = "late.relief"' 'budget = "16MB"' 'time-limit = 0.2' >late.toml
 cp "$bunny" bunny.obj
 expect 6 "$relief" bake --recipe late.toml

@@ -145,15 +145,15 @@ for _ in baked 'up to date'; do
     expect 0 "$relief" bake --recipe keys/r.toml --json
     keys | cmp - before || die "the bake changes the keys: $(keys)"
 done
-changes() { # WHICH: the keys of exactly these assets change
+expect_changed() { # WHICH: the keys of exactly these assets change
     expect 0 "$relief" bake --recipe elsewhere/r.toml --dry-run --json
     [ "$(keys | tr ' ' '\n' | grep -vxFf <(tr ' ' '\n' <before) | cut -d= -f1)" = "$1" ] || die "wrong keys change, expected $1: $(keys)"
     cp keys/m.mtl keys/*.obj keys/*.toml elsewhere/
 }
-changes ''
+expect_changed ''
 echo 'Kd 0 1 0' >>elsewhere/m.mtl
-changes m.relief
+expect_changed m.relief
 echo 'v 9 9 9' >>elsewhere/t.obj
-changes t.relief
+expect_changed t.relief
 sed -i 's/20kB/21kB/' elsewhere/r.toml
-changes m.relief
+expect_changed m.relief

@@ -45,20 +45,20 @@ exclude = "levels/"
 output = "folders/{stem}/world.json"
 budget = "100kB"
 T
-baked() { (cd "$1" && find . -type f ! -name .relief-cache.json | sort | xargs sha256sum); }
+hashes() { (cd "$1" && find . -type f ! -name .relief-cache.json | sort | xargs sha256sum); }
 # Rewritten files have new times; inode numbers can be reused.
-numbers() { (cd out && find . -type f ! -name .relief-cache.json | sort | xargs stat -c '%n %i %y'); }
+inodes() { (cd out && find . -type f ! -name .relief-cache.json | sort | xargs stat -c '%n %i %y'); }
 run() { expect 0 "$relief" bake --recipe in/r.toml -o out --json -q "$@"; }
 keys() { python3 -c "import json; print([(a['asset'], a['key']) for a in json.load(open('stdout'))['assets']])"; }
 rebakes() { # NAMES…: a run bakes exactly these assets
     run
     json stdout "[a['asset'] for a in d['assets'] if a['state'] == 'baked'] == '$*'.split()"
 }
-because() { # ASSET REASON: a dry run gives this reason for only this asset, and bakes nothing
-    numbers >before
+expect_reason() { # ASSET REASON: a dry run gives this reason for only this asset, and bakes nothing
+    inodes >before
     run --dry-run
     json stdout "[a['asset'] + ' ' + a['reason'] for a in d['assets'] if a['state'] == 'stale'] == ['$1 $2']"
-    numbers | cmp - before || die "a dry run writes"
+    inodes | cmp - before || die "a dry run writes"
 }
 
 # Separate bakes and recipes with any -j give the same files.
@@ -77,8 +77,8 @@ for pair in yard:levels/yard ground:ground parts:folders/parts; do
     diff -r -x .relief-cache.json "${pair%:*}" "out/${pair#*:}" || die "a recipe gives a different ${pair%:*}"
 done
 expect 0 "$relief" bake --recipe in/r.toml -o one -j 1
-baked out >first
-baked one | diff first - || die "-j 1 gives different bytes"
+hashes out >first
+hashes one | diff first - || die "-j 1 gives different bytes"
 for file in out/*/world.json out/*/*/world.json; do expect 0 "$relief" check "$file"; done
 
 # The report lists exactly the containers and bytes that were written.
@@ -108,7 +108,7 @@ rm hand/levels/yard/floor-*
 (cd hand && stat -c '%n %i' levels/yard/box-*) >before
 expect 0 "$relief" bake --recipe in/r.toml -o hand -q
 (cd hand && stat -c '%n %i' levels/yard/box-*) | cmp - before || die "a separate bake is repeated"
-baked hand | diff first - || die "the completed level differs"
+hashes hand | diff first - || die "the completed level differs"
 
 # If a container, a coarse container or the world file is missing or damaged, that world is baked again; for a level,
 # only the missing parts.
@@ -117,54 +117,54 @@ for file in levels/yard/box-*.relief levels/yard/box-coarse-*.relief levels/yard
     asset=$(dirname "$file")/world.json
     rm "out/$file"
     case $file in # and how many files are written anew, the world's own included
-    *.json) because "$asset" 'the output is missing' && anew=1 ;;
-    ground/*) because "$asset" "its \\'$(basename "$file")\\' is missing" && anew=$(ls out/ground | wc -l) anew=$((anew + 1)) ;;
-    *) because "$asset" "its \\'$(basename "$file")\\' is missing" && anew=3 ;; # a container and its coarse one
+    *.json) expect_reason "$asset" 'the output is missing' && anew=1 ;;
+    ground/*) expect_reason "$asset" "its \\'$(basename "$file")\\' is missing" && anew=$(ls out/ground | wc -l) anew=$((anew + 1)) ;;
+    *) expect_reason "$asset" "its \\'$(basename "$file")\\' is missing" && anew=3 ;; # a container and its coarse one
     esac
     rebakes "$asset"
-    baked out | diff first - || die "$file is not restored"
-    [ "$(numbers | diff before - | grep -c '^>')" = "$anew" ] || die "not $anew files are new: $(numbers | diff before -)"
+    hashes out | diff first - || die "$file is not restored"
+    [ "$(inodes | diff before - | grep -c '^>')" = "$anew" ] || die "not $anew files are new: $(inodes | diff before -)"
     printf x >>"out/$file"
     rebakes "$asset"
-    baked out | diff first - || die "damaged $file is not restored"
+    hashes out | diff first - || die "damaged $file is not restored"
     rebakes ''
 done
 
 # Changed inputs: only the level is baked. If only a node moved, no container changes.
 level in/levels/yard.gltf x=3
-because levels/yard/world.json "\\'levels/yard.gltf\\' changed"
+expect_reason levels/yard/world.json "\\'levels/yard.gltf\\' changed"
 rebakes levels/yard/world.json
-[ "$(numbers | diff before - | grep '^>' | cut -d' ' -f2)" = ./levels/yard/world.json ] || die "a moved node: $(numbers | diff before -)"
+[ "$(inodes | diff before - | grep '^>' | cut -d' ' -f2)" = ./levels/yard/world.json ] || die "a moved node: $(inodes | diff before -)"
 level in/levels/yard.gltf
 rebakes levels/yard/world.json
 printf '\0' >>in/levels/yard.bin
-because levels/yard/world.json "\\'levels/yard.bin\\' changed"
+expect_reason levels/yard/world.json "\\'levels/yard.bin\\' changed"
 rebakes levels/yard/world.json
-baked out | diff first - || die "an unreferenced byte changes the level"
+hashes out | diff first - || die "an unreferenced byte changes the level"
 tetrahedron in/parts/c.obj 4
-because folders/parts/world.json "\\'parts\\' changed"
+expect_reason folders/parts/world.json "\\'parts\\' changed"
 rebakes folders/parts/world.json
 rm in/parts/c.obj
 rebakes folders/parts/world.json
-baked out | diff first - || die "the folder changed again"
+hashes out | diff first - || die "the folder changed again"
 
 # A level that fails or times out keeps its world and the others.
 printf 'v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n' >in/parts/b.obj
 tetrahedron in/rock.obj 1.5
 expect 3 "$relief" bake --recipe in/r.toml -o out
 grep -q "error: folders/parts/world.json: .*b\.obj" stderr || die "the failed level is not named: $(cat stderr)"
-! baked out | diff first - | grep -v rock.relief | grep '^[<>]' || die "a failed level changes files"
+! hashes out | diff first - | grep -v rock.relief | grep '^[<>]' || die "a failed level changes files"
 tetrahedron in/parts/b.obj 3
 tetrahedron in/rock.obj 1
 rebakes rock.relief
 sed 's/^budget = "200kB"/&\ntime-limit = 0.001/' in/r.toml >in/late.toml
 expect 6 "$relief" bake --recipe in/late.toml -o out
 grep -q 'levels/yard/world.json: .*--time-limit' stderr || die "the limit is not named: $(cat stderr)"
-baked out | diff first - || die "a level that timed out changes files"
+hashes out | diff first - || die "a level that timed out changes files"
 
 # Errors in a recipe have a position. Links out of the folders are neither read nor written; unit tests cover those of
 # caches.
-fails() { # PATTERN LINE…: lines of a recipe
+rejects() { # PATTERN LINE…: lines of a recipe
     printf '%s\n' 'version = 1' '[[asset]]' "${@:2}" >in/wrong.toml
     expect_error 3 "wrong\.toml:$1" "$relief" bake --recipe in/wrong.toml -o linked
     [ "$(cat secret.relief)" = precious ] || die "a file outside the folders was written"
@@ -172,13 +172,13 @@ fails() { # PATTERN LINE…: lines of a recipe
 echo precious >secret.relief
 mkdir -p linked/w
 yard=('mesh = "levels/yard.gltf"' 'output = "w/world.json"' 'budget = "200kB"' 'compress = 1')
-fails '7:7: --map' "${yard[@]}" 'map = "cube:size=16"'
+rejects '7:7: --map' "${yard[@]}" 'map = "cube:size=16"'
 name=$(cd yard && ls box-*.relief | head -n 1)
 ln -s ../../secret.relief "linked/w/$name"
-fails "4:10: .*$name" "${yard[@]}"
+rejects "4:10: .*$name" "${yard[@]}"
 tetrahedron secret.obj 9
 ln -s ../../secret.obj in/parts/secret.obj
-fails "3:8: .*secret.obj" 'mesh = "parts/"' 'output = "w/world.json"'
+rejects "3:8: .*secret.obj" 'mesh = "parts/"' 'output = "w/world.json"'
 rm in/parts/secret.obj
 
 # A world can be in the output folder, or in its level's own folder.

@@ -89,8 +89,8 @@ expect 0 "$relief_sim" little.toml --dump again.ply -q
 cmp little.ply again.ply || die "two runs of one scene differ"
 
 # A missing file is reported once. A missing coarse file is an error.
-of() { python3 -c "import json; print(json.load(open('t/world.json'))['colliders'][0]$1['file'])"; }
-fine=$(of '') coarse=$(of "['coarse']")
+container_file() { python3 -c "import json; print(json.load(open('t/world.json'))['colliders'][0]$1['file'])"; }
+fine=$(container_file '') coarse=$(container_file "['coarse']")
 mv "t/$fine" kept
 expect 0 "$relief_sim" stream.toml --json
 json stdout "len(d['warnings']) == 1 and '$fine' in d['warnings'][0]"

@@ -74,43 +74,43 @@ assert not missing, f'no output is held against {missing}'
 P
 
 outputs=()
-# made SCHEMA CODE COMMAND…: standard output is a document of this schema
-made() {
+# document SCHEMA CODE COMMAND…: standard output is a document of this schema
+document() {
     local file=out${#outputs[@]}.json
     expect "$2" "${@:3}"
     cp stdout "$file"
     outputs+=("$1:$file")
 }
 cp "$models/OBJ/box.obj" .
-made bake 0 "$relief" bake box.obj -o b.relief --budget 20kB --json
-made bake 0 "$relief" bake box.obj -o c.relief --max-error 20 --budget 60kB --json
-made bake 0 "$relief" bake box.obj -o p.relief --paper --resolution 16 --compress 3 --json
-made info 0 "$relief" info p.relief --json
-made check 0 "$relief" check b.relief --mesh box.obj --samples 500 --json
-made check 7 "$relief" check p.relief --mesh box.obj --samples 500 --max-error 0 --json
+document bake 0 "$relief" bake box.obj -o b.relief --budget 20kB --json
+document bake 0 "$relief" bake box.obj -o c.relief --max-error 20 --budget 60kB --json
+document bake 0 "$relief" bake box.obj -o p.relief --paper --resolution 16 --compress 3 --json
+document info 0 "$relief" info p.relief --json
+document check 0 "$relief" check b.relief --mesh box.obj --samples 500 --json
+document check 7 "$relief" check p.relief --mesh box.obj --samples 500 --max-error 0 --json
 "$relief" bake box.obj -o r.relief --budget 20kB --repair wrap=0.3 -q
-made check 0 "$relief" check r.relief --mesh box.obj --samples 500 --json
-made check-file 0 "$relief" check b.relief --json
+document check 0 "$relief" check r.relief --mesh box.obj --samples 500 --json
+document check-file 0 "$relief" check b.relief --json
 printf 'DAMAGE' | dd of=p.relief bs=1 seek=1000 conv=notrunc status=none
-made check-file 3 "$relief" check p.relief --json
-made check-file 3 "$relief" check box.obj --json
+document check-file 3 "$relief" check p.relief --json
+document check-file 3 "$relief" check box.obj --json
 
 mkdir recipe
 cp box.obj recipe/
 echo nonsense >recipe/zbad.obj
 printf 'version = 1\n[[asset]]\nmesh = "*.obj"\noutput = "{stem}.relief"\npaper = true\nresolution = 8\n' >recipe/recipe.toml
-made recipe 3 "$relief" bake --recipe recipe/recipe.toml --events events.jsonl --json
+document recipe 3 "$relief" bake --recipe recipe/recipe.toml --events events.jsonl --json
 echo '# changed' >>recipe/box.obj
-made recipe 0 "$relief" bake --recipe recipe/recipe.toml --dry-run --json
+document recipe 0 "$relief" bake --recipe recipe/recipe.toml --dry-run --json
 
 python3 "$RELIEF_SOURCE/tests/cli/level.py" level.gltf
-made world-bake 0 "$relief" bake level.gltf --world w --budget 100kB --json
-made world-check 0 "$relief" check w/world.json --json
-made world-check 0 "$relief" check w/world.json --mesh level.gltf --samples 500 --json
-made world-info 0 "$relief" info w/world.json --json
+document world-bake 0 "$relief" bake level.gltf --world w --budget 100kB --json
+document world-check 0 "$relief" check w/world.json --json
+document world-check 0 "$relief" check w/world.json --mesh level.gltf --samples 500 --json
+document world-info 0 "$relief" info w/world.json --json
 python3 "$RELIEF_SOURCE/tests/cli/heights.py" heights.png 70
-made ground-bake 0 "$relief" bake heights.png --heights low=0,high=9,tile=64 --world g --json
-made ground-check 0 "$relief" check g/world.json --mesh heights.png --heights low=0,high=99,tile=64 --samples 500 --max-error 100 --json
+document ground-bake 0 "$relief" bake heights.png --heights low=0,high=9,tile=64 --world g --json
+document ground-check 0 "$relief" check g/world.json --mesh heights.png --heights low=0,high=99,tile=64 --samples 500 --max-error 100 --json
 
 # A scene with all features.
 python3 -c "import struct; open('flow.raw', 'wb').write(struct.pack('<24f', *range(24)))"
@@ -141,12 +141,12 @@ camera = { target = [0, 0, 0], key = [{ time = 0, eye = [0, 1, 5] }, { time = 1,
 spawn = [{ on = "collision" }]
 render = { size = [32, 24], every = 20, sprite = "quad" }
 T
-made sim-report 0 "$relief_sim" scene.toml --steps 40 --frames frames --events hits.jsonl --json
+document sim-report 0 "$relief_sim" scene.toml --steps 40 --frames frames --events hits.jsonl --json
 [ -s hits.jsonl ] || die "there are no hits"
-made sim-report 0 "$relief_sim" b.relief --steps 2 --json
-made sim-check 0 "$relief_sim" scene.toml --check --json
+document sim-report 0 "$relief_sim" b.relief --steps 2 --json
+document sim-check 0 "$relief_sim" scene.toml --check --json
 echo nonsense >bad.toml
-made sim-check 3 "$relief_sim" bad.toml --check --json
+document sim-check 3 "$relief_sim" bad.toml --check --json
 outputs+=(sim-events:hits.jsonl recipe-events:events.jsonl world:w/world.json)
 
 "$RELIEF_BIN/relief-generate" --schemas schemas

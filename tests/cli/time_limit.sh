@@ -16,13 +16,13 @@ limited() {
 
 "$relief" bake "$bunny" -o new.relief --budget 30kB -q
 "$relief" bake "$bunny" -o old.relief --budget 20kB -q
-old() { cp old.relief out/a.relief && echo old >out/a.d; }
-is() { # old or new: both files must be
+restore_old() { cp old.relief out/a.relief && echo old >out/a.d; }
+outputs_are() { # old or new: both files must be
     cmp -s out/a.relief "$1.relief" && [ "$1" = "$(grep -qx old out/a.d && echo old || echo new)" ] && [ "$(ls -A out)" = $'a.d\na.relief' ]
 }
 
 # A search that would take long.
-old
+restore_old
 start=$(date +%s%N)
 limited 1 "$bunny" --max-error 0.001% -q
 took=$((($(date +%s%N) - start) / 1000000))
@@ -30,13 +30,13 @@ took=$((($(date +%s%N) - start) / 1000000))
 grep -qE "^relief: error: '.*bunny\.obj': the bake did not end within 1 s; it had been [a-z ]+ for [0-9.]+ s; .*--time-limit" stderr ||
     die "the error says: $(cat stderr)"
 [ "$took" -lt 5000 ] || die "it took $took ms"
-is old || die "a stopped bake leaves $(ls -lA out)"
+outputs_are old || die "a stopped bake leaves $(ls -lA out)"
 
 # An import that would never end. The worker ends, too.
 unfold unfold.dae
 limited 0.5 unfold.dae --import-time 600 --import-memory 100GB
 [ "$code" -eq 6 ] && grep -q "unfold\.dae.*within 0\.5 s; it had been reading the mesh" stderr || die "exit code $code: $(cat stderr)"
-is old || die "an import whose time is up leaves $(ls -lA out)"
+outputs_are old || die "an import whose time is up leaves $(ls -lA out)"
 
 # At any time: all files new or all old.
 start=$(date +%s%N)
@@ -44,21 +44,21 @@ start=$(date +%s%N)
 span=$((($(date +%s%N) - start) / 1000000))
 ended=0
 for i in $(seq 12); do
-    old
+    restore_old
     ms=$((span * i / 11))
     limited "$((ms / 1000)).$(printf %03d $((ms % 1000 + 1)))" "$bunny" --budget 30kB -q
     case $code in
-        0) is new || die "after $ms ms: success without the new files" ;;
-        6) is old && ended=$((ended + 1)) || die "after $ms ms: exit code 6, and not the old files" ;;
+        0) outputs_are new || die "after $ms ms: success without the new files" ;;
+        6) outputs_are old && ended=$((ended + 1)) || die "after $ms ms: exit code 6, and not the old files" ;;
         *) die "after $ms ms: exit code $code: $(cat stderr)" ;;
     esac
 done
 [ "$ended" -ge 3 ] || die "only $ended of 12 limits stopped the bake"
 
 # A sufficient limit changes nothing.
-old
+restore_old
 limited 600 "$bunny" --budget 30kB
-[ "$code" -eq 0 ] && is new || die "with enough time: exit code $code: $(cat stderr)"
+[ "$code" -eq 0 ] && outputs_are new || die "with enough time: exit code $code: $(cat stderr)"
 
 expect_error 1 'time-limit' "$relief" bake "$bunny" -o x.relief --time-limit=1s
 

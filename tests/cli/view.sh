@@ -3,8 +3,8 @@
 # stub replaces the page of scenes, which needs another build; tests/web tests the real pages.
 . "$(dirname "$0")/lib.sh"
 
-# data PAGE: writes the page's data to data.json and the rest to rest.html; fails if the page references external files
-data() {
+# extract PAGE: writes the page's data to data.json and the rest to rest.html; fails if the page references external files
+extract() {
     python3 - "$1" <<'P' || die "$1 is not a page with data"
 import json, re, sys
 before, data, after = re.fullmatch('(.*id="relief-page-data"[^>]*>)(.*?)(</script>.*)', open(sys.argv[1]).read(), re.S).groups()
@@ -14,7 +14,7 @@ json.dump(json.loads(data), open('data.json', 'w'))
 open('rest.html', 'w').write(before + 'null' + after)
 P
 }
-holds() { # FILE BASE64_EXPRESSION: the bytes in data.json equal those of the file
+contains() { # FILE BASE64_EXPRESSION: the bytes in data.json equal those of the file
     json data.json "__import__('base64').b64decode($2, validate=True) == open('$1', 'rb').read()"
 }
 
@@ -23,7 +23,7 @@ holds() { # FILE BASE64_EXPRESSION: the bytes in data.json equal those of the fi
 # The page is next to the collider and is deterministic. It needs no web build: RELIEF_VIEW_PAGE is for scenes.
 RELIEF_VIEW_PAGE=$work/none.html expect 0 "$relief" view b.relief
 [ ! -s stdout ] && [ ! -s stderr ] || die "it prints output: $(cat stdout stderr)"
-data b.html
+extract b.html
 json data.json 'list(d) == ["format", "name", "bytes", "collider", "shows", "mesh", "check", "scene", "files"]'
 json data.json '[d["format"], d["name"]] == [3, "b.relief"] and {d[k] for k in list(d)[4:]} == {None} and not d["collider"]["animated"]'
 json data.json "d['bytes'] == $(stat -c %s b.relief)"
@@ -36,14 +36,14 @@ sed 's/"name":"b.relief"/"name":"standard input"/' b.html | cmp - standard_input
 for collider in b.relief kinds.relief; do
     "$relief" export $collider --gpu gpu -q
     "$relief" view $collider -o page_of.html
-    data page_of.html
+    extract page_of.html
     cmp rest.html page.html || die "the page of $collider differs outside its data"
-    holds gpu/block.bin 'd["collider"]["block"]'
+    contains gpu/block.bin 'd["collider"]["block"]'
     json data.json 'd["collider"]["glsl"] == open("gpu/collider.glsl").read()'
     for i in 0 1 2; do
         file=$(python3 -c "import json; print(json.load(open('gpu/gpu.json'))['textures'][$i]['file'] or '')")
         [ -n "$file" ] || json data.json "d['collider']['textures'][$i]['texels'] is None"
-        [ -z "$file" ] || holds "gpu/$file" "d['collider']['textures'][$i]['texels']"
+        [ -z "$file" ] || contains "gpu/$file" "d['collider']['textures'][$i]['texels']"
     done
 done
 
@@ -51,7 +51,7 @@ done
 expect 0 "$relief" view b.relief --mesh "$bunny" --samples 5000 --seed 7 -o mesh.html
 "$relief" check b.relief --mesh "$bunny" --samples 5000 --seed 7 --json >check.json
 "$relief" check b.relief --mesh "$bunny" --samples 5000 --seed 7 >check.txt
-data mesh.html
+extract mesh.html
 python3 - <<'P' || die "the page and relief check have different reports"
 import base64, json, struct
 d, check = json.load(open('data.json')), json.load(open('check.json'))
@@ -73,7 +73,7 @@ P
 for name in '<script><!--.relief' $'\xff.relief'; do
     cp b.relief "$name"
     expect 0 "$relief" view "$name" -o name.html
-    data name.html
+    extract name.html
 done
 
 # A scene and its files. For a deforming body the panel has maps without a surface.
@@ -85,18 +85,18 @@ printf '0,2,0\n' >scene/points.csv
 printf '%s\n' '[collider]' 'file = "./sub/b.relief"' '[[emitter]]' 'points = "points.csv"' 'direction = [0, -1, 0]' 'speed = 1.0' >scene/s.toml
 expect 0 "$relief_sim" scene/s.toml --page scene/s.html
 [ ! -s stdout ] && [ ! -s stderr ] || die "--page prints output: $(cat stdout stderr)"
-data scene/s.html
+extract scene/s.html
 cmp rest.html stub.html || die "the page is not the stub with data"
-holds b.relief 'd["files"]["sub/b.relief"]'
-holds scene/points.csv 'd["files"]["points.csv"]'
+contains b.relief 'd["files"]["sub/b.relief"]'
+contains scene/points.csv 'd["files"]["points.csv"]'
 json data.json '[d["collider"], d["shows"], d["name"], len(d["files"])] == [None, "sub/b.relief", "s.toml", 2]'
 json data.json 'd["scene"] == open("scene/s.toml").read()'
 box box.obj 1 1 1
 cp box.obj scene/
 printf '[collider]\nmesh = "box.obj"\ndeform = { amplitude = 0.1, frequency = 1.0 }\nresolution = 32\n' >scene/live.toml
 expect 0 "$relief_sim" scene/live.toml --page scene/live.html
-data scene/live.html
-holds box.obj 'd["files"]["box.obj"]'
+extract scene/live.html
+contains box.obj 'd["files"]["box.obj"]'
 python3 -c 'import base64, json; open("rest.relief", "wb").write(base64.b64decode(json.load(open("data.json"))["collider"]))'
 expect 0 "$relief" check rest.relief
 expect_error 1 'relief-sim scene/s.toml --page scene/s.html' "$relief" view scene/s.toml
@@ -105,7 +105,7 @@ expect_error 1 'page' "$relief_sim" scene/s.toml --page o.html --dump o.ply
 
 # Errors: one line, and nothing is written.
 mkdir errors
-refuses() { # CODE PATTERN ARGUMENT…
+rejects() { # CODE PATTERN ARGUMENT…
     expect_error "$1" "$2" "$relief" view "${@:3}"
     [ -z "$(ls -A errors)" ] || die "left behind by 'view ${*:3}': $(ls -A errors)"
 }
@@ -115,18 +115,18 @@ pages() {
 }
 head -c 3000 b.relief >short.relief
 truncate -s 200M large.relief
-refuses 3 "short.relief" short.relief -o errors/o.html
-refuses 6 'large.relief' large.relief -o errors/o.html
-refuses 2 "missing.relief" missing.relief -o errors/o.html
-refuses 2 "missing.obj" b.relief --mesh missing.obj -o errors/o.html
-refuses 3 'box.obj' b.relief --mesh box.obj -o errors/o.html
+rejects 3 "short.relief" short.relief -o errors/o.html
+rejects 6 'large.relief' large.relief -o errors/o.html
+rejects 2 "missing.relief" missing.relief -o errors/o.html
+rejects 2 "missing.obj" b.relief --mesh missing.obj -o errors/o.html
+rejects 3 'box.obj' b.relief --mesh box.obj -o errors/o.html
 pages 1 'stub.html' scene/s.toml --page stub.html
 pages 1 'points.csv' scene/s.toml --page scene/points.csv
-refuses 2 'nowhere' b.relief -o nowhere/o.html
-refuses 1 '-o' -
-refuses 1 'samples' b.relief --samples 10 -o errors/o.html
-refuses 6 'samples' b.relief --mesh "$bunny" --samples 1000000000000 -o errors/o.html
-refuses 6 'triangles' b.relief --mesh "$bunny" --max-triangles 10 -o errors/o.html
+rejects 2 'nowhere' b.relief -o nowhere/o.html
+rejects 1 '-o' -
+rejects 1 'samples' b.relief --samples 10 -o errors/o.html
+rejects 6 'samples' b.relief --mesh "$bunny" --samples 1000000000000 -o errors/o.html
+rejects 6 'triangles' b.relief --mesh "$bunny" --max-triangles 10 -o errors/o.html
 printf '[collider]\nfile = "../b.relief"\n' >scene/outside.toml
 pages 3 'outside.toml:2' scene/outside.toml --page errors/o.html
 
@@ -157,8 +157,8 @@ export RELIEF_VIEW_PAGE=$work/stub.html
 python3 "$RELIEF_SOURCE/tests/cli/level.py" level.gltf
 "$relief" bake level.gltf --world w --budget 60kB --no-check -q
 expect 0 "$relief" view w/world.json
-data w/world.html
+extract w/world.html
 json data.json "d['scene'] == 'world = \"world.json\"\\n' and len(d['files']) >= 4 and d['shows'] in d['files']"
-holds w/world.json 'd["files"]["world.json"]'
+contains w/world.json 'd["files"]["world.json"]'
 rm w/box-*.relief
 expect_error 2 "world.json" "$relief" view w/world.json

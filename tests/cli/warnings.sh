@@ -37,14 +37,14 @@ for cure in $'[collision]\nsweep = 0.1' $'[time]\ndt = 0.002' $'[[type]]\ncollid
     warns ''
 done
 # A scene without the key gets a sweep that stops them.
-behind() { # the number of particles behind the wall after 20 steps
+count_behind() { # the number of particles behind the wall after 20 steps
     "$relief_sim" scene.toml -q --steps 20 --dump out.ply || die 'relief-sim failed'
     PYTHONPATH=$(dirname "$0") python3 -c 'import ply; print(sum(each["z"] < -0.2 for each in ply.read("out.ply")))'
 }
-[ "$(behind)" -gt 0 ] || die 'no particle passes a wall thinner than a step, so nothing is tested'
+[ "$(count_behind)" -gt 0 ] || die 'no particle passes a wall thinner than a step, so nothing is tested'
 scene "${jet[@]}" 'velocity = [0.0, 0.0, -60.0]'
 warns ''
-[ "$(behind)" -eq 0 ] || die 'particles pass a wall despite an automatic sweep'
+[ "$(count_behind)" -eq 0 ] || die 'particles pass a wall despite an automatic sweep'
 # A sweep has at most 32 segments.
 scene "${jet[@]}" 'velocity = [0.0, 0.0, -900.0]'
 warns "at a speed of 900 a step is 0.4[0-9]* long, but 'metres\.relief' is typically 0\.[0-9]* thick: particles may pass through it; set a smaller time\.dt"
