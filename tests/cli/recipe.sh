@@ -21,7 +21,7 @@ mesh = "hill.obj"
 compress = 3
 T
 cp -r in pristine
-events() { python3 -c "import json,sys; print(*[json.loads(l)['event'] for l in open(sys.argv[1])])" "$1"; } # their names
+events() { python3 -c "import json,sys; print(*[json.loads(l)['event'] for l in open(sys.argv[1])])" "$1"; } # names of events
 hashes() { (cd "$1" && find . -name '*.relief' | sort | xargs sha256sum); }
 
 # A dry run writes nothing. A run bakes everything, and a second run reports that nothing changed.

@@ -44,11 +44,11 @@ run = subprocess.Popen([sys.argv[1], 'bake', '--recipe', 'many/one.toml', '-j', 
                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 while (event := json.loads(run.stdout.readline()))['event'] != 'started' or event['mesh'] != 'b0.obj':
     pass
-# The event comes before the process.
+# The event precedes the process.
 while not (children := open(f'/proc/{run.pid}/task/{run.pid}/children').read().split()):
     pass
 child = int(children[0])
-while b'--json' not in (words := open(f'/proc/{child}/cmdline', 'rb').read()):  # not yet the bake's own
+while b'--json' not in (words := open(f'/proc/{child}/cmdline', 'rb').read()):  # until the child executes the bake
     pass
 assert b'--time-limit=3600' in words.split(b'\0'), words
 os.kill(child, signal.SIGSEGV)
@@ -65,7 +65,7 @@ for signal in INT TERM; do
     python3 - "$relief" $signal <<'P' || die "interrupting by SIG$signal failed"
 import json, processes, signal, subprocess, sys, time
 number = getattr(signal, 'SIG' + sys.argv[2])
-signal.signal(signal.SIGINT, signal.default_int_handler)  # bash has background jobs ignore it
+signal.signal(signal.SIGINT, signal.default_int_handler)  # bash ignores SIGINT in background jobs
 run = subprocess.Popen([sys.argv[1], 'bake', '--recipe', 'many/m.toml', '-j', '2', '--events', '-'],
                        stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
 started = 0

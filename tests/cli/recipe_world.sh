@@ -116,10 +116,10 @@ for file in levels/yard/box-*.relief levels/yard/box-coarse-*.relief levels/yard
     file=$(cd out && ls $file | head -n 1)
     asset=$(dirname "$file")/world.json
     rm "out/$file"
-    case $file in # and how many files are written anew, the world's own included
+    case $file in # the number of rewritten files includes the world file
     *.json) expect_reason "$asset" 'the output is missing' && anew=1 ;;
     ground/*) expect_reason "$asset" "its \\'$(basename "$file")\\' is missing" && anew=$(ls out/ground | wc -l) anew=$((anew + 1)) ;;
-    *) expect_reason "$asset" "its \\'$(basename "$file")\\' is missing" && anew=3 ;; # a container and its coarse one
+    *) expect_reason "$asset" "its \\'$(basename "$file")\\' is missing" && anew=3 ;; # a container and its coarse container
     esac
     rebakes "$asset"
     hashes out | diff first - || die "$file is not restored"

@@ -13,7 +13,7 @@ body = {'rotation': [0, 0, 0, 1], 'scale': 1, 'restitution': 1, 'friction': 0}
 d['bodies'] = [{**body, 'collider': floor, 'node': 'ground', 'position': [0, -0.5, 0], 'restitution': 0.5},
                {**body, 'collider': box, 'node': 'first', 'position': [1, 0, 0], 'scale': 2},
                {**body, 'collider': box, 'node': 'second', 'position': [-3, 0.25, 0], 'friction': 0.5}]
-json.dump({**d, 'bodies': d['bodies'] + d['bodies'][2:]}, open('w/tiles.json', 'w'))  # of the second node two, in one place
+json.dump({**d, 'bodies': d['bodies'] + d['bodies'][2:]}, open('w/tiles.json', 'w'))  # the second node gets two bodies in one place
 file = [f'file = "w/{d["colliders"][i]["file"]}"\n' for i in (floor, box)]
 rest = '''[time]
 steps = 60

@@ -6,7 +6,7 @@ for library in assimp embree CGAL gmp mpfr tbb OpenEXR IlmImf; do
     ! ldd "$relief_sim" | matches -i "$library" || die "relief-sim needs $library"
 done
 "$relief" bake "$bunny" -o bunny.relief --paper --resolution 64 -q
-# A GL without KHR_robustness.
+# OpenGL without KHR_robustness.
 expect 0 env GALLIUM_DRIVER=softpipe "$relief_sim" bunny.relief --steps 2
 cat >scene.toml <<'S'
 [collider]

@@ -30,7 +30,7 @@ void mustBePolygons(const relief::PolygonMesh& mesh) {
 }
 
 /// Format detection before a reader runs.
-void mustBeJudged(std::span<const std::byte> bytes) {
+void mustDetectFormats(std::span<const std::byte> bytes) {
     for (const char* extension : {"obj", "stl", "dae", "glb", "blend"}) {
         mustHold(relief::otherFormat(extension, bytes) != extension,
                  "the other format differs from the extension");
@@ -62,7 +62,7 @@ void mustBeRead(const relief::Result<relief::PolygonMesh>& mesh) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const auto bytes = std::as_bytes(std::span(data, size));
-    mustBeJudged(bytes);
+    mustDetectFormats(bytes);
     mustBeRead(relief::readOff(bytes));
     mustBeRead(relief::readStl(bytes));
     const relief::Result<relief::ObjMesh> obj = relief::readObj(bytes);

@@ -13,7 +13,7 @@ namespace {
 using relief::ContainerHeader;
 
 /// Corrects the payload checksums in the metadata, if it can be read.
-void mendPayloads(std::span<std::uint8_t> bytes, const ContainerHeader& header) {
+void fixPayloadChecksums(std::span<std::uint8_t> bytes, const ContainerHeader& header) {
     std::uint8_t* metadata = bytes.data() + header.metadata_offset;
     // FlatBuffers requires the file's alignment, which the vector has.
     flatbuffers::Verifier verifier(metadata, header.metadata_size);
@@ -36,7 +36,7 @@ void mendPayloads(std::span<std::uint8_t> bytes, const ContainerHeader& header) 
 }
 
 /// Corrects the size and every checksum.
-void mend(std::span<std::uint8_t> bytes) {
+void fixChecksums(std::span<std::uint8_t> bytes) {
     ContainerHeader header;
     if (bytes.size() < sizeof(header)) {
         return;
@@ -44,7 +44,7 @@ void mend(std::span<std::uint8_t> bytes) {
     std::memcpy(&header, bytes.data(), sizeof(header));
     header.file_size = bytes.size();
     if (header.metadata_offset == sizeof(header) && header.metadata_size <= bytes.size() - sizeof(header)) {
-        mendPayloads(bytes, header);
+        fixPayloadChecksums(bytes, header);
         header.metadata_hash = relief::xxh3_64(
             std::as_bytes(std::span(bytes)).subspan(header.metadata_offset, header.metadata_size));
     }
@@ -61,7 +61,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
                                                unsigned seed) {
     const std::size_t new_size = LLVMFuzzerMutate(data, size, max_size);
     if (seed % 8 != 0) {
-        mend({data, new_size});
+        fixChecksums({data, new_size});
     }
     return new_size;
 }

@@ -117,7 +117,7 @@ class HeightMaps : public testing::Test {
         return map ? errorOfRows(*map) : map.error();
     }
 
-    static void refuses(const fs::path& path, const char* settings, const char* words,
+    static void rejects(const fs::path& path, const char* settings, const char* words,
                         ErrorCode code = ErrorCode::kInvalidInput) {
         expectError(errorOf(path, settings), words, code);
     }
@@ -200,15 +200,15 @@ TEST_F(HeightMaps, FloatsAreMetresAndNanIsAHole) {
     const fs::path path = write("a.exr", *encodeExr(image));
     EXPECT_EQ(heightsOf(path, "hole=-9999", 9.0F),
               (std::vector<float>{1.5F, -20.0F, 9.0F, 8848.0F, 9.0F, 0.1F}));
-    refuses(path, "low=0,high=1", "a.exr': --heights low applies only to unsigned samples",
+    rejects(path, "low=0,high=1", "a.exr': --heights low applies only to unsigned samples",
             ErrorCode::kUsage);
     image.channels.push_back({"Z", std::vector<float>(6, 0.0F)});
-    refuses(write("b.exr", *encodeExr(image)), "spacing=1", "several channels", ErrorCode::kUnsupported);
+    rejects(write("b.exr", *encodeExr(image)), "spacing=1", "several channels", ErrorCode::kUnsupported);
     writeParts(folder_ / "parts.exr");
-    refuses(folder_ / "parts.exr", "spacing=1", "parts.exr': it has 2 parts; save only the heights",
+    rejects(folder_ / "parts.exr", "spacing=1", "parts.exr': it has 2 parts; save only the heights",
             ErrorCode::kUnsupported);
     image.channels = {{"Y", std::vector<float>(6, std::numeric_limits<float>::infinity())}};
-    refuses(write("c.exr", *encodeExr(image)), "spacing=1",
+    rejects(write("c.exr", *encodeExr(image)), "spacing=1",
             "height of inf, beyond 1e9; if it stands for a hole, save it as NaN");
     image.channels = {{"Y", {1.0F, -std::numeric_limits<float>::max(), 2.0F, 3.0F, 4.0F, 5.0F}}};
     const fs::path lowest = write("d.exr", *encodeExr(image));
@@ -222,17 +222,17 @@ TEST_F(HeightMaps, RawSamplesAreSquareWithoutAWidth) {
     const fs::path square = writeRaw("a.r16", std::vector<std::uint16_t>(49, 7));
     EXPECT_EQ(heightsOf(square, "low=0,high=1").size(), 49U);
     const fs::path cut = writeRaw("b.raw", std::vector<std::uint16_t>(48, 7));
-    refuses(cut, "low=0,high=1",
+    rejects(cut, "low=0,high=1",
             "b.raw': it has 96 bytes, which do not form a square of samples of 16 bits; give --heights "
             "width=N or "
             "type=");
-    refuses(cut, "low=0,high=1,width=7", "do not form rows of 7 samples");
-    refuses(write("odd.raw", std::vector<std::byte>(99)), "low=0,high=1", "99 bytes");
-    refuses(write("none.raw", {}), "low=0,high=1", "0 bytes");
-    refuses(square, "low=0", "needs high=, the height of sample 65535", ErrorCode::kUsage);
-    refuses(square, "high=0", "needs low=, the height of sample 0", ErrorCode::kUsage);
-    refuses(square, "low=0,high=1,hole=0.5", "whole number from 0 to 65535", ErrorCode::kUsage);
-    refuses(writeRaw("a.bin", {1, 2, 3, 4}), "low=0,high=1",
+    rejects(cut, "low=0,high=1,width=7", "do not form rows of 7 samples");
+    rejects(write("odd.raw", std::vector<std::byte>(99)), "low=0,high=1", "99 bytes");
+    rejects(write("none.raw", {}), "low=0,high=1", "0 bytes");
+    rejects(square, "low=0", "needs high=, the height of sample 65535", ErrorCode::kUsage);
+    rejects(square, "high=0", "needs low=, the height of sample 0", ErrorCode::kUsage);
+    rejects(square, "low=0,high=1,hole=0.5", "whole number from 0 to 65535", ErrorCode::kUsage);
+    rejects(writeRaw("a.bin", {1, 2, 3, 4}), "low=0,high=1",
             "give --heights type= or width=", ErrorCode::kUnsupported);
     EXPECT_EQ(heightsOf(folder_ / "a.bin", "low=0,high=1,width=2").size(), 4U);
 }
@@ -254,15 +254,15 @@ TEST_F(HeightMaps, RawSamplesHaveATypeAndAByteOrder) {
         write("f.bin", {0x3f, 0xc0, 0, 0, 0xc2, 0x28, 0, 0, 0, 0, 0, 0, 0x7f, 0xc0, 0, 0});
     EXPECT_EQ(heightsOf(floats, "type=float32,order=big", 9.0F),
               (std::vector<float>{1.5F, -42.0F, 0.0F, 9.0F}));
-    refuses(floats, "type=float32,width=3",
+    rejects(floats, "type=float32,width=3",
             "do not form rows of 3 samples of 32 bits; give another width or type");
-    refuses(big, "type=float32", "do not form a square of samples of 32 bits");
-    refuses(big, "type=int16,low=0", "low applies only to unsigned samples, but these are heights",
+    rejects(big, "type=float32", "do not form a square of samples of 32 bits");
+    rejects(big, "type=int16,low=0", "low applies only to unsigned samples, but these are heights",
             ErrorCode::kUsage);
-    refuses(big, "type=int16,hole=40000", "whole number from -32768 to 32767", ErrorCode::kUsage);
+    rejects(big, "type=int16,hole=40000", "whole number from -32768 to 32767", ErrorCode::kUsage);
     const fs::path png = writePng("p.png", PNG_FORMAT_GRAY, 2, 2, std::vector<std::byte>(4));
-    refuses(png, "type=int16", "type applies only to raw samples", ErrorCode::kUsage);
-    refuses(png, "low=0,high=1,order=big", "order applies only to raw samples", ErrorCode::kUsage);
+    rejects(png, "type=int16", "type applies only to raw samples", ErrorCode::kUsage);
+    rejects(png, "low=0,high=1,order=big", "order applies only to raw samples", ErrorCode::kUsage);
 
     // SRTM defaults, with or without the width. Explicit settings override them.
     const fs::path hgt = write("N00E000.HGT", {0x00, 0x07, 0xff, 0xf1, 0x80, 0x00, 0x01, 0x00});
@@ -273,7 +273,7 @@ TEST_F(HeightMaps, RawSamplesHaveATypeAndAByteOrder) {
     // Images are recognised under any name.
     const fs::path image = writePng("image.hgt", PNG_FORMAT_GRAY, 2, 2, std::vector<std::byte>(4));
     EXPECT_EQ(heightsOf(image, "spacing=1,low=7,high=100"), std::vector<float>(4, 7.0F));
-    refuses(image, "low=0,high=1,order=big", "order applies only to raw samples", ErrorCode::kUsage);
+    rejects(image, "low=0,high=1,order=big", "order applies only to raw samples", ErrorCode::kUsage);
     EXPECT_EQ(toString(HeightMap::open(image, parseHeightsSpec("low=0,high=9").value())->spec()),
               "spacing=1,low=0,high=9");
     const HeightsSpec implied = HeightMap::open(hgt, parseHeightsSpec("spacing=30").value())->spec();
@@ -345,7 +345,7 @@ TEST_F(HeightMaps, LikelierRawFormatIsSuggested) {
         const auto bytes = std::as_bytes(std::span(samples));
         EXPECT_EQ(found({bytes.begin(), bytes.end()}, "uint16", "little"), format) << step;
     }
-    refuses(write("f.raw", bytesOf("float32", "big")), "type=float32",
+    rejects(write("f.raw", bytesOf("float32", "big")), "type=float32",
             "beyond 1e9; give --heights order=big");
     // Two integers from 0 to 200 form a float below 1e-35.
     samples.clear();
@@ -441,11 +441,11 @@ TEST_F(HeightMaps, GreyCanBeSavedAsOpaqueColor) {
     EXPECT_EQ(heightsOf(png(PNG_FORMAT_RGBA, {1, 1, 1, 255, 2, 2, 2, 255, 3, 3, 3, 255, 250, 250, 250, 255}),
                         whole),
               heights);
-    refuses(png(PNG_FORMAT_RGB, {1, 1, 1, 2, 2, 2, 3, 3, 3, 250, 251, 250}), whole,
+    rejects(png(PNG_FORMAT_RGB, {1, 1, 1, 2, 2, 2, 3, 3, 3, 250, 251, 250}), whole,
             "c.png': it is in colour at column 1 of row 1; save it as grey", ErrorCode::kUnsupported);
-    refuses(png(PNG_FORMAT_RGB, {1, 1, 2, 2, 2, 2, 3, 3, 3, 4, 4, 4}), whole,
+    rejects(png(PNG_FORMAT_RGB, {1, 1, 2, 2, 2, 2, 3, 3, 3, 4, 4, 4}), whole,
             "in colour at column 0 of row 0", ErrorCode::kUnsupported);
-    refuses(png(PNG_FORMAT_GA, {1, 255, 2, 254, 3, 255, 250, 255}), whole,
+    rejects(png(PNG_FORMAT_GA, {1, 255, 2, 254, 3, 255, 250, 255}), whole,
             "it is transparent at column 1 of row 0; save it", ErrorCode::kUnsupported);
 }
 
@@ -482,13 +482,13 @@ TEST_F(HeightMaps, TransparentPngColorsAreHoles) {
 
 TEST_F(HeightMaps, WrongSizesAndFormatsAreRejected) {
     const std::vector<std::byte> pixels(64);
-    refuses(writePng("one.png", PNG_FORMAT_GRAY, 1, 1, pixels), "low=0,high=1",
+    rejects(writePng("one.png", PNG_FORMAT_GRAY, 1, 1, pixels), "low=0,high=1",
             "one.png': it has 1x1 samples; a height map has at least 2x2");
-    refuses(writePng("thin.png", PNG_FORMAT_GRAY, 1, 9, pixels), "low=0,high=1", "1x9");
-    refuses(folder_ / "none.png", "low=0,high=1", "none.png", ErrorCode::kIo);
+    rejects(writePng("thin.png", PNG_FORMAT_GRAY, 1, 9, pixels), "low=0,high=1", "1x9");
+    rejects(folder_ / "none.png", "low=0,high=1", "none.png", ErrorCode::kIo);
     const fs::path fine = writePng("fine.png", PNG_FORMAT_GRAY, 8, 8, pixels);
-    refuses(fine, "low=0,high=1,width=8", "width applies only to raw samples", ErrorCode::kUsage);
-    refuses(fine, "low=0,high=1,hole=256", "from 0 to 255", ErrorCode::kUsage);
+    rejects(fine, "low=0,high=1,width=8", "width applies only to raw samples", ErrorCode::kUsage);
+    rejects(fine, "low=0,high=1,hole=256", "from 0 to 255", ErrorCode::kUsage);
 }
 
 /// The first word after `name` in /proc/PID/status.
@@ -563,7 +563,7 @@ TEST_F(HeightMaps, DamagedImagesAreRejectedInOneLine) {
             EXPECT_EQ(error.message.find('\n'), std::string::npos) << error.message;
         }
     }
-    refuses(write("cut.png", std::span(png).first(png.size() / 2)), "low=0,high=1",
+    rejects(write("cut.png", std::span(png).first(png.size() / 2)), "low=0,high=1",
             "cut.png': it cannot be read as PNG");
     std::vector<std::byte> large = png;
     for (const std::size_t at : {16U, 20U}) {  // 32768² in IHDR
@@ -574,7 +574,7 @@ TEST_F(HeightMaps, DamagedImagesAreRejectedInOneLine) {
     for (std::size_t i = 0; i < 4; ++i) {
         large[29 + i] = static_cast<std::byte>(crc >> (24U - 8U * i) & 0xffU);
     }
-    refuses(write("large.png", large), "low=0,high=1",
+    rejects(write("large.png", large), "low=0,high=1",
             "large.png': it has 32768x32768 samples, more than the limit of 268435456; split it",
             ErrorCode::kLimit);
 }

@@ -20,11 +20,11 @@ std::string bytesOf(const std::vector<T>& values) {
 
 }  // namespace
 
-GltfScribe::GltfScribe()
+GltfBuilder::GltfBuilder()
     : json({{"asset", {{"version", "2.0"}}}, {"scene", 0}, {"scenes", Json::array({{{"nodes", {0}}}})}}) {}
 
-std::size_t GltfScribe::accessor(const char* type, int component, std::size_t count, const std::string& data,
-                                 bool normalized) {
+std::size_t GltfBuilder::accessor(const char* type, int component, std::size_t count, const std::string& data,
+                                  bool normalized) {
     buffer_.resize((buffer_.size() + 3) / 4 * 4, '\0');
     json["bufferViews"].push_back(
         {{"buffer", 0}, {"byteOffset", buffer_.size()}, {"byteLength", data.size()}});
@@ -40,16 +40,16 @@ std::size_t GltfScribe::accessor(const char* type, int component, std::size_t co
     return json["accessors"].size() - 1;
 }
 
-std::size_t GltfScribe::floats(const char* type, const std::vector<float>& values) {
+std::size_t GltfBuilder::floats(const char* type, const std::vector<float>& values) {
     return accessor(type, 5126, values.size(), bytesOf(values), false);
 }
 
-std::size_t GltfScribe::bytes(const char* type, const std::vector<int>& values, bool normalized) {
+std::size_t GltfBuilder::bytes(const char* type, const std::vector<int>& values, bool normalized) {
     return accessor(type, 5121, values.size(),
                     bytesOf(std::vector<std::uint8_t>(values.begin(), values.end())), normalized);
 }
 
-std::size_t GltfScribe::shares(const char* type, const std::vector<double>& values) {
+std::size_t GltfBuilder::shares(const char* type, const std::vector<double>& values) {
     std::vector<std::int16_t> quantised;
     for (const double value : values) {
         quantised.push_back(static_cast<std::int16_t>(std::lround(32767.0 * value)));
@@ -57,7 +57,7 @@ std::size_t GltfScribe::shares(const char* type, const std::vector<double>& valu
     return accessor(type, 5122, values.size(), bytesOf(quantised), true);
 }
 
-std::size_t GltfScribe::indices(const std::vector<int>& values) {
+std::size_t GltfBuilder::indices(const std::vector<int>& values) {
     return accessor("SCALAR", 5123, values.size(),
                     bytesOf(std::vector<std::uint16_t>(values.begin(), values.end())), false);
 }
@@ -66,7 +66,7 @@ glm::vec3 boxCorner(const glm::vec3& low, const glm::vec3& high, int i) {
     return {i % 2 == 0 ? low.x : high.x, i / 2 % 2 == 0 ? low.y : high.y, i < 4 ? low.z : high.z};
 }
 
-std::size_t GltfScribe::box(const glm::vec3& low, const glm::vec3& high) {
+std::size_t GltfBuilder::box(const glm::vec3& low, const glm::vec3& high) {
     std::vector<float> positions;
     for (int i = 0; i < 8; ++i) {
         const glm::vec3 corner = boxCorner(low, high, i);
@@ -80,8 +80,8 @@ std::size_t GltfScribe::box(const glm::vec3& low, const glm::vec3& high) {
     return json["meshes"].size() - 1;
 }
 
-std::size_t GltfScribe::animate(std::size_t node, const char* path, std::size_t times, std::size_t values,
-                                const char* curve, const char* name) {
+std::size_t GltfBuilder::animate(std::size_t node, const char* path, std::size_t times, std::size_t values,
+                                 const char* curve, const char* name) {
     Json animation = {
         {"samplers", Json::array({{{"input", times}, {"output", values}, {"interpolation", curve}}})},
         {"channels", Json::array({{{"sampler", 0}, {"target", {{"node", node}, {"path", path}}}}})}};
@@ -92,14 +92,14 @@ std::size_t GltfScribe::animate(std::size_t node, const char* path, std::size_t 
     return json["animations"].size() - 1;
 }
 
-GltfCase GltfScribe::file() const {
+GltfCase GltfBuilder::file() const {
     GltfCase file{json, buffer_, GltfContainer::kBinary};
     file.document["buffers"] = Json::array({{{"byteLength", buffer_.size()}}});
     return file;
 }
 
-GltfScribe bendingBar() {
-    GltfScribe out;
+GltfBuilder bendingBar() {
+    GltfBuilder out;
     std::vector<float> positions;
     std::vector<int> joints;
     std::vector<int> weights;
@@ -141,8 +141,8 @@ GltfScribe bendingBar() {
     return out;
 }
 
-GltfScribe robot() {
-    GltfScribe out;
+GltfBuilder robot() {
+    GltfBuilder out;
     const std::size_t mesh = out.box({0, 0, 0}, {1, 2, 3});
     // Children precede their parents.
     out.json["nodes"] = {
@@ -158,8 +158,8 @@ GltfScribe robot() {
     return out;
 }
 
-GltfScribe morphingCube() {
-    GltfScribe out;
+GltfBuilder morphingCube() {
+    GltfBuilder out;
     const std::size_t mesh = out.box({-1, -1, -1}, {1, 1, 1});
     std::vector<float> deltas;
     for (int i = 0; i < 8; ++i) {

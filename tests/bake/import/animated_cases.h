@@ -12,9 +12,9 @@
 namespace relief::test {
 
 /// Builds a GLB with one scene.
-class GltfScribe {
+class GltfBuilder {
   public:
-    GltfScribe();
+    GltfBuilder();
 
     /// \return the accessor. \param type  "SCALAR", "VEC3", …
     std::size_t floats(const char* type, const std::vector<float>& values);
@@ -42,12 +42,12 @@ class GltfScribe {
 
 /// A bar, 2 long along y and 1 wide, with two joints. The upper half bends left by 90 degrees in one second. Both
 /// joints move the middle vertices equally.
-[[nodiscard]] GltfScribe bendingBar();
+[[nodiscard]] GltfBuilder bendingBar();
 
 /// Three boxes: a base that moves along x, an arm on it that rotates about z, and a mirrored hand.
-[[nodiscard]] GltfScribe robot();
+[[nodiscard]] GltfBuilder robot();
 
 /// A cube with two morph targets: 0 stretches it along x, 1 has no positions. The node's weights are 0.5 and 0.
-[[nodiscard]] GltfScribe morphingCube();
+[[nodiscard]] GltfBuilder morphingCube();
 
 }  // namespace relief::test

@@ -124,8 +124,8 @@ TEST(GltfMeshopt, FiltersMatchTheSpecification) {
 }
 
 /// Compresses all views. Buffer 0 contains the compressed data; buffer 1 is a fallback without data.
-GltfCase packedFile(const GltfScribe& scribe) {
-    GltfCase file = scribe.file();
+GltfCase packedFile(const GltfBuilder& builder) {
+    GltfCase file = builder.file();
     std::string buffer;
     Json& json = file.document;
     for (const Json& accessor : json["accessors"]) {
@@ -157,11 +157,11 @@ GltfCase packedFile(const GltfScribe& scribe) {
 
 TEST(GltfMeshopt, PackedFilesDecodeToTheSameMeshes) {
     const TemporaryFolder folder;
-    for (const GltfScribe& scribe : {bendingBar(), robot()}) {
+    for (const GltfBuilder& builder : {bendingBar(), robot()}) {
         const auto meshOf = [&](const GltfCase& file) {
             return required(importAnimatedInWorker(writeGltf(file, folder, "m"), {})).mesh;
         };
-        EXPECT_EQ(meshOf(scribe.file()), meshOf(packedFile(scribe)));
+        EXPECT_EQ(meshOf(builder.file()), meshOf(packedFile(builder)));
     }
 }
 

@@ -427,11 +427,11 @@ class Book {
 
 }  // namespace
 
-std::vector<Corners> readGltfByTheBook(const GltfCase& file, const std::optional<GltfMoment>& moment) {
+std::vector<Corners> readGltfReference(const GltfCase& file, const std::optional<GltfMoment>& moment) {
     return Book(file).read(moment);
 }
 
-std::vector<double> gltfLengthsByTheBook(const GltfCase& file) {
+std::vector<double> referenceClipLengths(const GltfCase& file) {
     return Book(file).lengths();
 }
 

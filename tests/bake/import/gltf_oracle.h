@@ -23,10 +23,10 @@ struct GltfMoment {
 /// All triangles of the default scene in file order, with morph weights applied.
 /// \param moment  nullopt: the nodes' own transforms
 /// Throws std::exception if anything that the triangles depend on violates the specification.
-[[nodiscard]] std::vector<Corners> readGltfByTheBook(const GltfCase& file,
+[[nodiscard]] std::vector<Corners> readGltfReference(const GltfCase& file,
                                                      const std::optional<GltfMoment>& moment = {});
 
 /// Duration of each animation in seconds.
-[[nodiscard]] std::vector<double> gltfLengthsByTheBook(const GltfCase& file);
+[[nodiscard]] std::vector<double> referenceClipLengths(const GltfCase& file);
 
 }  // namespace relief::test

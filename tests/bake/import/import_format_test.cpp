@@ -42,7 +42,7 @@ TEST(ImportFormat, SignaturesOverrideNames) {
     }
     EXPECT_TRUE(importTextInWorker("json.glb", tetrahedronGltf()));
     // Files without an unambiguous signature are read by their name.
-    expectRefused(importTextInWorker("b.obj", "glTF and other words\n"), "b.obj");
+    expectRejected(importTextInWorker("b.obj", "glTF and other words\n"), "b.obj");
 }
 
 TEST(ImportFormat, FilesWithoutSignatureAreReadByName) {
@@ -55,11 +55,11 @@ TEST(ImportFormat, FilesWithoutSignatureAreReadByName) {
         EXPECT_EQ(read, 1) << text.substr(0, 20);
     }
     for (const char* name : {"w.amf", "w.dxf", "w.acx", "w.xyzzy"}) {
-        expectRefused(importText(name, tetrahedronObj()), "convert it to glTF, OBJ or PLY",
-                      ErrorCode::kUnsupported);
+        expectRejected(importText(name, tetrahedronObj()), "convert it to glTF, OBJ or PLY",
+                       ErrorCode::kUnsupported);
     }
     for (const char* name : {"w.png", "w.raw"}) {
-        expectRefused(importText(name, tetrahedronObj()), "relief bake --heights", ErrorCode::kUnsupported);
+        expectRejected(importText(name, tetrahedronObj()), "relief bake --heights", ErrorCode::kUnsupported);
     }
 }
 
@@ -72,11 +72,11 @@ TEST(ImportFormat, NonMeshesAreRejected) {
             EXPECT_TRUE(!mesh && mesh.error().message.find(name) != std::string::npos) << begin;
         }
     }
-    expectRefused(importText("a.obj", "hello\n"), "no vertices, and is probably not an .obj file");
+    expectRejected(importText("a.obj", "hello\n"), "no vertices, and is probably not an .obj file");
     for (const auto& [name, text] : {std::pair<const char*, std::string>{"a.stl", std::string(84, '\0')},
                                      {"b.stl", "solid none\nendsolid none\n"},
                                      {"a.off", "OFF\n0 0 0\n"}}) {
-        expectRefused(importText(name, text), "it has no triangles; export");
+        expectRejected(importText(name, text), "it has no triangles; export");
     }
 }
 

@@ -91,17 +91,17 @@ struct Verdicts {
 
 /// Relief must read the same triangles as the reference reader. \param right  the file is valid and must be read
 void compare(const GltfCase& gltf, const fs::path& file, bool right, Verdicts& verdicts) {
-    std::optional<std::vector<Corners>> book;
+    std::optional<std::vector<Corners>> reference;
     std::string why;
     try {
-        book = readGltfByTheBook(gltf);
+        reference = readGltfReference(gltf);
     } catch (const std::exception& error) {
         why = error.what();
     }
     const Result<TriangleMesh> mesh = importMesh(file);
     if (!mesh) {
         ++verdicts.refused;
-        const bool visible = book && !std::all_of(book->begin(), book->end(), isThin);
+        const bool visible = reference && !std::all_of(reference->begin(), reference->end(), isThin);
         verdicts.stricter += visible ? 1 : 0;
         EXPECT_FALSE(right && visible) << mesh.error().message;
         EXPECT_NE(mesh.error().message.find(file.filename().string()), std::string::npos);
@@ -110,10 +110,10 @@ void compare(const GltfCase& gltf, const fs::path& file, bool right, Verdicts& v
         return;
     }
     ++verdicts.read;
-    ASSERT_TRUE(book) << "read, but the reference reader fails: " << why;
+    ASSERT_TRUE(reference) << "read, but the reference reader fails: " << why;
     const std::vector<Corners> triangles = trianglesOf(*mesh);
     std::size_t at = 0;
-    for (const Corners& t : *book) {
+    for (const Corners& t : *reference) {
         if (at < triangles.size() && sameSurface(triangles[at], t)) {
             ++at;
         } else {
@@ -343,9 +343,9 @@ TEST(ImportGltf, BuffersByUri) {
           std::pair{"%2Fetc%2Fpasswd", "not below the mesh's folder"},
           std::pair{"b.bin%00", "not below the mesh's folder"},
           std::pair{"c.bin", "buffers[0] refers to 'c.bin' (No such file"}}) {
-        expectRefused(beside("b.bin", uri), words);
+        expectRejected(beside("b.bin", uri), words);
     }
-    expectRefused(beside("b.bin", "b.bin", 71), "buffers[0] has 71 of the 72 bytes that it declares");
+    expectRejected(beside("b.bin", "b.bin", 71), "buffers[0] has 71 of the 72 bytes that it declares");
     const std::string data = "data:application/octet-stream;base64,";
     expectWrong({{replaced(tetrahedronGltf(), R"("uri")", R"("url")"), "buffers[0] has no uri"},
                  parts({.uri = data + "AAA*"}, "buffers[0] is not valid base64"),

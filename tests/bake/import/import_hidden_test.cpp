@@ -349,8 +349,8 @@ TEST(ImportHidden, FullyHiddenFilesAreRejectedWithTheOption) {
 TEST(ImportHidden, HiddenNamesSelectNothing) {
     ImportOptions options;
     options.names = {"other"};
-    expectRefused(importText("names.fbx", twoFbx(visibility("0")), options),
-                  "no triangle has the name 'other'", ErrorCode::kUsage);
+    expectRejected(importText("names.fbx", twoFbx(visibility("0")), options),
+                   "no triangle has the name 'other'", ErrorCode::kUsage);
 }
 
 TEST(ImportHidden, OnlyTheFirstLevelOfDetailIsBaked) {

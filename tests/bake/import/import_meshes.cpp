@@ -177,14 +177,14 @@ void expectWrong(const std::string& name, const std::vector<Wrong>& cases) {
     for (const Wrong& wrong : cases) {
         SCOPED_TRACE(wrong.words + " in " + wrong.text);
         const Result<TriangleMesh> mesh = importText(name, wrong.text);
-        expectRefused(mesh, wrong.words, wrong.code);
+        expectRejected(mesh, wrong.words, wrong.code);
         EXPECT_TRUE(mesh || mesh.error().message.find(name) != std::string::npos);
     }
 }
 
-void expectLiesRefused(const TriangleMesh& honest,
-                       const std::vector<std::function<void(TriangleMesh&)>>& lies,
-                       const std::function<bool(TriangleMesh)>& accepts) {
+void expectInvalidRejected(const TriangleMesh& honest,
+                           const std::vector<std::function<void(TriangleMesh&)>>& lies,
+                           const std::function<bool(TriangleMesh)>& accepts) {
     EXPECT_TRUE(accepts(honest));
     for (std::size_t i = 0; i < lies.size(); ++i) {
         TriangleMesh answer = honest;

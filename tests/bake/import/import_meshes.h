@@ -61,8 +61,8 @@ struct GltfParts {
 /// Expects a one-line message with these words and advice.
 void expectFault(const Error& error, const std::string& words, ErrorCode code = ErrorCode::kInvalidInput);
 template <class T>
-void expectRefused(const Result<T>& result, const std::string& words,
-                   ErrorCode code = ErrorCode::kInvalidInput) {
+void expectRejected(const Result<T>& result, const std::string& words,
+                    ErrorCode code = ErrorCode::kInvalidInput) {
     if (result) {
         ADD_FAILURE() << "read: " << words;
     } else {
@@ -79,9 +79,9 @@ struct Wrong {
 void expectWrong(const std::string& name, const std::vector<Wrong>& cases);
 /// Each lie changes a mesh into one that a compromised worker could send. All must be rejected.
 /// \param accepts  returns whether the reader accepts a mesh
-void expectLiesRefused(const TriangleMesh& honest,
-                       const std::vector<std::function<void(TriangleMesh&)>>& lies,
-                       const std::function<bool(TriangleMesh)>& accepts);
+void expectInvalidRejected(const TriangleMesh& honest,
+                           const std::vector<std::function<void(TriangleMesh&)>>& lies,
+                           const std::function<bool(TriangleMesh)>& accepts);
 /// Whether a warning contains these words.
 [[nodiscard]] bool warns(const TriangleMesh& mesh, const std::string& words);
 /// Negative if triangles face inwards.

@@ -55,7 +55,7 @@ TEST(ImportMessage, RoundTripsMeshesAndErrors) {
         EXPECT_EQ(read.warnings, raw.warnings);
         EXPECT_EQ(read.unused_vertices, raw.unused_vertices);
     }
-    expectLiesRefused(
+    expectInvalidRejected(
         raw,
         {
             [](TriangleMesh& lie) { lie.unused_vertices = std::numeric_limits<std::uint64_t>::max(); },
@@ -107,7 +107,7 @@ TEST(ImportMessage, FlippedBitsAreSafe) {
 TEST(ImportSource, WorkerClaimsAreValidated) {
     const TemporaryFolder folder;
     const ImportSource source = required(ImportSource::open(folder.write("t.obj", tetrahedronObj())));
-    expectLiesRefused(
+    expectInvalidRejected(
         rawTriangle(),
         {[](TriangleMesh& raw) { raw.unit = "parsec"; },
          [](TriangleMesh& raw) { raw.dependencies = {"/etc/passwd"}; },

@@ -29,8 +29,8 @@ void expectMarks(const std::string& name, const std::string& text,
 void expectUnknown(const std::string& file, const std::string& text, const Names& names,
                    const std::string& words) {
     const Result<TriangleMesh> mesh = importText(file, text, asking(names));
-    expectRefused(mesh, words, ErrorCode::kUsage);
-    expectRefused(mesh, file, ErrorCode::kUsage);
+    expectRejected(mesh, words, ErrorCode::kUsage);
+    expectRejected(mesh, file, ErrorCode::kUsage);
     EXPECT_LT(mesh.error().message.size(), 2500U);
 }
 

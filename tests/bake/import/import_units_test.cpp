@@ -239,8 +239,8 @@ TEST(ImportUnits, ImplausibleUnitsNeedAnOption) {
         EXPECT_LT(glm::distance(cured.bounds.max, 0.01F * kHigh), 1e-6F);
     }
     // assimp's FBX importer fails in this case.
-    expectRefused(importText("zero.fbx", tetrahedronFbx(1, 1, "0"), {"cm", kOwnAxis}),
-                  "UnitScaleFactor is 0, which is not a length; export it again");
+    expectRejected(importText("zero.fbx", tetrahedronFbx(1, 1, "0"), {"cm", kOwnAxis}),
+                   "UnitScaleFactor is 0, which is not a length; export it again");
 }
 
 TEST(ImportUnits, FbxUnitsAreReadFromTextAndBinary) {

@@ -110,7 +110,7 @@ TEST(ImportWorker, NoFileOutsideTheFolderIsOpened) {
           {"pipe.bin", "pipe.bin"},
           {"missing.bin", "missing.bin"}}) {
         SCOPED_TRACE(uri);
-        expectRefused(load(folder, "in/t.gltf", tetrahedronGltf({.uri = uri})), words);
+        expectRejected(load(folder, "in/t.gltf", tetrahedronGltf({.uri = uri})), words);
         EXPECT_FALSE(watch_buffer.opened());
     }
     // Check the watch itself.
@@ -126,7 +126,7 @@ TEST(ImportWorker, DeepJsonIsRejected) {
         for (int i = 0; i < 100000; ++i) {
             deep += bracket;
         }
-        expectRefused(importTextInWorker("deep.gltf", deep), "deep", ErrorCode::kLimit);
+        expectRejected(importTextInWorker("deep.gltf", deep), "deep", ErrorCode::kLimit);
     }
     // Brackets in strings do not count as depth.
     EXPECT_TRUE(importTextInWorker(
@@ -206,8 +206,8 @@ TEST(ImportWorker, TrianglesAreCountedBeforeAllocation) {
         return importMeshInWorker(file, {}, {.triangles = triangles});
     };
     EXPECT_TRUE(with(gltf, 400));
-    expectRefused(with(gltf, 399), "more than 399 triangles", ErrorCode::kLimit);
-    expectRefused(with(dae, 3), "more than 3 triangles", ErrorCode::kLimit);
+    expectRejected(with(gltf, 399), "more than 399 triangles", ErrorCode::kLimit);
+    expectRejected(with(dae, 3), "more than 3 triangles", ErrorCode::kLimit);
     EXPECT_EQ(with(dae, 0).error().code, ErrorCode::kUsage);
     for (const ImportLimits& limits : {ImportLimits{0, 60}, ImportLimits{1000000, 0}}) {
         EXPECT_EQ(importMeshInWorker(dae, {}, limits).error().code, ErrorCode::kUsage);

@@ -148,14 +148,14 @@ TEST_F(Levels, EachFileOfAFolderIsAMesh) {
     EXPECT_EQ(importLevel(folder_, {}, {.triangles = 9}).error().code, ErrorCode::kLimit)
         << "12 triangles in total";
     write("e.gltf", tetrahedronGltf());
-    expectRefused(importLevel(folder_), "has a unit, unlike earlier files; give --unit");
+    expectRejected(importLevel(folder_), "has a unit, unlike earlier files; give --unit");
     options.names.clear();
     options.unit = "m";
     EXPECT_TRUE(importLevel(folder_, options));
     for (const char* file : {"a.ply", "b.obj", "c.obj", "e.gltf"}) {
         fs::remove(folder_ / file);
     }
-    expectRefused(importLevel(folder_), "contains no mesh files");
+    expectRejected(importLevel(folder_), "contains no mesh files");
 }
 
 TEST_F(Levels, TriangleAndBodyLimits) {
@@ -164,9 +164,9 @@ TEST_F(Levels, TriangleAndBodyLimits) {
     EXPECT_FALSE(importMeshInWorker(path, {}, limits));
     EXPECT_EQ(required(importLevelInWorker(path, {}, limits)).bodies.size(), 100U);
     limits.triangles = 3;
-    expectRefused(importLevelInWorker(path, {}, limits), "--max-triangles", ErrorCode::kLimit);
-    expectRefused(importLevelInWorker(write("m.gltf", manyNodes(kLevelBodiesMax + 1))), "65536",
-                  ErrorCode::kLimit);
+    expectRejected(importLevelInWorker(path, {}, limits), "--max-triangles", ErrorCode::kLimit);
+    expectRejected(importLevelInWorker(write("m.gltf", manyNodes(kLevelBodiesMax + 1))), "65536",
+                   ErrorCode::kLimit);
 }
 
 TEST_F(Levels, InstancesAreBodies) {
@@ -187,7 +187,7 @@ TEST_F(Levels, InvalidPosesAreRejected) {
     };
     for (const char* place : {R"("translation":[1e20,0,0])", R"("translation":[1e39,0,0])",
                               R"("scale":[1e-12,1e-12,1e-12])", R"("scale":[1e12,1e12,1e12])"}) {
-        expectRefused(lost(place), "the node 'lost' is beyond");
+        expectRejected(lost(place), "the node 'lost' is beyond");
     }
     EXPECT_FALSE(lost(R"("scale":[0,0,0])"));
 }
@@ -212,26 +212,26 @@ TEST_F(Levels, InvalidWorkerResultsAreRejected) {
     const ImportSource source = required(ImportSource::open(write("l.obj", "v 0 0 0\n")));
     EXPECT_FALSE(source.finish(honest)) << "a level that was not requested";
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    expectLiesRefused(honest,
-                      {
-                          [](TriangleMesh& raw) { raw.level_meshes[0].positions = 2; },
-                          [](TriangleMesh& raw) { raw.level_meshes[0].triangles = 2; },
-                          [](TriangleMesh& raw) { raw.level_meshes[0].triangles = ~std::uint64_t{0}; },
-                          [](TriangleMesh& raw) {
-                              raw.level_meshes.push_back(LevelMesh{"m", ~std::uint64_t{0}, 0});
+    expectInvalidRejected(honest,
+                          {
+                              [](TriangleMesh& raw) { raw.level_meshes[0].positions = 2; },
+                              [](TriangleMesh& raw) { raw.level_meshes[0].triangles = 2; },
+                              [](TriangleMesh& raw) { raw.level_meshes[0].triangles = ~std::uint64_t{0}; },
+                              [](TriangleMesh& raw) {
+                                  raw.level_meshes.push_back(LevelMesh{"m", ~std::uint64_t{0}, 0});
+                              },
+                              [](TriangleMesh& raw) { raw.level_meshes.clear(); },
+                              [](TriangleMesh& raw) { raw.level_bodies.clear(); },
+                              [](TriangleMesh& raw) { raw.level_bodies[0].mesh = 1; },
+                              [](TriangleMesh& raw) { raw.level_bodies[0].scale = 0.0; },
+                              [&](TriangleMesh& raw) { raw.level_bodies[0].scale = nan; },
+                              [&](TriangleMesh& raw) { raw.level_bodies[0].position[1] = nan; },
+                              [&](TriangleMesh& raw) { raw.level_bodies[0].rotation[1] = nan; },
+                              [](TriangleMesh& raw) { raw.level_bodies[0].rotation[3] = 0.5; },
+                              [](TriangleMesh& raw) { raw.triangles[0].x = 3; },
+                              [&](TriangleMesh& raw) { raw.positions[0].x = static_cast<float>(nan); },
                           },
-                          [](TriangleMesh& raw) { raw.level_meshes.clear(); },
-                          [](TriangleMesh& raw) { raw.level_bodies.clear(); },
-                          [](TriangleMesh& raw) { raw.level_bodies[0].mesh = 1; },
-                          [](TriangleMesh& raw) { raw.level_bodies[0].scale = 0.0; },
-                          [&](TriangleMesh& raw) { raw.level_bodies[0].scale = nan; },
-                          [&](TriangleMesh& raw) { raw.level_bodies[0].position[1] = nan; },
-                          [&](TriangleMesh& raw) { raw.level_bodies[0].rotation[1] = nan; },
-                          [](TriangleMesh& raw) { raw.level_bodies[0].rotation[3] = 0.5; },
-                          [](TriangleMesh& raw) { raw.triangles[0].x = 3; },
-                          [&](TriangleMesh& raw) { raw.positions[0].x = static_cast<float>(nan); },
-                      },
-                      [&](TriangleMesh raw) { return source.finishLevel(std::move(raw)).has_value(); });
+                          [&](TriangleMesh raw) { return source.finishLevel(std::move(raw)).has_value(); });
 }
 
 }  // namespace

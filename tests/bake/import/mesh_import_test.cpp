@@ -56,12 +56,12 @@ TEST(MeshImport, ErrorsNameTheFile) {
     const TemporaryFolder folder;
     for (const auto& import : {+[](const std::filesystem::path& path) { return importMesh(path); },
                                +[](const std::filesystem::path& path) { return importMeshInWorker(path); }}) {
-        expectRefused(import(folder.path() / "missing.obj"), "missing.obj", ErrorCode::kIo);
-        expectRefused(import(folder.path()), "folder", ErrorCode::kIo);
+        expectRejected(import(folder.path() / "missing.obj"), "missing.obj", ErrorCode::kIo);
+        expectRejected(import(folder.path()), "folder", ErrorCode::kIo);
         for (const char* name : {"mesh.xyzzy", "noextension"}) {
-            expectRefused(import(folder.write(name, "hello")), name, ErrorCode::kUnsupported);
+            expectRejected(import(folder.write(name, "hello")), name, ErrorCode::kUnsupported);
         }
-        expectRefused(import(folder.write("empty.obj", "")), "empty.obj");
+        expectRejected(import(folder.write("empty.obj", "")), "empty.obj");
     }
     std::string noise(5000, '\0');
     std::uint32_t state = 3;
@@ -72,7 +72,7 @@ TEST(MeshImport, ErrorsNameTheFile) {
     for (const std::string name :
          {"n.obj", "n.stl", "n.ply", "n.off", "n.gltf", "n.glb", "n.fbx", "n.dae", "n.3ds"}) {
         SCOPED_TRACE(name);
-        expectRefused(importText(name, noise), name);
+        expectRejected(importText(name, noise), name);
     }
     expectWrong("w.obj",
                 {{"v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "area"},
@@ -89,12 +89,12 @@ TEST(FinishMesh, RejectsInvalidMeshes) {
     mesh.name = "raw";
     mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     mesh.triangles = {{0, 1, 3}};
-    expectRefused(finishMesh(mesh), "vertex 3");
+    expectRejected(finishMesh(mesh), "vertex 3");
     mesh.triangles.clear();
-    expectRefused(finishMesh(mesh), "no triangle");
+    expectRejected(finishMesh(mesh), "no triangle");
     mesh.triangles = {{0, 1, 2}};
     mesh.positions = {{0, 0, 0}, {1e-20F, 0, 0}, {0, 1e-20F, 0}};
-    expectRefused(finishMesh(mesh), "1e-15");
+    expectRejected(finishMesh(mesh), "1e-15");
 }
 
 }  // namespace

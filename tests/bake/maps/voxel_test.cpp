@@ -113,8 +113,8 @@ std::vector<std::vector<std::string>> viewsOf(const VoxelGrid& grid, const Trian
 }
 
 /// Samples points in the solid and checks the depth of those that the collider places outside.
-void expectNothingDeepOutside(const VoxelGrid& grid, const Collider& collider, std::uint32_t seed,
-                              Quality quality = Quality::kNormal) {
+void expectDeepPointsInside(const VoxelGrid& grid, const Collider& collider, std::uint32_t seed,
+                            Quality quality = Quality::kNormal) {
     std::mt19937 random(seed);
     const auto share = [&] { return static_cast<float>(random() >> 8) * 0x1p-24F; };
     int deep = 0;
@@ -139,20 +139,20 @@ void expectNothingDeepOutside(const VoxelGrid& grid, const Collider& collider, s
     }
 }
 
-void expectNothingDeepOutsideOfAnyView(std::uint32_t seed, std::initializer_list<Quality> qualities) {
+void expectDeepPointsInsideForAllViews(std::uint32_t seed, std::initializer_list<Quality> qualities) {
     const VoxelGrid grid = VoxelGrid::random(seed);
     const PreparedMesh mesh(grid.mesh());
     for (const std::vector<std::string>& specs : viewsOf(grid, *mesh, seed)) {
         for (const Quality quality : qualities) {
             SCOPED_TRACE(std::to_string(seed) + " " + specs.front() + " " + std::string(wordOf(quality)));
-            expectNothingDeepOutside(grid, baked(mesh, specs, quality), seed, quality);
+            expectDeepPointsInside(grid, baked(mesh, specs, quality), seed, quality);
         }
     }
 }
 
 TEST(Voxels, DeepPointsAreInside) {
     for (std::uint32_t seed = seedFrom(1), end = seed + 5; seed < end; ++seed) {
-        expectNothingDeepOutsideOfAnyView(seed, {Quality::kFast, Quality::kNormal});
+        expectDeepPointsInsideForAllViews(seed, {Quality::kFast, Quality::kNormal});
     }
 }
 
@@ -160,7 +160,7 @@ TEST(Voxels, DeepPointsAreInside) {
 /// between such rays that was treated as a silhouette.
 TEST(Voxels, DeepPointsAreInsideInFormerFailures) {
     for (const std::uint32_t seed : {1'762'264'770U, 5'000'003U, 9'000'002U, 9'000'005U}) {
-        expectNothingDeepOutsideOfAnyView(seed, {Quality::kFast});
+        expectDeepPointsInsideForAllViews(seed, {Quality::kFast});
     }
 }
 
@@ -172,7 +172,7 @@ TEST(Voxels, DeepPointsAreInsideForEveryPreference) {
         for (const Prefer prefer : {Prefer::kInside, Prefer::kOutside}) {
             const std::vector<std::string> specs = {"front-back:dir=-x,size=80",
                                                     "front-back:dir=1/2/3,size=70", "cube:size=30"};
-            expectNothingDeepOutside(grid, baked(mesh, specs, Quality::kNormal, prefer), seed);
+            expectDeepPointsInside(grid, baked(mesh, specs, Quality::kNormal, prefer), seed);
         }
     }
 }

@@ -68,7 +68,7 @@ double degreesBetween(const glm::dvec3& a, const glm::dvec3& b) {
 }
 
 /// \param beside  minimum distance from the plate's plane x = 0
-void expectTheNearerFace(const Plate& plate, double beside = 0.0) {
+void expectNearerFace(const Plate& plate, double beside = 0.0) {
     std::mt19937 random(7);
     double turned = 0.0;
     double off = 0.0;
@@ -91,7 +91,7 @@ class PlateTest : public testing::TestWithParam<int> {};
 TEST_P(PlateTest, NearerFaceDecides) {
     for (const std::uint64_t bytes : {64'000U, 256'000U}) {
         SCOPED_TRACE(bytes);
-        expectTheNearerFace(Plate(GetParam(), bytes));
+        expectNearerFace(Plate(GetParam(), bytes));
     }
 }
 
@@ -140,7 +140,7 @@ TEST(DepthPlanes, FlatFacesHaveExactNormalsOnBothSides) {
 }
 
 TEST(DepthPlanes, LargeBudgetsAreExact) {
-    expectTheNearerFace(Plate(30.0, 1'000'000));
+    expectNearerFace(Plate(30.0, 1'000'000));
 }
 
 TEST(DepthPlanes, WindingDoesNotMatter) {
@@ -148,7 +148,7 @@ TEST(DepthPlanes, WindingDoesNotMatter) {
     for (std::size_t i = 0; i < mesh.triangles.size(); i += 3) {
         std::swap(mesh.triangles[i].y, mesh.triangles[i].z);
     }
-    expectTheNearerFace(Plate(30.0, 128'000, finished(mesh.positions, mesh.triangles)));
+    expectNearerFace(Plate(30.0, 128'000, finished(mesh.positions, mesh.triangles)));
 }
 
 // The ends of two overlapping boxes are inside the plate that they form, and are not part of its surface. Near them all
@@ -157,7 +157,7 @@ TEST(DepthPlanes, FacesInsideOtherSolidsAreIgnored) {
     const TriangleMesh two =
         joined({Plate::boxFromTo(-Plate::kHalf, 0.5, 30.0), Plate::boxFromTo(-0.5, Plate::kHalf, 30.0)});
     const std::vector<std::uint32_t> by_winding(two.triangles.size(), 0);
-    expectTheNearerFace(Plate(30.0, 128'000, PreparedMesh::unionOf(two, by_winding)), 1.0);
+    expectNearerFace(Plate(30.0, 128'000, PreparedMesh::unionOf(two, by_winding)), 1.0);
 }
 
 TEST(MeanPlane, EmptySetGivesTheMiddle) {
