@@ -68,7 +68,7 @@ expect_error 3 "scene.toml:.*'Circle'" "$relief_sim" scene.toml -q
 
 # A deformed torus: the particles end elsewhere than on a nearly rigid one, and the result is reproducible.
 python3 "$RELIEF_SOURCE/samples/meshes.py" torus torus.obj
-scene() { # KEY… of [collider]
+scene() { # KEY…: of [collider]
     printf '%s\n' '[collider]' "$@" '[time]' 'steps = 30' '[particles]' 'capacity = 2000' '[emitter]' 'box_min = [-1.2, 0.4, -1.2]' \
         'box_max = [1.2, 0.5, 1.2]' 'rate = 0.0' 'burst = 2000' 'lifetime = 100.0' '[ground]' 'height = -1.0' '[render]' \
         'mesh = "torus.obj"' 'size = [160, 120]' 'every = 15' >scene.toml

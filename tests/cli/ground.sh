@@ -65,7 +65,7 @@ json stdout "0 < d['seams']['error']['max'] < 0.03 and d['seams']['wrong_percent
 expect 7 "$relief" check ground.relief --mesh hills.png --heights $settings,offset=0/0.5/0 --samples 5000 --max-error 10
 grep -q 'max-error' stderr || die "a shift is not detected: $(cat stderr)"
 expect 0 "$relief" check ground.relief --mesh hills.r16 --samples 500
-grep -q 'warning: hills.r16 is not the file' stderr || die "another file: $(cat stderr)"
+grep -q 'warning: hills.r16 is not the file' stderr || die "a different file: $(cat stderr)"
 heights larger.png 140
 expect_error 3 "larger.png" "$relief" check ground.relief --mesh larger.png
 

@@ -172,7 +172,7 @@ for ((limit = 4; limit < 200; ++limit)); do
     grep -q 'ulimit -n' stderr || die "$limit descriptors: $(cat stderr)"
     few=$((few + 1))
 done
-[ "$code" -eq 0 ] && [ "$few" -ge 3 ] || die "with $limit descriptors: $code, $few refused: $(cat stderr)"
+[ "$code" -eq 0 ] && [ "$few" -ge 3 ] || die "with $limit descriptors: $code, $few rejected: $(cat stderr)"
 cmp out/a.relief new.relief || die "few descriptors give a different file"
 # Few processes, as an unprivileged user: root has no limit.
 if setpriv --reuid=65534 --regid=65534 --clear-groups true 2>/dev/null; then

@@ -27,7 +27,7 @@ hashes() { (cd "$1" && find . -name '*.relief' | sort | xargs sha256sum); }
 # A dry run writes nothing. A run bakes everything, and a second run reports that nothing changed.
 expect 0 "$relief" bake --recipe in/r.toml --dry-run
 grep -q 'baked/d.relief.*rocks/deep/d.obj.*new' stdout || die "the dry run gives no reason: $(cat stdout)"
-[ ! -e in/baked ] || die "a dry run wrote something"
+[ ! -e in/baked ] || die "a dry run wrote files"
 expect 0 "$relief" bake --recipe in/r.toml --events events.jsonl --json -j 2
 json stdout "d['counts']['baked'] == 5 and [a['state'] for a in d['assets']] == ['baked'] * 5"
 json stdout "[a['asset'] for a in d['assets']] == ['baked/%s.relief' % n for n in ('d', 'r1', 'r2', 'r3', 'hill')]"
@@ -96,7 +96,7 @@ grep -q 'late.relief: .*--time-limit' stderr || die "the limit is not named: $(c
 # Errors in a recipe have a position, and nothing is baked. Also options that conflict with recipes or require one.
 printf '%s\n' 'version = 1' '[[asset]]' 'mesh = "hill.obj"' 'output = "h.relief"' 'budgte = 1' >in/wrong.toml
 expect_error 3 "wrong\.toml:5:1: .*'budget'" "$relief" bake --recipe in/wrong.toml -o wrong_out
-[ ! -e wrong_out ] || die "something was written for a wrong recipe"
+[ ! -e wrong_out ] || die "an invalid recipe wrote files"
 expect_error 2 'none\.toml' "$relief" bake --recipe none.toml
 expect_error 1 'recipe' "$relief" bake bunny.obj --recipe in/r.toml
 expect_error 1 'budget|defaults' "$relief" bake --recipe in/r.toml --budget 1MB

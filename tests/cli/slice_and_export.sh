@@ -24,7 +24,7 @@ for word in 'depth.front, 32-bit floating' 'depth.back, 32-bit floating' normal.
     grep -q "$word" header || die "view_+x.exr lacks $word: $(cat header)"
 done
 "$relief" export p.relief -o small --resolution 40
-exrheader small/view_-y.exr | matches '(39 ' || die "40 texels along the longer side: $(exrheader small/view_-y.exr)"
+exrheader small/view_-y.exr | matches '(39 ' || die "not 40 texels along the longer side: $(exrheader small/view_-y.exr)"
 "$relief" export - -o again --resolution 40 <p.relief
 diff -r small again || die "two exports differ"
 expect_error 1 'resolution has no effect without -o' "$relief" export p.relief --gpu gpu --resolution 40

@@ -55,7 +55,7 @@ grep -q ' 2 baked, 1 up to date' stderr || die "damaged containers: $(cat stderr
 rm w/box-coarse-*.relief
 expect_error 2 'colliders\[1\]\.coarse' "$relief" check w/world.json
 expect 0 "$relief" bake level.gltf --world w --budget 200kB
-grep -q ' 1 baked, 2 up to date' stderr || die "a coarse container is missing: $(cat stderr)"
+grep -q ' 1 baked, 2 up to date' stderr || die "a missing coarse container: $(cat stderr)"
 containers w | diff now - || die "a repeated bake gives different bytes"
 
 # If a mesh fails, the world is kept. Foreign files are never changed.

@@ -7,7 +7,7 @@ level() { python3 "$RELIEF_SOURCE/tests/cli/level.py" "$@"; }
 level level.gltf
 expect 0 "$relief" bake level.gltf --world w --budget 200kB -q
 expect 0 "$relief" bake level.gltf --world one --budget 200kB -j 1 -q
-diff -r -x .relief-cache.json w one || die "threads change the world"
+diff -r -x .relief-cache.json w one || die "the number of threads changes the world"
 
 # The page of a check equals that of relief view.
 page_place >template.html

@@ -177,7 +177,7 @@ job_seeds() {
     for next in 1 2 3 4 5 6 7 8 9; do
         RELIEF_TEST_SEED=$((seed + next)) programs 'Voxels.*' "$bin/relief_bake_test" >"$work/voxels.log"
     done
-    say "seed $seed, and the nine after it for Voxels"
+    say "seed $seed, and the next nine for Voxels"
 }
 
 job nightly 3 import

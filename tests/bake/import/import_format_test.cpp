@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The contents determine the format of a file, whatever its name. Files that are not meshes are rejected.
+// The contents of a file, not its name, determine its format. Files that are not meshes are rejected.
 #include "bake/import/import_format.h"
 
 #include "bake/import/mesh_import.h"

@@ -193,7 +193,8 @@ TEST(PatchTiles, TexelModeHasSmallRoots) {
     EXPECT_LE(roots(one), 64U);
     EXPECT_GE(roots(other), 256U);
     EXPECT_LT(static_cast<double>(other.texels.size()), 1.1 * static_cast<double>(one.texels.size()));
-    EXPECT_TRUE(onThreads(1, [&] { return bake(small); }) == other) << "threads change the tree";
+    EXPECT_TRUE(onThreads(1, [&] { return bake(small); }) == other)
+        << "the number of threads changes the tree";
     // The budget also holds with small roots.
     small.bytes = one.texels.size() / 2;
     small.coarsen = true;

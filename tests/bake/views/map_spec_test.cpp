@@ -46,8 +46,8 @@ TEST(MapSpecParser, ReadsEveryKey) {
     EXPECT_EQ(*parseMapSpec("float"), *parseMapSpec("float:dir=-z,box=tight"));
     EXPECT_EQ(parseMapSpec("front-back:dir=x")->direction, glm::vec3(1, 0, 0));
     EXPECT_EQ(parseMapSpec("front-back:dir=1/-2/0.5")->direction, glm::vec3(1, -2, 0.5F));
-    EXPECT_FALSE(parseMapSpec("float")->compare) << "left to the baker";
-    EXPECT_FALSE(parseMapSpec("float")->up) << "left to the rule of view.h";
+    EXPECT_FALSE(parseMapSpec("float")->compare) << "the baker chooses";
+    EXPECT_FALSE(parseMapSpec("float")->up) << "view.h chooses";
     EXPECT_EQ(parseMapSpec("float:dir=+x,up=-z")->up, glm::vec3(0, 0, -1));
     EXPECT_EQ(parseMapSpec("front-back:up=1/2/-0.5,dir=+x")->up, glm::vec3(1, 2, -0.5F));
 }
@@ -59,7 +59,7 @@ TEST(MapSpecParser, MissingKeysUseTheDefaults) {
     }
     EXPECT_EQ(parseMapSpec("front-back")->format, MapFormat::kFrontBackFixed);
     EXPECT_EQ(parseMapSpec("front-back", kPaperDefaults)->format, MapFormat::kFrontBackHalf);
-    // What a text says itself stays.
+    // Explicit keys override the defaults.
     EXPECT_EQ(*parseMapSpec("front-back:depth=half,decode=projected"),
               *parseMapSpec("front-back:depth=half,decode=projected", kPaperDefaults));
     EXPECT_EQ(*parseMapSpec("front-back:depth=unorm16,decode=plane"),
@@ -81,7 +81,7 @@ TEST(MapSpecParser, SpecsRoundTripThroughText) {
         EXPECT_EQ(toString(spec), text);
         EXPECT_EQ(*parseMapSpec(toString(spec)), spec);
     }
-    // One setting, one text.
+    // Each setting has one text form.
     EXPECT_EQ(toString(*parseMapSpec("float:size=8,dir=-0/0/-1,compare=less")),
               toString(*parseMapSpec("float:compare=less,dir=-z,size=8x8")));
 }

@@ -73,7 +73,7 @@ TEST_F(WorldCheck, CountsSmallLostPartsOfAllMeshes) {
     const WorldBakeResult baked = bake("w");
     ASSERT_TRUE(baked.colliders[0].verdict);
     EXPECT_EQ(baked.colliders[0].verdict->grade, "good");
-    EXPECT_GT(baked.colliders[0].ignored.lost, 15U);  // of 16 points each
+    EXPECT_GT(baked.colliders[0].ignored.lost, 15U);  // with 16 points each
     EXPECT_NE(worldBakeText(baked, "w", 1.0, false).find(" of 21 parts, at most 0.01 long, are not"),
               std::string::npos);
     const WorldField field = load("w");
