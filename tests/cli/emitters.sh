@@ -37,7 +37,7 @@ expect_error 1 '--first-frame' "$relief_sim" long.toml --first-frame 3
 expect_error 1 '--last-frame' "$relief_sim" long.toml --frames f --first-frame 3 --last-frame 2
 [ ! -e f ] || die "a rejected run created its folder"
 
-# A mesh file that an emitter uses is a file of the scene.
+# A mesh file of an emitter is an input of the scene.
 tetrahedron t.obj
 "$relief" bake t.obj -q -o t.relief
 printf '%s\n' '[[collider]]' 'file = "t.relief"' '[[emitter]]' 'shape = "surface"' 'attach = 0' 'mesh = "t.obj"' >sparks.toml

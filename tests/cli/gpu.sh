@@ -19,7 +19,7 @@ expect_error 1 'gpu-timeout.*seconds' "$relief_sim" bunny.relief --steps 3 --gpu
 expect_error 1 'gpu-timeout.*seconds' "$relief_sim" bunny.relief --steps 3 --gpu-timeout -1
 expect_error 1 'excludes' "$relief_sim" bunny.relief --check --device 0
 
-# Without a driver, EGL or GL library: one line and exit code 5. Commands without GPU work.
+# Without a driver, EGL or GL library: one line and exit code 5. Commands that need no GPU still work.
 mkdir no_egl no_gl
 : >no_egl/libEGL.so.1
 : >no_gl/libOpenGL.so.0

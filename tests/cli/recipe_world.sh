@@ -181,7 +181,7 @@ ln -s ../../secret.obj in/parts/secret.obj
 rejects "3:8: .*secret.obj" 'mesh = "parts/"' 'output = "w/world.json"'
 rm in/parts/secret.obj
 
-# A world can be in the output folder, or in its level's own folder.
+# A world can be in the output folder, or in the folder of its level.
 sed 's#w/world#world#' <(printf '%s\n' 'version = 1' '[[asset]]' "${yard[@]}") >in/root.toml
 printf '%s\n' 'version = 1' '[[asset]]' 'mesh = "parts/"' 'output = "{dir}/{stem}/world.json"' 'budget = "100kB"' 'compress = 1' >in/own.toml
 for state in baked 'up to date'; do

@@ -215,7 +215,7 @@ class Oracle {
         if (least == 0 || most == 0) {
             return std::nullopt;
         }
-        // The crossing is ahead if p is on the right side of the triangle's plane.
+        // The crossing is ahead of p only if p is on one side of the triangle's plane.
         const auto d = [&p](const Exact& corner, std::size_t k) { return Int128{corner[k] - p[k]}; };
         const auto minor = [&](std::size_t i, std::size_t k) {
             return d(b, i) * d(c, k) - d(b, k) * d(c, i);

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Runs samples/slurm on a cluster of only this machine: slurm.sh FOLDER, with the executable in RELIEF. Bakes models and a
+# Runs samples/slurm on a one-machine cluster: slurm.sh FOLDER, with the executable in RELIEF. Bakes models and a
 # level with a requeued task, a killed task, and broken meshes. A second run bakes the rest, a third nothing, and a fourth the
 # level, after a container was deleted. Needs root.
 set -euo pipefail

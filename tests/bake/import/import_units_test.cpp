@@ -194,7 +194,7 @@ TEST(ImportUnits, ColladaHeadersAreParsed) {
     EXPECT_EQ(frame("<up_axis>X_UP</up_axis>").up, UpAxis::kPlusX);
     EXPECT_EQ(frame("<up_axis>Z_UP</up_axis>", "<asset xmlns='x'><!-- <up_axis>Y_UP</up_axis> -->").up,
               UpAxis::kPlusZ);
-    EXPECT_EQ(frame("<x><up_axis>Z_UP</up_axis></x>").up, UpAxis::kPlusY) << "outside <asset>";
+    EXPECT_EQ(frame("<x><up_axis>Z_UP</up_axis></x>").up, UpAxis::kPlusY) << "not a child of <asset>";
     EXPECT_EQ(frame("").up, UpAxis::kPlusY);
     EXPECT_EQ(frame("").metres, 1.0);
     EXPECT_EQ(frame("<unit name='a>b' meter=' 1e-2 '/>").metres, 0.01);

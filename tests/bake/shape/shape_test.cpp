@@ -338,7 +338,7 @@ TEST(Shape, VesselWithSeparateShellsIsReported) {
     EXPECT_EQ(crates.report.unjoined_shells, 0U);
 }
 
-/// A clothed body has the same shells as a vessel, but possibly other winding.
+/// A clothed body has the same shells as a vessel, possibly with different winding.
 TEST(Shape, WallThatMayBeAClothedBodyIsReported) {
     const auto turn = [](const std::vector<glm::dvec2>& profile) { return makeTurned(profile, 24); };
     const TriangleMesh torso = turn({{0.3, 0.0}, {0.34, 0.5}, {0.3, 0.9}, {0.12, 1.0}});
