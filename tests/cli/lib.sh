@@ -85,6 +85,12 @@ open(sys.argv[1], 'w').write(
 P
 }
 
+# level OUT [KEY=VALUE…]: a small glTF level (level.py).
+level() { python3 "$RELIEF_SOURCE/tests/cli/level.py" "$@"; }
+
+# container_hashes DIR: the hash of every container in DIR.
+container_hashes() { (cd "$1" && find . -name '*.relief' | sort | xargs sha256sum); }
+
 # random_points FILE: 10,000 points in and around the bunny.
 random_points() {
     python3 - "$1" <<'P'

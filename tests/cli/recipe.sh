@@ -22,7 +22,6 @@ compress = 3
 T
 cp -r in pristine
 events() { python3 -c "import json,sys; print(*[json.loads(l)['event'] for l in open(sys.argv[1])])" "$1"; } # names of events
-hashes() { (cd "$1" && find . -name '*.relief' | sort | xargs sha256sum); }
 
 # A dry run writes nothing. A run bakes everything, and a second run reports that nothing changed.
 expect 0 "$relief" bake --recipe in/r.toml --dry-run
@@ -37,7 +36,7 @@ grep -q '5 assets: 5 baked;' stderr || die "no summary: $(cat stderr)"
 [ "$(ls -A in/baked)" = "$(printf '%s\n' d.relief hill.relief r1.relief r2.relief r3.relief)" ] || die "files: $(ls -A in/baked)"
 "$relief" bake in/rocks/r1.obj -o alone.relief --map cube:size=32 -q
 cmp alone.relief in/baked/r1.relief || die "recipe and command line give different bytes"
-hashes in >first
+container_hashes in >first
 expect 0 "$relief" bake --recipe in/r.toml --events -
 [ "$(events stdout)" = "start skipped skipped skipped skipped skipped summary" ] || die "events: $(cat stdout)"
 [ "$(cat stderr)" = "5 assets up to date" ] || die "the second run reports something else: $(cat stderr)"
@@ -52,7 +51,7 @@ rebakes ''
 rm in/baked/r2.relief
 printf x >>in/baked/r3.relief
 rebakes r2 r3
-hashes in | cmp - first || die "a damaged output was not restored"
+container_hashes in | cmp - first || die "a damaged output was not restored"
 tetrahedron in/rocks/r1.obj 1.5
 sed -i 's/compress = 3/compress = 4/' in/r.toml
 rebakes r1 hill
@@ -74,7 +73,7 @@ grep '"event":"failed"' e.jsonl >failed.json
 json failed.json "d['code'] == 3 and 'r2.obj' in d['error'] and d['asset'] == 'baked/r2.relief'"
 cp pristine/rocks/r2.obj in/rocks/
 rebakes r2
-hashes in | cmp - first || die "the fixed asset gives different bytes"
+container_hashes in | cmp - first || die "the fixed asset gives different bytes"
 
 # The error of each collider, even if it is up to date. A world has that of its worst collider; without a measurement it
 # is null.

@@ -5,18 +5,17 @@
 mkdir in
 for i in 1 2 3 4 5; do tetrahedron "in/r$i.obj" "$i"; done
 printf '%s\n' 'version = 1' '[[asset]]' 'mesh = "r?.obj"' 'output = "{stem}.relief"' 'map = "cube:size=32"' >in/r.toml
-hashes() { (cd "$1" && find . -name '*.relief' | sort | xargs sha256sum); }
 
 # One bake at a time and four concurrent shards in one folder give the same bytes.
 expect 0 "$relief" bake --recipe in/r.toml -o alone -j 1
-hashes alone >first
+container_hashes alone >first
 jobs=()
 for k in 1 2 3 4; do
     "$relief" bake --recipe in/r.toml -o shards --shard $k/4 --events "s$k" -j 1 -q &
     jobs+=($!)
 done
 for job in "${jobs[@]}"; do wait "$job" || die "a shard failed"; done
-hashes shards | cmp - first || die "four shards give different bytes"
+container_hashes shards | cmp - first || die "four shards give different bytes"
 [ "$(cat s1 s2 s3 s4 | grep -c '"event":"done"')" -eq 5 ] || die "shards overlap"
 expect 0 "$relief" bake --recipe in/r.toml -o shards
 [ "$(cat stderr)" = "5 assets up to date" ] || die "the cache of the shards is incomplete: $(cat stderr)"
@@ -110,7 +109,7 @@ run = subprocess.run([sys.argv[1], 'bake', '--recipe', 'in/r.toml', '-o', 'piped
                      stdout=writer, stderr=subprocess.PIPE, text=True)
 assert run.returncode == 2 and 'cannot write events' in run.stderr, run
 P
-hashes piped | cmp - first || die "a closed pipe stopped the bakes"
+container_hashes piped | cmp - first || die "a closed pipe stopped the bakes"
 
 # The example of the page and the sample are valid recipes.
 sed -n '/^```toml$/,/^```$/{//!p}' "$RELIEF_SOURCE/bake/recipe/README.md" >example.toml

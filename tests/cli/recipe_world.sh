@@ -4,8 +4,8 @@
 # folders, links and options.
 . "$(dirname "$0")/lib.sh"
 
-level() { # FILE.gltf [KEY=VALUE…]: its buffer is FILE.bin
-    python3 "$RELIEF_SOURCE/tests/cli/level.py" "$@"
+split_level() { # FILE.gltf [KEY=VALUE…]: a level whose buffer is FILE.bin
+    level "$@"
     python3 - "$1" <<'P'
 import base64, json, pathlib, sys
 path = pathlib.Path(sys.argv[1])
@@ -16,7 +16,7 @@ path.write_text(json.dumps(doc))
 P
 }
 mkdir -p in/levels in/parts/old
-level in/levels/yard.gltf
+split_level in/levels/yard.gltf
 python3 "$RELIEF_SOURCE/tests/cli/heights.py" in/hills.png 130
 tetrahedron in/rock.obj 1
 tetrahedron in/parts/a.obj 2
@@ -131,11 +131,11 @@ for file in levels/yard/box-*.relief levels/yard/box-coarse-*.relief levels/yard
 done
 
 # Changed inputs: only the level is baked. If only a node moved, no container changes.
-level in/levels/yard.gltf x=3
+split_level in/levels/yard.gltf x=3
 expect_reason levels/yard/world.json "\\'levels/yard.gltf\\' changed"
 rebakes levels/yard/world.json
 [ "$(inodes | diff before - | grep '^>' | cut -d' ' -f2)" = ./levels/yard/world.json ] || die "a moved node: $(inodes | diff before -)"
-level in/levels/yard.gltf
+split_level in/levels/yard.gltf
 rebakes levels/yard/world.json
 printf '\0' >>in/levels/yard.bin
 expect_reason levels/yard/world.json "\\'levels/yard.bin\\' changed"

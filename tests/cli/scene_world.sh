@@ -3,7 +3,7 @@
 # tests cover keys, names and limits.
 . "$(dirname "$0")/lib.sh"
 
-python3 "$RELIEF_SOURCE/tests/cli/level.py" level.gltf
+level level.gltf
 "$relief" bake level.gltf --world w --budget 200kB -q
 python3 - <<'P'
 import json

@@ -103,7 +103,7 @@ document recipe 3 "$relief" bake --recipe recipe/recipe.toml --events events.jso
 echo '# changed' >>recipe/box.obj
 document recipe 0 "$relief" bake --recipe recipe/recipe.toml --dry-run --json
 
-python3 "$RELIEF_SOURCE/tests/cli/level.py" level.gltf
+level level.gltf
 document world-bake 0 "$relief" bake level.gltf --world w --budget 100kB --json
 document world-check 0 "$relief" check w/world.json --json
 document world-check 0 "$relief" check w/world.json --mesh level.gltf --samples 500 --json

@@ -154,7 +154,7 @@ done
 
 # A world: its text and colliders, and a scene that uses it.
 export RELIEF_VIEW_PAGE=$work/stub.html
-python3 "$RELIEF_SOURCE/tests/cli/level.py" level.gltf
+level level.gltf
 "$relief" bake level.gltf --world w --budget 60kB --no-check -q
 expect 0 "$relief" view w/world.json
 extract w/world.html

@@ -55,7 +55,7 @@ scene '[forces]' 'gravity = [0.0, -9.81, 0.0]' "${fall[@]}"
 warns ''
 scene '[forces]' 'gravity = [0.0, -9.81, 0.0]' 'drag = 0.0' "${fall[@]}" '[[type]]' 'gravity = 0.01'
 warns ''
-# One line for all: the thinnest decides.
+# One warning for all colliders; it names the thinnest.
 scene "${jet[@]}" 'velocity = [0.0, 0.0, -60.0]' "$open"
 sed -i 's/^\[collider\]$/[[collider]]/; 2a[[collider]]\nfile = "wall.relief"\nscale = 0.5\nposition = [0.0, 0.0, -5.0]' scene.toml
 warns "at a speed of [0-9.]+ a step is 1[0-9.]* long, but 'wall\.relief' is typically 0\.(09|1|10|11)[0-9]* thick, the thinnest of 2 .*sweep = 0\.0[45]"

@@ -3,9 +3,6 @@
 # checks of worlds. Unit tests cover budget shares, tiles and invalid world files.
 . "$(dirname "$0")/lib.sh"
 
-level() { python3 "$RELIEF_SOURCE/tests/cli/level.py" "$@"; }
-containers() { (cd "$1" && find . -name '*.relief' | sort | xargs sha256sum); }
-
 level level.gltf
 expect 0 "$relief" bake level.gltf --world w --budget 200kB --json --depfile w.d
 json stdout "d['written'] and d['bodies'] == 5 and d['baked'] == 3 and d['up_to_date'] == d['failed'] == 0"
@@ -15,7 +12,7 @@ json w/world.json "d['format'] == 'relief-world' and d['version'] == 1 and d['un
 json w/world.json "[(b['node'], b['collider']) for b in d['bodies']] == [('ground', 0), ('first', 1), ('second', 1), ('third', 1), ('wide', 2)]"
 json w/world.json "d['bodies'][2]['scale'] == 2 and d['bodies'][2]['rotation'] == [0, 0.6, 0, 0.8] and d['bodies'][2]['position'] == [5, 0, 5]"
 [ "$(tr -d '\\\n' <w.d | tr -s ' ')" = 'w/world.json: level.gltf' ] || die "depfile: $(cat w.d)"
-containers w >first
+container_hashes w >first
 
 # The contents, and checks with and without the level.
 expect 0 "$relief" info w/world.json --json
@@ -36,7 +33,7 @@ grep -q 'warning: level.gltf: 1 node ' stderr && grep -qE '^  1 +first' stdout |
 cp w/world.json before.json
 expect 0 "$relief" bake level.gltf --world w --budget 200kB
 grep -q ' 0 baked, 3 up to date' stderr || die "a moved node causes a bake: $(cat stderr)"
-containers w | diff first - || die "a moved node changes a container"
+container_hashes w | diff first - || die "a moved node changes a container"
 [ "$(diff before.json w/world.json | grep -c '^>')" -eq 1 ] || die "a moved node changes more than its line"
 
 # A changed mesh replaces its containers. The larger box also has a coarse container.
@@ -47,7 +44,7 @@ json stdout "d['baked'] == 2 and d['up_to_date'] == 1 and len(d['removed']) == 3
 [ "$(find w -name '*.relief' | wc -l)" -eq 4 ] && [ "$(find w -name 'box-coarse-*' | wc -l)" -eq 1 ] || die "containers are left over: $(ls w)"
 
 # A damaged or missing container is baked again, with the same bytes.
-containers w >now
+container_hashes w >now
 for file in w/box-*.relief; do printf x >>"$file"; done
 expect_error 3 'w/world.json.*hash' "$relief" check w/world.json
 expect 0 "$relief" bake level.gltf --world w --budget 200kB
@@ -56,7 +53,7 @@ rm w/box-coarse-*.relief
 expect_error 2 'colliders\[1\]\.coarse' "$relief" check w/world.json
 expect 0 "$relief" bake level.gltf --world w --budget 200kB
 grep -q ' 1 baked, 2 up to date' stderr || die "a missing coarse container: $(cat stderr)"
-containers w | diff now - || die "a repeated bake gives different bytes"
+container_hashes w | diff now - || die "a repeated bake gives different bytes"
 
 # If a mesh fails, the world is kept. Foreign files are never changed.
 echo mine >w/mine.relief

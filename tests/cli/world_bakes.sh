@@ -2,8 +2,6 @@
 # Levels by name, texel and thread count, and their pages: the slower part of tests/cli/world.sh.
 . "$(dirname "$0")/lib.sh"
 
-level() { python3 "$RELIEF_SOURCE/tests/cli/level.py" "$@"; }
-
 level level.gltf
 expect 0 "$relief" bake level.gltf --world w --budget 200kB -q
 expect 0 "$relief" bake level.gltf --world one --budget 200kB -j 1 -q

@@ -33,7 +33,7 @@ struct Plate {
     static glm::dquat turnBy(double degrees) {
         return glm::angleAxis(glm::radians(degrees), glm::dvec3(0.0, 0.0, 1.0));
     }
-    /// The part of the plate between these x.
+    /// The part of the plate between these x coordinates.
     static TriangleMesh boxFromTo(double low, double high, double degrees) {
         const glm::dquat turn = turnBy(degrees);
         return makeBoxMesh(turn * glm::dvec3(0.5 * (low + high), 0.0, 0.0), {0.5 * (high - low), 0.5, kHalf},
