@@ -67,7 +67,7 @@ filters() { # PID: the system call filters according to /proc
 }
 
 # start ARGUMENT…: bakes unfold.dae in the background, sets $parent and $worker, and stops the worker at once. On a busy
-# machine the worker must not reach its memory limit before.
+# machine the worker must not reach its memory limit first.
 start() {
     nice -n 19 "$relief" bake unfold.dae --import-memory 8000000000 -o x.relief "$@" >"$work/stdout" 2>"$work/stderr" </dev/null &
     parent=$!

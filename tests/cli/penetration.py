@@ -83,7 +83,7 @@ for row in rows:
     if within:
         deepest = max(deepest, distance(p, triangles))
     if still:
-        # The first corner of a triangle within `near` is at most the longest edge farther away.
+        # If a triangle is within `near`, its first corner is within `near` plus the longest edge.
         first, last = np.searchsorted(triangles[:, 0, 0], [p[0] - near - longest, p[0] + near + longest])
         close = triangles[first:last][(np.abs(triangles[first:last, 0] - p) <= near + longest).all(axis=1)]
         resting += int(len(close) > 0 and distance(p, close) <= near)

@@ -181,8 +181,8 @@ TEST(PartAccuracy, ExcessCountsAtTheScaleOfTheAsset) {
 }
 
 TEST(PartAccuracy, LostPartsAreConfirmedWithMorePoints) {
-    // Boxes too large by half the distance of their points: about 20 % of the points are wrong, but sometimes 25 % of
-    // few points.
+    // Boxes too large by half the distance of their points: about 20 % of the points are wrong. With few points, the
+    // measured fraction is sometimes 25 %.
     std::vector<TriangleMesh> boxes;
     std::vector<Bounds> bounds;
     for (int i = 0; i < 40; ++i) {
