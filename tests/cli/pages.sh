@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Manual pages made from --help: formatters accept them, and they list every option. bash completes verbs, options and
-# values.
+# Manual pages made from --help and --manual: formatters accept them, and they list every option. Help is short and
+# grouped. bash completes verbs, options and values.
 . "$(dirname "$0")/lib.sh"
 
 python3 "$RELIEF_SOURCE/scripts/install/pages.py" pages "$relief" "$relief_sim"

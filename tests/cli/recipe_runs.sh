@@ -7,8 +7,8 @@ for i in 1 2 3 4 5; do tetrahedron "in/r$i.obj" "$i"; done
 printf '%s\n' 'version = 1' '[[asset]]' 'mesh = "r?.obj"' 'output = "{stem}.relief"' 'map = "cube:size=32"' >in/r.toml
 
 # One bake at a time and four concurrent shards in one folder give the same bytes.
-expect 0 "$relief" bake --recipe in/r.toml -o alone -j 1
-container_hashes alone >first
+expect 0 "$relief" bake --recipe in/r.toml -o single -j 1
+container_hashes single >first
 jobs=()
 for k in 1 2 3 4; do
     "$relief" bake --recipe in/r.toml -o shards --shard $k/4 --events "s$k" -j 1 -q &

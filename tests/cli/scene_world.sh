@@ -49,12 +49,12 @@ json stdout "[c['node'] for c in d['settings']['collider']] == ['second', 'first
 json stdout "d['settings']['collider'][0]['key'][0]['position'] == [-3, 0.25, 0] and d['settings']['collider'][1]['position'] == [2, 0, 0]"
 
 # Only a world: snow falls on it, also in pictures.
-expect 0 "$relief_sim" w/world.json --steps 30 --frames frames --size 64x48 --dump alone.ply --json
+expect 0 "$relief_sim" w/world.json --steps 30 --frames frames --size 64x48 --dump single.ply --json
 json stdout "len(d['settings']['collider']) == 5 and d['settings']['collider'][2]['angle'] != 0 and d['frames'] == 3"
 [ -s frames/frame_0002.png ] || die "a world has no pictures"
 echo 'world = "w/world.json"' >only.toml
 expect 0 "$relief_sim" only.toml --steps 30 --dump only.ply -q
-cmp alone.ply only.ply || die "a scene with only a world differs"
+cmp single.ply only.ply || die "a scene with only a world differs"
 expect 0 "$relief_sim" w/world.json --check --json
 json stdout "[f['kind'] for f in d['files']] == ['world'] + ['collider'] * 3 and d['bodies'] == 5 and d['files'][0]['file'] == 'w/world.json'"
 expect_error 1 "w/world.json" "$relief_sim" only.toml --dump w/world.json

@@ -31,7 +31,7 @@ TEST(PatchFrame, CoversTheCubeAndHasTheGradientOfDepth) {
             EXPECT_GE(at.z, 0.0);
             EXPECT_LE(at.z, 1.0 + frame.diagonal);
             EXPECT_LT(glm::distance(glm::dvec3(frame.across(glm::vec3(p))), at), 1e-6);
-            // Of w − H with H = 0.3 u − 0.7 v, by finite differences.
+            // The gradient of w − H with H = 0.3 u − 0.7 v, by finite differences.
             const auto value = [&](const glm::dvec3& q) {
                 const glm::dvec3 there = frame.across(q);
                 return there.z - 0.3 * there.x + 0.7 * there.y;

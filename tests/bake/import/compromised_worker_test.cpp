@@ -236,7 +236,7 @@ std::vector<Attempt> attempts(const Place& place) {
     };
 }
 
-/// Most checks need seccomp. Every kernel that runs the tests has it.
+/// Most checks need seccomp, which every kernel that runs the tests supports.
 bool kernelHasSeccomp() {
     return ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, nullptr) != 0 && errno == EFAULT;
 }
