@@ -151,8 +151,8 @@ void addBake(CLI::App& app, Action& action) {
             "Bake a mesh into a collider\n\n"
             "By default, the collider consists of patches: small depth maps in an octree, 1 MB in all. Set "
             "their size with --budget, their resolution with --texel, or their accuracy with --max-error. "
-            "Each part of the mesh becomes a solid, a shell or terrain, as rays through it suggest; --as "
-            "overrides this. The bake ends with a check of the result.",
+            "Rays through each part of the mesh classify it as a solid, a shell or terrain; --as overrides "
+            "this. At the end, the bake checks the result.",
             "--map and --paper bake depth maps of the whole mesh instead. --animated bakes a mesh that "
             "moves, --world a level of many meshes, --heights ground from a height map, and --recipe all "
             "assets that a file lists."),

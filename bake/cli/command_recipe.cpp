@@ -287,8 +287,8 @@ std::optional<std::string> assetKeyOf(const RecipeJob& job, const std::string& t
     return files ? std::optional(assetKey(tool, job.options, std::move(*files))) : std::nullopt;
 }
 
-/// Computes the keys of the assets of a dry run. It reads meshes that may refer to other files. An asset has no key if its mesh
-/// cannot be read.
+/// Computes the keys of the assets of a dry run. It reads meshes that may refer to other files. An asset has no key if
+/// its mesh cannot be read.
 Result<void> addKeys(std::vector<AssetResult>& assets, const RecipeRun& run) {
     const std::string tool = RELIEF_TRY(toolIdentity());
     const fs::path folder = recipeFolder(run.recipe);
@@ -359,8 +359,8 @@ std::vector<RecipeKey> recipeKeys() {
 }
 
 void addRecipeOptions(CLI::App& verb, BakeRecipeOptions& options) {
-    OptionRef recipe = addOption(verb, "--recipe", options.recipe,
-                                 "Bake the assets in this TOML file that are not up to date");
+    OptionRef recipe =
+        addOption(verb, "--recipe", options.recipe, "Bake the assets of this TOML file that are out of date");
     recipe->valueText("FILE");
     addParsed(verb, "--shard", options.shard, parseShard, "K/N with 1 <= K <= N, such as 2/4",
               "Bake only part K of N of the recipe; the parts may run at the same time")

@@ -5,7 +5,7 @@
 //      tile 0             |----------------|
 //      tile 1                     |----------------------|
 //
-// Each tile extends a leaf beyond its own squares. Leaves in the overlap of two tiles are bit-identical, so that the
+// Each tile extends one leaf beyond its own squares. Leaves in the overlap of two tiles are bit-identical, so that the
 // union of both has the same surface, and no point of a seam lies outside all tiles. A tile's coarse collider uses
 // every fourth sample and has the same roots. Containers are named by content hash: a bake never replaces a container
 // that the previous world references.
@@ -34,8 +34,8 @@ struct GroundTile {
     std::uint64_t bytes = 0;
     std::uint64_t gpu_bytes = 0;
     std::optional<WorldFile> coarse;  ///< set if hasCoarse()
-    std::uint64_t squares = 0;        ///< number with ground
-    std::uint64_t steep = 0;          ///< number of its own squares, without the rim, steeper than kSteepest
+    std::uint64_t squares = 0;        ///< number of squares with ground
+    std::uint64_t steep = 0;          ///< number of its own squares (no rim) steeper than kSteepest
     double error_max = 0.0;  ///< error of its heights, excluding steep squares, metres; 0: all are steep
     Bounds box;              ///< of its surface, in its own space
 };
@@ -65,7 +65,7 @@ struct GroundOptions {
 /// Bakes a height map. Holds one row of tiles in memory, or all of a single collider. The result does not depend on the
 /// number of threads.
 /// \param map  positioned before its first row.
-/// Errors, with the file in front: kInvalidInput (a damaged image; no square has ground), kLimit (the tree or world is
+/// Errors, prefixed with the file: kInvalidInput (a damaged image; no square has ground), kLimit (the tree or world is
 /// too large); kIo.
 [[nodiscard]] Result<GroundResult> bakeGroundOf(HeightMap& map, const GroundOptions& options);
 

@@ -64,9 +64,9 @@ class SampleRange {
 class HeightMap {
   public:
     /// Reads the file and, for an image, its header. Rows are decoded on demand.
-    /// Errors, with the file in front: those of readFile; kInvalidInput, kUnsupported (not such an image); kLimit (more
-    /// than kHeightSamplesMax samples); kUsage (settings that do not apply to the image, or are missing); those of
-    /// openImageRowsInWorker.
+    /// Errors, prefixed with the file: those of readFile; kInvalidInput, kUnsupported (not a supported image); kLimit
+    /// (more than kHeightSamplesMax samples); kUsage (settings that do not apply to the image, or are missing); those
+    /// of openImageRowsInWorker.
     [[nodiscard]] static Result<HeightMap> open(const std::filesystem::path& path, const HeightsSpec& spec,
                                                 const ImportLimits& limits = {});
 
@@ -91,10 +91,10 @@ class HeightMap {
 
     /// Reads the next row.
     /// \param out  columns() heights in metres; NaN is a hole.
-    /// Errors, with the file in front: kInvalidInput, kUnsupported; those of openImageRowsInWorker.
+    /// Errors, prefixed with the file: kInvalidInput, kUnsupported; those of openImageRowsInWorker.
     [[nodiscard]] Result<void> next(std::span<float> out);
 
-    /// Restarts before the first row. Errors: those of open(), with the file in front.
+    /// Restarts before the first row. Errors: those of open().
     [[nodiscard]] Result<void> rewind();
 
   private:

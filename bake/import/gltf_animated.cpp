@@ -376,7 +376,7 @@ class AnimatedReader {
         if (added) {
             if (mesh_.materials.size() == kMeshMaterialsMax) {
                 return fail(ErrorCode::kLimit, "it has more than " + std::to_string(kMeshMaterialsMax) +
-                                                   " materials; join some, or export less of the scene");
+                                                   " materials; merge some, or export less of the scene");
             }
             mesh_.materials.push_back(name);
         }

@@ -66,7 +66,7 @@ class GltfMeshes {
         bool joints = false;
         bool targets = false;
     };
-    /// Reads a mesh. \return borrowed; repeated calls return the first result, whatever `needs` is.
+    /// Reads a mesh. \return borrowed; repeated calls return the first result and ignore `needs`.
     [[nodiscard]] Result<const GltfMesh*> read(const GltfValue& mesh, Needs needs);
 
     /// Counts the contents read so far. \param meshes  number of meshes in the file.

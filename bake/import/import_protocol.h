@@ -42,7 +42,7 @@ inline constexpr int kImportExitMessage = 0;     ///< the message, a mesh or an 
 inline constexpr int kImportExitMemory = 10;     ///< the memory limit was reached
 inline constexpr int kImportExitArguments = 11;  ///< invalid arguments, or the parent has ended
 inline constexpr int kImportExitTooLarge = 12;   ///< the message exceeds the result memory
-/// Plus the errno of the system call that failed.
+/// Added to the errno of the system call that failed.
 inline constexpr int kImportExitErrno = 128;
 
 /// Allocates the first bytes of a memfd now; otherwise a page that cannot be allocated raises SIGBUS on access.

@@ -90,6 +90,37 @@ struct ImportScene {
     std::vector<std::string> warnings;
 };
 
+/// Counts the contents of a mesh. \param mesh  its corners are valid indices.
+[[nodiscard]] MeshParts partsOf(const PolygonMesh& mesh);
+
+/// Counts the polygons, triangulates them, and adds them as parts below a node with the file's name.
+/// \param apart  each corner becomes a separate vertex; true for a mesh with groups.
+/// Errors: kLimit (more triangles than the job allows).
+[[nodiscard]] Result<void> addPolygons(const PolygonMesh& polygons, bool apart, const ImportJob& job,
+                                       ImportScene& scene);
+
+/// Triangulates the polygons into one part without names.
+[[nodiscard]] ScenePart cutPolygons(const PolygonMesh& polygons);
+
+/// Returns the error for a file with vertices or lines, but without polygons; nullopt for other files.
+[[nodiscard]] std::optional<std::string> partsRefusal(const MeshParts& parts);
+/// Warns about skipped lines, points, free forms and meshes, and about many loose vertices; one line each, without the
+/// file name.
+void warnOfParts(const MeshParts& parts, std::vector<std::string>& warnings);
+
+/// Merges everything that the scene shows into one mesh, with marks for the job's names and with warnings of skipped
+/// parts. Converts to metres and +Y up if the frame or the job gives unit and axis. Counts all triangles before
+/// allocating, because a small file can place one mesh many times.
+/// Errors, without the file name: kInvalidInput (nothing to show, a node within itself, an invalid frame), kUsage (a
+/// name that no triangle has), kLimit (more triangles than the job allows, or three times as many vertices).
+[[nodiscard]] Result<TriangleMesh> flatten(ImportScene scene, const ImportJob& job);
+
+/// Like flatten(), but fills TriangleMesh::level_meshes and level_bodies. Rotation, uniform scale and translation
+/// become a body's pose. Shear, unequal scale and mirrors are applied to the mesh, which then counts as a separate
+/// mesh.
+/// Errors: also kLimit (more meshes or bodies than a world may have).
+[[nodiscard]] Result<TriangleMesh> flattenLevel(ImportScene scene, const ImportJob& job);
+
 /// A warning, without the file name.
 inline constexpr const char* kAnimatedVisibility =
     "its animations show and hide objects; baked with the visibility of its nodes";

@@ -42,7 +42,7 @@ struct Level {
 class LevelMeshes {
   public:
     /// Adds a mesh. \param mesh  after finishMesh(); its content_hash is computed here.
-    /// \param materials  meshes that differ only in materials stay separate.
+    /// \param materials  true: meshes that differ only in materials stay separate.
     /// \return its index.
     std::uint32_t add(TriangleMesh mesh, bool materials);
     [[nodiscard]] std::vector<TriangleMesh> take() { return std::move(meshes_); }

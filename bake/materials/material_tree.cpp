@@ -548,7 +548,7 @@ Result<MaterialSource> materialSource(const TriangleMesh& mesh, bool single) {
         return fail(ErrorCode::kLimit, mesh.name + ": it has " + std::to_string(source.list.size()) +
                                            " materials, but a collider stores at most " +
                                            std::to_string(kMaterialsMax) +
-                                           "; join some, or bake with --materials none");
+                                           "; merge some, or bake with --materials none");
     }
     for (std::size_t i = 0; i < shares.size(); ++i) {
         source.list[i].area_share = static_cast<float>(std::min(shares[i], 1.0));

@@ -6,8 +6,8 @@
 
 namespace relief {
 
-/// Percent of points near the surface on the wrong side. About half of the points next to a missing surface are wrong,
-/// so at 1 %, 2 % of the surface may be missing. A bake warns above kGoodPercent.
+/// Percentage of misclassified points near the surface. About half of the points next to a missing surface are
+/// misclassified, so at 1 %, up to 2 % of the surface may be missing. A bake warns above kGoodPercent.
 inline constexpr double kGoodPercent = 1.0;
 inline constexpr double kFairPercent = 5.0;
 
@@ -16,18 +16,18 @@ inline constexpr double kGoodInsidePercent = 3.0;
 inline constexpr double kFairInsidePercent = 10.0;
 inline constexpr std::uint64_t kInsidePointsLeast = 300;
 
-/// Percent of points near a part on the wrong side; about half for a missing part.
+/// Percentage of misclassified points near a part; about 50 for a missing part.
 inline constexpr double kPartCoarse = 10.0;
 inline constexpr double kPartLost = 25.0;
 
-/// Minimum longest side of a lost part that counts: a fraction of the asset's diagonal, twice the distance of the
-/// points that grade the asset. Also limited in metres, because a person notices a brick on a landscape. Smaller parts
-/// and coarse parts count if together they make more than kGoodPercent of the points near the surface wrong.
+/// Minimum longest side of a lost part that counts, as a fraction of the asset's diagonal: twice the distance of the
+/// points that grade the asset. At most kNoticeableMetres, because a person notices a brick on a landscape. Smaller
+/// parts and coarse parts count if together they misclassify more than kGoodPercent of the points near the surface.
 inline constexpr double kNoticeableShare = 0.01;
 inline constexpr double kNoticeableMetres = 0.1;
-/// Distance, in units of that length, at which a lost part that exists with a different surface is tested again; it
-/// counts if it is lost there, too. Half the distance of the points that grade the asset. Shells of the default
-/// thickness exceed small sheets by less.
+/// A lost part may exist with a slightly different surface. It is therefore tested again at this distance, a fraction
+/// of the minimum length above, and counts only if it is lost there, too. The distance is half that of the points that
+/// grade the asset. Shells of the default thickness exceed small sheets by less.
 inline constexpr double kNoticeableExcess = 0.25;
 
 }  // namespace relief

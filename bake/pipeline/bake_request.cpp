@@ -229,10 +229,9 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
         std::string(kMapFormatWords.back()) + "; repeatable";
     visit("map", request.map, {.help = kMapHelp, .value = "SPEC", .recorded = true});
     visit("decode", request.decode,
-          {.help = "Default of the key decode in --map; the paper uses projected", .fallback = "plane"});
-    visit(
-        "depth", request.depth,
-        {.help = "Default of the key depth in --map front-back; the paper uses half", .fallback = "unorm16"});
+          {.help = "Default for decode in --map; the paper uses projected", .fallback = "plane"});
+    visit("depth", request.depth,
+          {.help = "Default for depth in --map front-back; the paper uses half", .fallback = "unorm16"});
     visit("paper", request.paper,
           {.help = "Bake the maps of the original paper: front-back along -x, -y and -z, and a cube"});
     visit("resolution", request.resolution,
@@ -247,24 +246,26 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
            .recorded = true});
     visit(
         "texel", request.texel,
-        {.help = "Bake patches of this texel length, in object units or as 1cm, in as many bytes as needed",
+        {.help = "Texel length of the patches, in object units or as 1cm; without --budget, their size is "
+                 "not limited",
          .unit = "object units",
          .range = {0.0, 1e15, false},
          .value = "LENGTH",
          .must = "a length above 0 in object units (with --world, units of the level); if these are metres, "
                  "mm, cm or m may follow the number",
          .recorded = true});
-    visit("max_error", request.max_error,
-          {.help = "Bake the smallest patches that put at most this percentage of points near the surface on "
-                   "its wrong side",
-           .unit = "%",
-           .range = {0.0}});
+    visit(
+        "max_error", request.max_error,
+        {.help =
+             "Bake the smallest patches that misclassify at most this percentage of points near the surface",
+         .unit = "%",
+         .range = {0.0}});
     visit("quality", request.quality,
           {.help = "Effort spent on fitting maps to the surface; best is the slowest",
            .fallback = "normal",
            .recorded = true});
     visit("prefer", request.prefer,
-          {.help = "Treat doubtful space as inside or outside, or minimise errors",
+          {.help = "Classify doubtful space as inside or outside; neither minimises errors",
            .fallback = "neither",
            .recorded = true});
     visit("threads", request.threads,
@@ -276,7 +277,7 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
           {.help = "Close the mesh's parts into solids (see --as), or bake the open surface as it is",
            .recorded = true});
     visit("no_check", request.no_check,
-          {.help = "Skip the check of the result, which takes a few percent of the time"});
+          {.help = "Skip the check of the result, which takes a few percent of the bake time"});
     fields(visit, request.import);
     fields(visit, request.import_limits);
     fields(visit, request.repair);

@@ -52,7 +52,8 @@ Result<void> checkThickness(const BakeRequest& request, const TriangleMesh& mesh
     }
     return fail(ErrorCode::kUsage, "--thickness is " + shortest(static_cast<float>(thickness->length)) +
                                        " but " + mesh.name + " is " + shortest(longest) +
-                                       " long; give at most " + shortest(float(kThicknessMax)) + " of that");
+                                       " long; give at most " + shortest(float(kThicknessMax)) +
+                                       " times that");
 }
 
 }  // namespace

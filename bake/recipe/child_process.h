@@ -21,7 +21,7 @@ struct ChildEnd {
     std::size_t tag = 0;  ///< as passed to start()
     pid_t pid = 0;
     int exit_code = 0;  ///< valid if signal is 0
-    int signal = 0;     ///< that ended the child; 0: it exited
+    int signal = 0;     ///< signal that ended the child; 0: it exited
     double ms = 0.0;    ///< duration
     std::string out;    ///< standard output: the last kChildOutputMax bytes
     std::string err;    ///< standard error: the last kChildErrorMax bytes
@@ -59,10 +59,10 @@ class ChildProcesses {
     /// Ends all children and their descendants: by SIGTERM, and after a second by SIGKILL. \return how they ended.
     std::vector<ChildEnd> endAll();
 
-    /// To be called at the start of main(): a process started by startSelf() ends (SIGTERM) when its parent does.
+    /// Call it at the start of main(): a process started by startSelf() then ends (SIGTERM) when its parent does.
     static void endWithRecipe();
 
-    /// Ends this process by the signal that requested termination. To be called after cleanup.
+    /// Ends this process with the signal that requested termination. Call it after cleanup.
     [[noreturn]] static void endBySignal(int signal);
 
   private:

@@ -12,14 +12,14 @@ namespace relief {
 
 struct OpenShell {
     TriangleMesh mesh;      ///< after finishMesh
-    bool is_solid = false;  ///< it may be a solid with holes; at least one shell of a wall must be
+    bool is_solid = false;  ///< may be a solid with holes; true for at least one shell of a wall
 };
 
 /// Two shells, joined by a ring between each pair of facing rims.
 struct ShellWall {
     std::size_t outer = 0;  ///< index of the shell
     std::size_t inner = 0;
-    bool alike = false;  ///< both were wound alike: to the outside, or to the space within
+    bool alike = false;  ///< both have the same winding: towards the outside, or towards the enclosed space
     TriangleMesh mesh;   ///< before finishMesh; may still have small holes
 };
 

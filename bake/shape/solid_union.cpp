@@ -50,7 +50,7 @@ Result<PreparedMesh> SolidUnion::finish(double shell_thickness) {
     mesh = RELIEF_TRY(finishMesh(std::move(mesh)));
     if (mesh.triangles.size() != bodies.size()) {
         return fail(ErrorCode::kFailure,
-                    mesh.name + ": a shell has triangles without area; give another --thickness");
+                    mesh.name + ": a shell has triangles without area; change --thickness");
     }
     return PreparedMesh::unionOf(std::move(mesh), std::move(bodies));
 }

@@ -52,7 +52,8 @@ Result<ErrorCurves> parseErrorCurves(std::string_view text) {
     const auto curves = member("curves");
     if (format == json.end() || *format != kFormat || version == json.end() || *version != kVersion ||
         curves == json.end() || !curves->is_object()) {
-        return fail(ErrorCode::kInvalidInput, "not a file of error curves, or one of another version");
+        return fail(ErrorCode::kInvalidInput,
+                    "it is not a file of error curves, or has an unsupported version");
     }
     ErrorCurves all;
     for (const auto& [key, values] : curves->items()) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pending deaths: a calendar queue (Brown 1988) with fixed days. A step pays only for its own deaths, and for one day's
-// share of the others. A heap costs log n cache misses per death; a hierarchical timing wheel stalls whenever a coarse
-// slot is redistributed.
+// Pending deaths: a calendar queue (Brown 1988) with fixed days. A step processes only its own deaths, and the pending
+// deaths that are filed under the same days. A heap costs log n cache misses per death; a hierarchical timing wheel
+// stalls whenever a coarse slot is redistributed.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace relief {
 
-/// The calendar has kDays days of 1/64 s, used cyclically: a death beyond the last day waits on its day for its own
-/// turn.
+/// The calendar has kDays days of 1/64 s, used cyclically: a death beyond the last day is filed under its day modulo
+/// kDays and waits for a later cycle.
 class DeathQueue {
   public:
     DeathQueue() : days_(kDays) {}

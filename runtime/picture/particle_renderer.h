@@ -23,7 +23,7 @@
 namespace relief {
 
 enum class Sprite : std::uint8_t {
-    kPoint,  ///< one vertex, limited to the point size of the GL; on the fragment path, some drivers drop it when its
+    kPoint,  ///< one vertex, up to GL's maximum point size; on the fragment path, some drivers drop it when its
              ///< centre leaves the picture
     kQuad,  ///< six vertices, of any size; looks can stretch it
 };
@@ -47,7 +47,7 @@ struct ParticleStyle {
                                         ///< values above. Further types use the last look
     Sprite sprite = Sprite::kPoint;
     Blend blend = Blend::kAlpha;
-    float soft = 0.0F;  ///< object units, ≥ 0: distance over which a sprite fades in front of surfaces
+    float soft = 0.0F;  ///< distance over which a sprite fades in front of surfaces, object units, ≥ 0
     const SpriteAtlas* atlas = nullptr;  ///< for the cells of looks; null: all particles are round dots
 };
 
@@ -58,8 +58,8 @@ struct ParticleOrder {
     std::uint32_t count = 0;  ///< ranks
 };
 
-/// Returns the path of ParticleRenderer for a path of steps: kFragment, or kAuto otherwise, because software renderers
-/// paint tiles ten times slower than they draw points.
+/// Returns the path of ParticleRenderer that suits a path of simulation steps: kFragment for kFragment, otherwise
+/// kAuto. kAuto avoids tiles on software renderers, which paint them ten times slower than points.
 [[nodiscard]] inline StepPath picturePath(StepPath steps) {
     return steps == StepPath::kFragment ? steps : StepPath::kAuto;
 }
