@@ -143,9 +143,8 @@ Result<void> checkWritable(const Collider& collider, const ContainerWriteOptions
     }
     const ContainerLimits limits;
     if (collider.maps.size() > limits.maps) {
-        return fail(ErrorCode::kLimit, std::to_string(collider.maps.size()) +
-                                           " maps are more than the limit of " + std::to_string(limits.maps) +
-                                           "; use fewer maps");
+        return fail(ErrorCode::kLimit, std::to_string(collider.maps.size()) + " maps exceed the limit of " +
+                                           std::to_string(limits.maps) + "; use fewer maps");
     }
     RELIEF_TRY(validate(collider));
     if (collider.texelBytes() > limits.texel_bytes) {

@@ -50,7 +50,7 @@ struct ContainerInfo {
 [[nodiscard]] Result<ContainerInfo> readContainerInfo(std::span<const std::byte> bytes,
                                                       const ContainerLimits& limits = {});
 
-// Detects the most common mistake: a mesh given instead of a baked collider.
+// Detects the most common user error: a mesh given instead of a baked collider.
 
 /// Fails with kInvalidInput if the file name has a mesh extension. The message starts with the path: "it is a mesh;
 /// bake it first: relief bake …".

@@ -254,7 +254,8 @@ Result<std::vector<std::uint64_t>> parseBudgets(const std::vector<std::string>& 
     for (const std::string& text : texts) {
         const std::optional<std::uint64_t> bytes = parseByteCount(text);
         if (!bytes) {
-            return fail(ErrorCode::kUsage, "--budgets has '" + cleanUtf8(text) + "'; write 0.25MB,1MB,4MB");
+            return fail(ErrorCode::kUsage,
+                        "--budgets contains '" + cleanUtf8(text) + "'; write sizes such as 0.25MB,1MB,4MB");
         }
         budgets.push_back(*bytes);
     }

@@ -2,11 +2,11 @@
 // Sparse distance volumes to compare with: bricks of 8-bit nodes near the surface, in a sparse grid as Unreal, PhysX
 // and newton bake them, or in an octree (Frisken 2000). They are as accurate as possible for their bytes.
 //
-// - Cubes cover the tight box of the mesh. A cube with surface has a brick: `cells`³ voxels with (cells + 1)³ nodes of
-//   its own, so that one filtered fetch reads it. A cube without surface has a sign, that of the truth at its centre.
-//   A brick whose nodes have equal signs is stored as that sign.
-// - Nodes store exact distances or are fitted: by least squares of the exact distances at random points of the voxels
-//   that the surface crosses, with the largest weights close to the surface.
+// - Cubes cover the tight box of the mesh. A cube that contains surface has a brick of `cells`³ voxels. Bricks share no
+//   nodes: each has (cells + 1)³, so that one filtered fetch reads it. Any other cube stores only the sign of the exact
+//   distance at its centre. A brick whose nodes have equal signs is stored as that sign.
+// - Nodes store exact distances, or are fitted to the exact distances at random points of the voxels that the surface
+//   crosses: by least squares, with the largest weights close to the surface.
 // - 8-bit codes for distances up to `band` voxels; larger distances are clamped.
 // - In an octree, the cubes with the largest displacement of the surface are split until the bytes are used up.
 // - Bytes are those on the GPU: the nodes and the index. The index has a texel per cube in a dense or two-level grid,

@@ -160,10 +160,11 @@ class GroundBaker {
         const glm::dvec3 size(heights().spacing * map_.columns(), 0.0, heights().spacing * map_.rows());
         const glm::dvec3 far = glm::max(glm::abs(heights().offset.at), glm::abs(heights().offset.at + size));
         if (!(std::max({far.x, far.y, far.z}) < kFloatSteps * heights().spacing)) {
-            return fail(ErrorCode::kLimit, map_.name() +
-                                               ": it lies so far from the origin that floats do not resolve "
-                                               "its squares there; give a smaller "
-                                               "--heights offset, or a larger spacing");
+            return fail(
+                ErrorCode::kLimit,
+                map_.name() +
+                    ": it is too far from the origin for floats to resolve its squares; give a smaller "
+                    "--heights offset, or a larger spacing");
         }
         return {};
     }

@@ -129,10 +129,9 @@ class GroundTree {
         const double root = cellSize(0);
         const double single = cellSize(last_level_);
         if (!(std::max(std::abs(deepest_), std::abs(high_)) < kFloatSteps * place_.spacing)) {
-            return fail(
-                ErrorCode::kLimit,
-                "its heights are so far from 0 that floats do not resolve its squares there; shift them by "
-                "--heights low and high, or give a larger spacing");
+            return fail(ErrorCode::kLimit,
+                        "its heights are too far from 0 for floats to resolve its squares; shift them by "
+                        "--heights low and high, or give a larger spacing");
         }
         if (!(std::max(std::abs(deepest_), std::abs(high_)) < kCellsMax * root &&
               (high_ - deepest_) / single < kCellsMax)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes images of floats as OpenEXR files; bake/import reads heights. The only users of OpenEXR.
+// Writes images of floats as OpenEXR files; bake/import reads heights. No other code uses OpenEXR.
 #pragma once
 
 #include <cstddef>

@@ -41,7 +41,8 @@ struct GltfNode {
     Shown shown = Shown::kYes;  ///< from KHR_node_visibility and MSFT_lod
 };
 
-/// Returns the surface response of a node: its physics material in KHR_physics_rigid_bodies. Values above 1 count as 1.
+/// Returns the surface response of a node: its physics material in KHR_physics_rigid_bodies. Values above 1 are clamped
+/// to 1.
 /// \param warnings  receives at most one line about combine modes.
 /// Errors: kInvalidInput.
 [[nodiscard]] Result<std::optional<NodeResponse>> gltfResponse(const GltfValue& document,
@@ -52,8 +53,8 @@ struct GltfNode {
 /// kUnsupported.
 [[nodiscard]] Result<void> checkGltf(const GltfValue& document, std::vector<std::string>& warnings);
 
-/// Reads all nodes, in file order. Errors: kInvalidInput, also if the nodes do not form trees, or if levels of detail
-/// that are not kept lead back to their node.
+/// Reads all nodes, in file order. Errors: kInvalidInput, also if the nodes do not form trees, or if skipped levels of
+/// detail lead back to their node.
 [[nodiscard]] Result<std::vector<GltfNode>> readGltfNodes(const GltfValue& document, HiddenAs hidden);
 
 /// Returns the root nodes of the default scene, or of the first one. Errors: kInvalidInput.

@@ -28,7 +28,7 @@ class ImportProcess {
   public:
     /// Prepares a worker.
     /// \param noun     the kind of file, for messages: "mesh".
-    /// \param smaller  the cure for a file that is too large: "simplify the mesh".
+    /// \param smaller  advice for a file that is too large: "simplify the mesh".
     ImportProcess(const char* noun, const char* smaller, const ImportLimits& limits)
         : noun_(noun), smaller_(smaller), limits_(limits), left_(std::chrono::seconds(limits.seconds)) {}
 
@@ -44,7 +44,7 @@ class ImportProcess {
     /// Waits for poll() events. Errors: kLimit (the total time of all waits reached the limit).
     [[nodiscard]] Result<void> await(int pipe, short events);
     /// Waits for the worker to end. \param begun  the worker has written its first byte. Errors: the worker ended
-    /// without a complete answer.
+    /// without a complete result.
     [[nodiscard]] Result<void> finish(bool begun);
 
     [[nodiscard]] const ImportLimits& limits() const { return limits_; }

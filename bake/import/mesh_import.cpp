@@ -87,8 +87,8 @@ Result<TriangleMesh> readAsAsked(const MeshFormat& format, const ImportJob& job,
     if (job.kind == ImportKind::kAnimated || job.kind == ImportKind::kClips) {
         return format.reader == MeshReader::kGltf
                    ? readAnimatedGltf(job, files)
-                   : fail(ErrorCode::kUnsupported,
-                          "animations of a ." + job.extension + " are not supported; convert it to glTF");
+                   : fail(ErrorCode::kUnsupported, "animations in ." + job.extension +
+                                                       " files are not supported; convert the file to glTF");
     }
     ImportScene scene = RELIEF_TRY(readScene(format, job, files));
     return job.kind == ImportKind::kLevel ? flattenLevel(std::move(scene), job)

@@ -227,7 +227,7 @@ class ColladaReader {
         if (!url.starts_with('#')) {
             return fail(ErrorCode::kUnsupported, placeOf(node, instance) + " instances '" +
                                                      cleanUtf8(url, kUrlMax) +
-                                                     "', which is in another file; join the files");
+                                                     "', which is in another file; merge the files");
         }
         const auto found = objects_.find(url.substr(1));
         const pugi::xml_node object = found == objects_.end() ? pugi::xml_node() : found->second;

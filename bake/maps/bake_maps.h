@@ -44,7 +44,7 @@ struct BakeReport {
     double encode_ms = 0.0;  ///< normals and texels
     double fit_ms = 0.0;     ///< rays and planes of maps whose decode is plane, and patches
     std::vector<MapReport> maps;
-    std::vector<std::string> warnings;  ///< probable mistakes in the options; one line each
+    std::vector<std::string> warnings;  ///< likely errors in the options; one line each
 };
 
 struct Baked {

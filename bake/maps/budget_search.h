@@ -18,7 +18,7 @@ namespace relief {
 inline constexpr std::uint64_t kBudgetMin = 4096;  ///< bytes
 
 /// Bakes a tree of patches.
-/// \param budget_bytes  at least kBudgetMin; 0: none, limited by options.texel
+/// \param budget_bytes  at least kBudgetMin; 0: no limit, only options.texel applies
 /// \param options  its maps and budget are ignored
 /// Errors: kUsage (below kBudgetMin), those of bake.
 [[nodiscard]] Result<Baked> bakePatchesWithin(const MeshQuery& query, std::uint64_t budget_bytes,
@@ -51,8 +51,8 @@ struct BudgetSearchResult {
 };
 
 /// Finds the smallest budget that meets the error limit. Budgets grow by factors of four; four bisections of the
-/// logarithm then leave the budget at most 1.1 times the minimum, as far as more bytes mean fewer misclassified points.
-/// Truth is sampled once. The result does not depend on the number of threads.
+/// logarithm then bring the budget to at most 1.1 times the minimum, provided that more bytes mean fewer misclassified
+/// points. Truth is sampled once. The result does not depend on the number of threads.
 /// Errors: kDifference (limit not reached; the message names the best result), those of bakePatchesWithin.
 /// \param query  of the mesh to bake, with holes closed or open.
 /// \param truth  of the mesh to measure against, with its holes open, as in `relief check`.

@@ -118,7 +118,7 @@ Result<BakeCacheEntries> parseBakeCache(std::string_view text) {
     } catch (const Json::exception&) {
         // The kind of error does not matter: the file is rewritten.
     }
-    return fail(ErrorCode::kInvalidInput, "not a cache file, or one of another version");
+    return fail(ErrorCode::kInvalidInput, "it is not a cache file, or has an unsupported version");
 }
 
 std::string bakeCacheText(const BakeCacheEntries& entries) {

@@ -107,7 +107,7 @@ Result<TriangleMesh> wrapMesh(const TriangleMesh& mesh, double alpha) {
         std::string line = e.what();
         std::replace(line.begin(), line.end(), '\n', ' ');
         return fail(ErrorCode::kFailure,
-                    mesh.name + ": wrapping it failed: " + line + "; repair the mesh by hand");
+                    mesh.name + ": wrapping failed: " + line + "; repair the mesh by hand");
     }
 }
 

@@ -36,7 +36,7 @@ struct RecipeCounts {
 /// The fields of an asset depend on its state.
 struct AssetReport {
     const AssetResult& asset = kNone<AssetResult>;
-    bool event = false;  ///< part of an event, which omits the key of an asset that was not made
+    bool event = false;  ///< part of an event, which omits the key of an asset that was not baked
 
     [[nodiscard]] static std::vector<AssetReport> kinds();
 };
@@ -116,7 +116,7 @@ struct OwnWarnings {
 };
 /// Groups equal warnings into one line each, in the order of their first occurrence.
 /// \param owners  plural noun for the owners, such as "assets"
-/// \param join_numbers  warnings count as equal even if their numbers differ
+/// \param join_numbers  warnings are treated as equal even if their numbers differ
 [[nodiscard]] std::vector<std::string> warningLines(std::span<const OwnWarnings> all, std::string_view owners,
                                                     bool join_numbers);
 /// Groups the warnings of assets: "2 assets (a.relief, b.relief): it is skinned". A missing unit is grouped too, with

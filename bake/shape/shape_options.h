@@ -47,7 +47,7 @@ struct ShapeOptions {
     std::vector<NamedShape> named = {};
     /// `thickness` is a default that each sheet adapts to its size (partThickness).
     bool thickness_by_part = false;
-    /// That default suits a texel requested for all parts; no sheet gets more.
+    /// The default comes from a texel length requested for all parts; no sheet becomes thicker.
     bool thickness_by_texel = false;
     VoidsAs voids = VoidsAs::kFull;
 

@@ -24,7 +24,7 @@ inline constexpr double kThicknessMax = 0.5;
 [[nodiscard]] double rightThickness(double thickness, double part_size);
 
 /// Checks the thickness. Errors: kUsage, if shells would be thinner than 1e-4 of the smallest sheet's longest side, or
-/// thinner than floats resolve.
+/// too thin for floats to resolve.
 [[nodiscard]] Result<void> checkShellThickness(double thickness, double smallest_sheet,
                                                const TriangleMesh& mesh);
 

@@ -43,7 +43,7 @@ std::string insideVerdictText(const InsideAccuracy& accuracy) {
     return grade == "good" || grade == "unknown"
                ? ""
                : "at " + percentText(accuracy.far_face_percent) +
-                     " of the points inside the nearest face does not decide: " + grade;
+                     " of the points inside, the nearest face does not decide: " + grade;
 }
 
 std::string accuracyText(const ColliderAccuracy& accuracy, const TruthSamples& samples,

@@ -23,7 +23,7 @@ namespace relief {
 /// Returns the grade of the votes inside, by InsideAccuracy::far_face_percent; "unknown" with fewer than
 /// kInsidePointsLeast points.
 [[nodiscard]] std::string insideGradeOf(const InsideAccuracy& accuracy);
-/// Returns a line like "at 12 % of the points inside the nearest face does not decide: poor"; "" if the grade is good
+/// Returns a line like "at 12 % of the points inside, the nearest face does not decide: poor"; "" if the grade is good
 /// or unknown.
 [[nodiscard]] std::string insideVerdictText(const InsideAccuracy& accuracy);
 
@@ -48,7 +48,7 @@ struct Advice {
     /// Percentage of misclassified points near the surface in a trial in memory; nullopt: not tried.
     std::optional<double> wrong_percent;
     std::string untried;  ///< reason for not trying it; empty if tried
-    bool helps = false;   ///< tried, with at most nine tenths of the wrong points left
+    bool helps = false;   ///< in the trial, at most 90 % of the wrong points remained
 };
 
 /// Lists the commands, best first, then those that did not help; "" without advice.
@@ -56,7 +56,7 @@ struct Advice {
 
 // --- The same data as fields.
 
-/// \param longest_side  of the mesh: lengths are also reported in percent of it.
+/// \param longest_side  of the mesh: lengths are also reported as percentages of it.
 struct FieldAccuracyReport {
     const FieldAccuracy& field = kNone<FieldAccuracy>;
     double longest_side = 1.0;

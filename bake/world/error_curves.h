@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads and writes the error curves that determine the shares of a level. They are stored beside its containers, so
-// that a run without changes plans nothing.
+// Reads and writes the error curves that determine how a level's budget is divided among its colliders. They are stored
+// beside its containers, so that a run without changes needs no planning.
 //
 //     {"format": "relief-curves", "version": 1, "curves": {"KEY": [bytes, errors, bytes, errors, …], …}}
 //

@@ -36,8 +36,8 @@ struct BodyAccuracy {
     glm::vec3 place{0.0F};  ///< world space: a typical misclassified point, or the position of the body
 };
 
-/// The parts of a mesh of the level that its collider loses, relative to their own size (measureParts()), regardless of
-/// poses.
+/// Parts of one mesh of the level that are missing from its collider, judged relative to their own size
+/// (measureParts()), regardless of poses.
 struct LostParts {
     std::string mesh;
     std::uint64_t lost = 0;

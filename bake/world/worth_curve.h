@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The error that one more byte saves in a mesh, by its bytes.
+// The error that one more byte saves, as a function of the bytes of a mesh.
 #pragma once
 
 #include <limits>

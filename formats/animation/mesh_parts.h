@@ -12,7 +12,7 @@
 
 namespace relief {
 
-/// Returns the names of nodes whose joints move vertices, in joint order, without duplicates and empty names.
+/// Returns the names of nodes whose joints move vertices, in joint order, without duplicates or empty names.
 [[nodiscard]] std::vector<std::string> groupNames(const AnimatedMesh& mesh);
 
 /// Returns for each vertex the sum of its weights, 0 … 1, for all joints whose node has this name. Child nodes are

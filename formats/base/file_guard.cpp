@@ -133,7 +133,7 @@ Result<void> FileGuard::writes(const fs::path& path, std::string_view option, co
     }
     if (isWithin(made, path)) {
         return fail(ErrorCode::kIo, "cannot write " + quotedPath(path) + " of " + std::string(option) +
-                                        ": the run makes a folder there; name a file");
+                                        ": the run creates a folder there; name a file");
     }
     const fs::path folder = path.parent_path();
     std::error_code error;

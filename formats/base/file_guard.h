@@ -22,8 +22,8 @@ namespace relief {
 struct NumberedFiles {
     std::filesystem::path folder;
     std::string head;         ///< "frame_"
-    std::string ending;       ///< numbers start at 0
-    std::uint32_t count = 0;  ///< they are numbered from 0
+    std::string ending;       ///< ".png"
+    std::uint32_t count = 0;  ///< numbers start at 0
 
     /// Returns the path of a file; its number is padded to four digits.
     [[nodiscard]] std::filesystem::path path(std::uint32_t number) const;

@@ -23,7 +23,7 @@ namespace relief {
                                                           std::string_view owner = "scene",
                                                           const std::filesystem::path& root = {});
 
-/// Checks that `root` is a folder. Errors: kIo, "--root 'x' is no folder; …".
+/// Checks that `root` is a folder. Errors: kIo, "--root 'x' is not a folder; …".
 [[nodiscard]] Result<void> checkRoot(const std::filesystem::path& root);
 
 }  // namespace relief

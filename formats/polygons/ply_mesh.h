@@ -12,7 +12,7 @@
 namespace relief {
 
 /// Reads text, and binary of either byte order: the element `vertex`, and the lists `vertex_indices` (or
-/// `vertex_index`) of the elements `face` and `tristrips`. In a strip, each three consecutive indices are a triangle
+/// `vertex_index`) of the elements `face` and `tristrips`. In a strip, every three consecutive indices form a triangle,
 /// with alternating winding; -1 starts a new strip. Other elements are skipped, with a warning if they look like faces.
 /// Vertex colours are red, green and blue as bytes, 16-bit integers, or floats in 0…1.
 /// \return at least one polygon.

@@ -8,8 +8,8 @@
 //     }
 //
 // README.md in this folder describes the format. It differs from a tileset.json of OGC 3D Tiles: a collider is listed
-// once however often it is placed, and poses preserve shapes. Distances of a body are those of its collider times the
-// scale.
+// once, regardless of how often it is placed, and poses preserve shapes. Distances of a body are those of its collider,
+// multiplied by the scale.
 #pragma once
 
 #include <array>
@@ -60,7 +60,7 @@ struct WorldCollider : WorldFile {
 
 void fields(FieldVisitor& visit, WorldCollider& collider);
 
-/// Selects a collider's own container, or its coarse one if it has one.
+/// Selects a collider's own container, or its coarse container if there is one.
 enum class WorldDetail : std::uint8_t { kFine, kCoarse };
 [[nodiscard]] const WorldFile& fileOf(const WorldCollider& collider, WorldDetail detail);
 

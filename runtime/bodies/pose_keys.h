@@ -10,12 +10,12 @@
 namespace relief {
 
 struct PoseKey {
-    double time = 0.0;  ///< equal for all keys
+    double time = 0.0;  ///< seconds
     Pose pose;          ///< all keys have the same scale
     friend bool operator==(const PoseKey&, const PoseKey&) = default;
 };
 
-/// The motion of a rigid body: a point q of it moves at velocity + turn × (q − position of the pose).
+/// The motion of a rigid body: a point q of the body moves at velocity + turn × (q − position of the pose).
 struct Motion {
     glm::vec3 velocity{0.0F};  ///< of the pose's position, world units/s
     glm::vec3 turn{0.0F};      ///< angular velocity, right-handed, rad/s

@@ -46,7 +46,7 @@ Result<WorldTextures> WorldTextures::create(const Collider& collider) {
 
 Result<WorldTextures> WorldTextures::create(std::span<const ColliderBody> bodies, std::size_t room_texels) {
     if (bodies.size() > kBodiesMax) {
-        return fail(ErrorCode::kLimit, std::to_string(bodies.size()) + " bodies are more than " +
+        return fail(ErrorCode::kLimit, std::to_string(bodies.size()) + " bodies exceed the limit of " +
                                            std::to_string(kBodiesMax) + "; merge some of them in one bake");
     }
     const auto share = [](float value) { return value >= 0.0F && value <= 1.0F; };

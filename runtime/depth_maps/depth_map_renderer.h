@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Renders front-back plane maps with 16-bit depths on the GPU from a moving mesh. Texels follow formats/README.md. They
-// equal those of `relief bake`, which casts one ray through the centre of each texel, up to one unit in the last place
-// of the depth.
+// match those of `relief bake`, which casts one ray through the centre of each texel, to within one unit in the last
+// place of the depth.
 //
 // The rasteriser only determines the triangle that a texel's ray hits. The plane is computed from the triangle itself
 // because rasterisers snap vertices to a grid of 1/256 pixel. Texels with an edge near their centre may get the
@@ -36,8 +36,8 @@ class DepthMapRenderer {
     [[nodiscard]] std::uint32_t width() const { return width_; }
     [[nodiscard]] std::uint32_t height() const { return height_; }
     /// Returns a texture with the motion of the surface between the mesh's previous and current positions, in object
-    /// units. For surface e (0: front, 1: back), x is component e of texture 0, y is component 2 + e of it, and z is
-    /// component e of texture 1. Undefined if the surface is empty.
+    /// units. For surface e (0: front, 1: back), x is component e of texture 0, y is component 2 + e of texture 0, and
+    /// z is component e of texture 1. Undefined if the surface is empty.
     /// \param i  0 or 1.
     [[nodiscard]] GLuint motion(int i) const { return motion_[i].name(); }
     [[nodiscard]] GLuint texels() const { return texels_.name(); }  ///< RGBA16UI, in container layout

@@ -90,8 +90,8 @@ class Emitter {
 
     /// Generates the births of the next `dt` seconds in order of time; at equal times, births by rate precede a burst.
     /// After time t, with s = min(t − start, duration), a total of burst (1 + ⌊s / burst_every⌋) + ⌊rate · s⌋ births
-    /// are due, independent of the step lengths; a burst at the end of the duration is omitted. The n-th birth is also
-    /// independent of them, except for its age.
+    /// are due, independent of the step lengths; a burst at the end of the duration is omitted. The n-th birth does not
+    /// depend on the step lengths either, except for its age.
     /// \param room    maximum number of births to generate: the free capacity of the particle system.
     /// \param births  receives the births at its end.
     /// \return the number of births due but without room; they are not made up for later.
@@ -99,8 +99,8 @@ class Emitter {
     /// Returns whether births are due in the next `dt` seconds.
     [[nodiscard]] bool isDue(double dt) const;
 
-    /// Moves the surface of kSurface for the next emit(), see BirthSurface::move(). While its area is 0, due births
-    /// count as without room.
+    /// Moves the surface of kSurface for the next emit(), see BirthSurface::move(). While its area is 0, no birth has
+    /// room.
     void moveSurface(std::span<const glm::vec3> before, std::span<const glm::vec3> now, double seconds) {
         if (settings_.surface) {
             settings_.surface->move(before, now, seconds);

@@ -100,7 +100,7 @@ Result<MeshRenderer> MeshRenderer::create(std::span<const PictureMesh> meshes) {
 
 Result<void> MeshRenderer::setPositions(std::size_t mesh, std::span<const glm::vec3> positions) {
     if (mesh >= meshes_.size() || positions.size() != meshes_[mesh].shape.positions.size()) {
-        return fail(ErrorCode::kUsage, "the mesh does not exist, or has another number of vertices");
+        return fail(ErrorCode::kUsage, "the mesh does not exist, or has a different number of vertices");
     }
     if (!std::all_of(positions.begin(), positions.end(), [](const glm::vec3& p) { return isFinite(p); })) {
         return invalidInput("a position of the mesh is not finite");

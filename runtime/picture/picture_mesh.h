@@ -29,8 +29,9 @@ struct PictureMesh {
 
 inline constexpr float kCrease = 1.0F;  ///< radians
 
-/// Returns the mesh with normals. The normal of a corner is the mean of the triangles around its vertex, weighted by
-/// angle, without those at more than `crease` to its own triangle. Vertices on creases are duplicated.
+/// Returns the mesh with normals. The normal of a corner is the mean of the normals of the triangles around its vertex,
+/// weighted by angle. Triangles at an angle of more than `crease` to the corner's own triangle are excluded. Vertices
+/// on creases are duplicated.
 /// \param mesh    valid by checkMesh(); its normals are replaced.
 /// \param crease  radians.
 [[nodiscard]] PictureMesh withNormals(const PictureMesh& mesh, float crease = kCrease);

@@ -51,7 +51,7 @@ struct PlayerOptions {
     DumpFormat dump_format = DumpFormat::kPly;  ///< of both dumps
     /// File for hits as lines of JSON (events_log.h), "-" for standard output; empty: none.
     std::filesystem::path events;
-    std::optional<float> events_min_speed;  ///< world units/s; slower hits are left out; nullopt: 0
+    std::optional<float> events_min_speed;  ///< world units/s; slower hits are omitted; nullopt: 0
     GpuOptions gpu;
     StepPath path = StepPath::kAuto;
     Watchdog* watchdog = nullptr;  ///< may be null
@@ -71,12 +71,12 @@ struct PlayerReport {
     std::uint32_t in_contact = 0;  ///< live particles in contact in the last step
     double ms_per_step =
         0.0;  ///< mean wall-clock time, including births and waiting for the GPU; 0 without steps
-    /// Median over stretches of up to 16 steps, which excludes shader compilation in the first stretch if there are at
-    /// least three. 0 without steps.
+    /// Median over blocks of up to 16 steps. Shader compilation in the first block does not affect it if there are at
+    /// least three blocks. 0 without steps.
     double ms_per_step_median = 0.0;
     std::uint32_t frames_written = 0;   ///< number of pictures
     std::uint32_t dumps_written = 0;    ///< number of files in dump_frames
-    std::vector<std::string> warnings;  ///< probable mistakes in the scene; one line each
+    std::vector<std::string> warnings;  ///< likely errors in the scene; one line each
     std::uint64_t events_dropped = 0;   ///< hits lost because the list of a step was full
 };
 

@@ -186,7 +186,7 @@ Result<void> checkOverlap(const LoadedScene& loaded) {
         if (around > kOverlapMax) {
             return fail(ErrorCode::kLimit, std::to_string(around) + " bodies overlap at " + shortest(center) +
                                                "; place at most " + std::to_string(kOverlapMax) +
-                                               " at one place, or bake them into one collider");
+                                               " at one point, or bake them into one collider");
         }
     }
     return {};

@@ -6,7 +6,7 @@
 //     auto world = *WorldStream::open("level/world.json", {.gpu_bytes = 64 << 20});
 //     particles.setCollider(&world->textures());
 //     ...                                                  // each frame:
-//     need(world->update(points));                         // camera, emitters; waits for nothing
+//     need(world->update(points));                         // camera, emitters; never waits
 //     for (const std::string& line : world->takeWarnings()) { log(line); }
 //     need(particles.step(dt));
 //

@@ -59,9 +59,9 @@ expect_kept "and --stamp would both write 'recipe.symbolic', which is '.*recipe/
 expect_kept "'box.obj' and --events would both write" "${recipe[@]}" --events "$(echo recipe/*.relief)"
 expect_kept "and --depfile would both write" "${level[@]}" --depfile level/.relief-curves.json
 
-# A rejected run creates no folder.
-expect_error 2 'makes a folder there' "$relief" bake box.obj --world fresh/sub --budget 20kB --depfile fresh
-expect_error 2 'makes a folder there' "$relief" bake --recipe world.toml -o fresh/sub --stamp fresh
+# A refused run makes no folder.
+expect_error 2 'creates a folder there' "$relief" bake box.obj --world fresh/sub --budget 20kB --depfile fresh
+expect_error 2 'creates a folder there' "$relief" bake --recipe world.toml -o fresh/sub --stamp fresh
 expect_error 2 'does not exist' "$relief" bake box.obj --world fresh/sub --budget 20kB --depfile missing/d
 expect_error 2 "missing.obj': No such file or directory; check the path\$" "$relief" bake missing.obj --world fresh/sub
 expect_error 2 'missing.png' "$relief" bake missing.png --heights low=0,high=1 --world fresh

@@ -457,8 +457,9 @@ TEST(AnimatedImport, MutatedFilesAreReadOrRejectedInOneLine) {
 
 TEST(AnimatedImport, OnlyGltfIsRead) {
     const TemporaryFolder folder;
-    expectRejected(importAnimatedInWorker(folder.write("t.obj", tetrahedronObj()), {}),
-                   "animations of a .obj are not supported; convert it to glTF", ErrorCode::kUnsupported);
+    expectRefused(importAnimatedInWorker(folder.write("t.obj", tetrahedronObj()), {}),
+                  "animations of a .obj are not supported; convert it to glTF",
+                  ErrorCode::kUnsupported);
 }
 
 TEST(AnimatedImport, InvalidWorkerResultsAreRejected) {
