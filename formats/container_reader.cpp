@@ -274,8 +274,7 @@ bool ContainerReader::readMetadata() {
     const auto& stored = *metadata.maps();
     if (stored.size() > limits_.maps) {
         add(IssueCode::kMapLimit,
-            std::to_string(stored.size()) + " maps are more than the limit of " +
-                std::to_string(limits_.maps),
+            std::to_string(stored.size()) + " maps exceed the limit of " + std::to_string(limits_.maps),
             header.metadata_offset);
         return false;
     }

@@ -20,7 +20,7 @@ struct FieldValue {
     glm::vec3 normal{0.0F};  ///< unit length, outwards; zero if unknown
 };
 
-/// A field to measure, called from many threads. nullopt means unknown and counts as outside, because particles fly on.
+/// A field to measure, called from many threads. nullopt means unknown and is treated as outside, because particles pass through.
 using Field = std::function<std::optional<FieldValue>(const glm::vec3&)>;
 
 /// Returns the field of the vote: the side, and the normal of the deciding plane. \param collider  borrowed.
@@ -30,7 +30,7 @@ using Field = std::function<std::optional<FieldValue>(const glm::vec3&)>;
 /// \param collider  borrowed.
 [[nodiscard]] Field nearestFieldOf(const Collider& collider);
 
-/// Fractions of points on the wrong side, in percent of all points of their kind.
+/// Misclassified points, as percentages of all points of their kind.
 struct WrongShare {
     double false_inside = 0.0;   ///< points that are outside in truth
     double false_outside = 0.0;  ///< points that are inside in truth

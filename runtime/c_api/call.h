@@ -76,7 +76,7 @@ class CallErrors {
     /// Records that creating an object of this kind failed with last(); its NULL may be passed to other functions.
     void failedToMake(HandleKind kind) noexcept;
     void made(HandleKind kind) noexcept { of(kind).clear(); }
-    /// The unread error that a NULL of this kind stands for, or empty.
+    /// The unread error that a NULL of this kind represents, or empty.
     [[nodiscard]] const std::string& unreadOf(HandleKind kind) const {
         return unread_[static_cast<std::size_t>(kind) - 1];
     }
@@ -104,7 +104,7 @@ struct NumberName {
     [[nodiscard]] std::string text() const;
 };
 
-/// Validates arguments. Errors name the function, the argument and the cure.
+/// Validates arguments. Errors name the function, the argument and the fix.
 class Call {
   public:
     explicit Call(const char* function) : function_(function) {}
