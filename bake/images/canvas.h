@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws an image in memory, in pixels from its upper left corner. The only user of Cairo.
+// Draws an image in memory, in pixels from its upper left corner. No other code uses Cairo.
 #pragma once
 
 #include <cairo.h>

@@ -20,12 +20,12 @@ namespace relief {
 /// The label of a triangle that is not in the file: a cap (TriangleMesh::labels).
 inline constexpr std::uint32_t kNoLabel = 0xffffffff;
 
-/// Most triangles of a mesh, counting each instance.
+/// Maximum number of triangles in a mesh, counting each instance.
 inline constexpr std::uint64_t kTriangleMax = 100'000'000;
-/// Most names that an import may select, and most bytes per name.
+/// Maximum number of names that an import may select, and of bytes per name.
 inline constexpr std::size_t kAskedNamesMax = 255;
 inline constexpr std::size_t kAskedNameBytesMax = 256;
-/// Most distinct surfaces of a file; all further ones share one unnamed entry.
+/// Maximum number of distinct surfaces in a file; all further ones share one unnamed entry.
 inline constexpr std::size_t kSurfaceNamesMax = 65'536;
 
 /// Node and material of a surface in its file.

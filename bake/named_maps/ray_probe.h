@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Traces single rays of one end of a view by Embree: between texels, where scan_convert.h has no result.
+// Traces single rays of one end of a view with Embree: between texels, where scan_convert.h has no result.
 #pragma once
 
 #include <array>

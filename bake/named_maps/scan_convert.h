@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scan conversion in double precision: finds the triangles that the rays of all texels hit, triangle by triangle and
-// row by row. The rays of an orthographic view are parallel, and those of a cube's face start at one point. Several
-// times as fast as tracing, for both ends of the view at once, and independent of the arithmetic of a ray tracer.
+// row by row. The rays of an orthographic view are parallel, and those of a cube's face start at one point. This is
+// several times as fast as tracing, handles both ends of the view at once, and does not depend on the arithmetic of a
+// ray tracer.
 #pragma once
 
 #include <array>
@@ -22,8 +23,8 @@ namespace relief {
 ///
 /// Depths are those of the triangles' planes in double precision. A ray through the edge of two triangles hits both,
 /// exactly: it cannot slip through. If triangles meet there or coincide, the order is: triangles that face the ray,
-/// then the one that faces it most, then the lowest index. A ray that starts in the solid instead takes the surface
-/// where it leaves the solid: two solids that touch at an edge are left and entered at the same point.
+/// then the one that faces it most, then the lowest index. For a ray that starts in the solid, the surface at which it
+/// leaves the solid comes first, because it may leave one solid and enter another at an edge where they touch.
 class ScanConverter {
   public:
     /// \param scene, view  borrowed; must outlive it.

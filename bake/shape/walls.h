@@ -23,7 +23,7 @@ struct WallCandidate {
 /// \return shells as indices of candidates.
 [[nodiscard]] ShellWalls wallsAmong(const std::vector<WallCandidate>& candidates, const std::string& name);
 
-/// Whether the two shells of a wall are wound alike in the file, or one of them inconsistently.
+/// Whether the two shells of a wall have the same winding in the file, or one of them has an inconsistent winding.
 /// \param mesh    the mesh of the candidates.
 /// \param turned  per triangle of it: flipped relative to the file.
 [[nodiscard]] bool isUnclear(const ShellWall& wall, const std::vector<WallCandidate>& candidates,
