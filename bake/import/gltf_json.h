@@ -41,7 +41,7 @@ class GltfValue {
     [[nodiscard]] Result<T> get(const char* name, T otherwise) const {
         return RELIEF_TRY(get<T>(name)).value_or(std::move(otherwise));
     }
-    /// Reads a whole number. Errors: also if it is missing.
+    /// Reads a whole number. Also fails if it is missing.
     [[nodiscard]] Result<std::uint64_t> number(const char* name) const;
     /// Reads a list of exactly `count` numbers; empty if it is missing.
     [[nodiscard]] Result<std::vector<float>> numbers(const char* name, std::size_t count) const;
@@ -51,7 +51,7 @@ class GltfValue {
     [[nodiscard]] Result<std::vector<GltfValue>> objects(const char* name) const;
     /// Resolves the index in `member` to an object of the document's `list`; nullopt if the member is missing.
     [[nodiscard]] Result<std::optional<GltfValue>> named(const char* member, const char* list) const;
-    /// Resolves the index in `member`. Errors: also if it is missing.
+    /// Resolves the index in `member`. Also fails if it is missing.
     [[nodiscard]] Result<GltfValue> needed(const char* member, const char* list) const;
     /// Returns entry `index` of the document's `list`. \param member  the member that holds the index, for messages.
     [[nodiscard]] Result<GltfValue> at(std::uint64_t index, const char* list, const char* member) const;

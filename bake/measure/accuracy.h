@@ -20,7 +20,8 @@ struct FieldValue {
     glm::vec3 normal{0.0F};  ///< unit length, outwards; zero if unknown
 };
 
-/// A field to measure, called from many threads. nullopt means unknown and is treated as outside, because particles pass through.
+/// A field to measure, called from many threads. nullopt means unknown and is treated as outside, because particles
+/// pass through.
 using Field = std::function<std::optional<FieldValue>(const glm::vec3&)>;
 
 /// Returns the field of the vote: the side, and the normal of the deciding plane. \param collider  borrowed.

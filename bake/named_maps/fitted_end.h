@@ -16,13 +16,13 @@ struct FittedMapOptions {
     std::uint32_t samples =
         4;                ///< rays along each side of a texel's footprint, at the centres of equal parts
     int refinements = 3;  ///< rounds of search among neighbouring normals
-    /// Object units. Free space behind a plane counts up to this length along a ray; points farther away are rarely
-    /// looked up only in this texel.
+    /// Object units. Free space behind a plane counts only up to this length along a ray, because other texels usually
+    /// decide points that are farther away.
     double reach = 1.0;
     double good_enough =
         0.0;  ///< a plane with less mean free space behind it is not improved further, object units
     /// If true, surface points up to half a sample beyond the texel may not lie in front of its plane either. This
-    /// halves the points that are wrongly outside, and adds half as many again that are wrongly inside.
+    /// halves the number of points that are wrongly outside, and increases the number that are wrongly inside by half.
     bool cautious = false;
     double inward_shift = 0.0;  ///< PlaneFitOptions::inward_shift
 };

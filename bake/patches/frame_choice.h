@@ -15,8 +15,8 @@ struct FrameChoice {
 };
 
 /// Returns the frame that sees most of the surface from above and below together, if the cell has surface facing both
-/// ways. Sampling lines parallel to a thin wall would miss it and detect no errors. Otherwise, returns the frame that sees
-/// most from one side.
+/// ways. Sampling lines parallel to a thin wall would miss it and detect no errors. Otherwise, returns the frame that
+/// sees most from one side.
 [[nodiscard]] FrameChoice chooseFrame(std::span<const ClippedTriangle> pieces);
 
 }  // namespace relief

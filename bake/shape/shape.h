@@ -3,9 +3,9 @@
 // count as one vertex) between triangles of one kind:
 //
 //   solid             closed
-//   solid with holes  open, but hardly any ray escapes from behind its surface, or cut off below: the holes are closed
-//   sheet             visible from outside on both sides: becomes a shell (shell.h)
-//   terrain           a height field that covers its rectangle: becomes the ground below it (terrain.h)
+//   solid with holes  open, but few rays escape from behind its surface, or cut off at the bottom: holes are closed
+//   sheet             visible from outside on both sides: becomes a shell (sheet.h)
+//   terrain           a height field that covers its rectangle: becomes the ground below it
 //
 // Coincident triangles count once. The inside is the union of all parts: solids may overlap, shells may cross a solid,
 // and a sheet within a solid has no effect.

@@ -204,9 +204,8 @@ class Voxels {
 Result<Voxels> checkedVoxels(const Collider& collider, const FieldGridOptions& options) {
     if (options.voxels < kVoxelsMin || options.voxels > kVoxelsMax) {
         return fail(ErrorCode::kLimit, std::to_string(options.voxels) +
-                                           " voxels along the longest side; from " +
-                                           std::to_string(kVoxelsMin) + " to " + std::to_string(kVoxelsMax) +
-                                           " may be asked for");
+                                           " voxels along the longest side; choose " +
+                                           std::to_string(kVoxelsMin) + " to " + std::to_string(kVoxelsMax));
     }
     Voxels voxels = RELIEF_TRY(Voxels::create(collider, collider.bounds, options.voxels));
     if (!voxels.closed()) {

@@ -35,7 +35,7 @@ struct FineCollider {
 [[nodiscard]] Result<Collider> bakeCoarse(const BakeRequest& request, const FineCollider& fine,
                                           const std::function<Result<BakeResult>(const BakeRequest&)>& bake);
 
-/// Returns the roots of a coarse collider that contain the box of a tile, as a collider of their own.
+/// Returns the roots of a coarse collider that contain the box of a tile, as a separate collider.
 /// \param coarse  bakeCoarse() of the collider that the tile was cut from.
 [[nodiscard]] Collider coarseTile(const Collider& coarse, const FineCollider& tile);
 

@@ -10,8 +10,8 @@
 
 namespace relief {
 
-/// Removes on destruction the folders that it created and that are empty, as after a failed run. Not for folders that
-/// another run is about to fill.
+/// Removes on destruction the folders that it created and that are empty, as after a failed run. Do not use it for
+/// folders that another run is about to fill.
 class MadeFolders {
   public:
     MadeFolders() = default;

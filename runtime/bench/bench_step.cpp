@@ -90,8 +90,10 @@ Result<std::vector<Baseline>> baselinesFor(const Bench& bench, const BenchScene&
         const BrickAtlas atlas = RELIEF_TRY(loadBrickAtlas(file));
         const glm::vec3 apart = glm::abs(atlas.box.center() - scene.collider.bounds.center());
         if (glm::any(glm::greaterThan(apart, glm::vec3(0.05F * scene.side)))) {
-            return fail(ErrorCode::kUsage,
-                        quotedPath(file) + " has another mesh than the collider; bake both from one mesh");
+            return fail(
+                ErrorCode::kUsage,
+                quotedPath(file) +
+                    " was baked from a different mesh than the collider; bake both from the same mesh");
         }
         baselines.push_back({std::filesystem::path(file).stem().string(),
                              RELIEF_TRY(BrickStep::create(atlas, scene, bench.path))});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Validators and transformers of option values. Those of CLI11 accept 0x10, nan, and -1 as a large number, and their messages
-// name no cure. parseCommandLine() prefixes the messages with the option's name.
+// Validators and transformers of option values. Those of CLI11 accept 0x10, nan, and -1 as a large number, and their
+// messages suggest no fix. parseCommandLine() prefixes the messages with the option's name.
 #pragma once
 
 #include <cstddef>
@@ -99,15 +99,16 @@ OptionRef addParsed(CLI::App& app, const std::string& names, std::optional<T>& f
         must, help);
 }
 
-/// Default limit on unpacked texels for files smaller than a sixteenth of it, in bytes. It admits one map of 4096 x 4096
-/// texels of eight bytes.
+/// Default limit on unpacked texels for files smaller than a sixteenth of it, in bytes. It admits one map of 4096 x
+/// 4096 texels of eight bytes.
 inline constexpr std::uint64_t kToolMemory = 160'000'000;
 
 /// Sets limits.memory to kToolMemory, and adds --max-memory, which changes it. `limits` must outlive the app.
 OptionRef addMemoryOption(CLI::App& app, ContainerLimits& limits);
 
-/// Adds an option for each field of a struct or group, which must outlive the app: "max_error" becomes --max-error. Messages
-/// are those of readWord(), prefixed with the option's name (parseCommandLine). \return the options, in that order
+/// Adds an option for each field of a struct or group, which must outlive the app: "max_error" becomes --max-error.
+/// Messages are those of readWord(), prefixed with the option's name (parseCommandLine). \return the options, in that
+/// order
 std::vector<OptionRef> addFields(CLI::App& app, FieldRef target);
 
 }  // namespace relief

@@ -52,9 +52,9 @@ Result<EventList> EventList::create(std::span<const EventOptions> lists, std::ui
     EventList made;
     for (EventOptions options : lists) {
         if (options.most == 0 || options.most > kMostMax || !(options.min_speed >= 0.0F)) {
-            return fail(ErrorCode::kUsage, "a list of events needs room for 1 to " +
+            return fail(ErrorCode::kUsage, "a list of events must have room for 1 to " +
                                                std::to_string(kMostMax) +
-                                               " of them, and a minimum speed of at least 0");
+                                               " events, and a minimum speed of at least 0");
         }
         options.most = std::min(options.most, capacity);
         made.lists_.push_back(options);

@@ -46,8 +46,8 @@ class LiveCollider {
     [[nodiscard]] static Result<LiveCollider> create(std::span<const glm::vec3> positions,
                                                      std::span<const glm::uvec3> triangles, Collider frames);
 
-    /// Moves the vertices; update() renders them. Call it once between two updates, because the motion is that of one
-    /// change.
+    /// Moves the vertices; update() renders them. Call it at most once between two updates, because update() records
+    /// the motion of a single change.
     /// \param positions  object units, finite, as many as at creation.
     /// Errors: kUsage (called twice, a different count, a vertex outside a map that encloses everything), kInvalidInput
     /// (not finite). The state is then unchanged.
@@ -59,8 +59,8 @@ class LiveCollider {
     /// Treats the last change as a jump: the next update() shows no motion.
     void settle();
 
-    /// Renders maps and motion into their textures. Call it before every step of the particles: the step interprets the
-    /// motion since the previous update as that of its own duration. Costs nothing while the mesh is at rest.
+    /// Renders maps and motion into their textures. Call it before every step of the particles: the step assumes that
+    /// the motion since the previous update took as long as the step. Costs nothing while the mesh is at rest.
     /// \param body  index in `textures`, created from frames() with `live`.
     /// Errors: kUsage (a body that is not live or has other maps), kFailure.
     [[nodiscard]] Result<void> update(WorldTextures& textures, std::size_t body);
