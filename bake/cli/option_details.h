@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texts about the options of `relief` that are too long for --help. The manual pages, --manual and the README are made of them.
+// Texts about the options of `relief` that are too long for --help. The manual pages, --manual and the README are built
+// from them.
 #pragma once
 
 #include <string>

@@ -27,7 +27,7 @@ struct ColliderTile {
 /// power of two, so that it rarely changes as a level grows.
 [[nodiscard]] std::uint32_t tilesMost(std::size_t meshes, std::size_t bodies);
 
-/// Returns the bytes to plan a collider with, so that its tiles do not exceed its share: tiles duplicate some cells.
+/// Returns the bytes for which to plan a collider so that its tiles, which duplicate some cells, fit into its share.
 [[nodiscard]] std::uint64_t bytesBeforeCut(std::uint64_t share, const PatchTileOptions& options);
 
 }  // namespace relief

@@ -15,7 +15,6 @@ inline constexpr std::size_t kBakeHeapBytes = std::size_t{128} << 20;
 ///
 /// Call it once, before starting threads and allocating large blocks. Only our own executables call it: libraries must
 /// not change the heap, and this header is not installed.
-/// header is not installed.
 void prepareHeap(std::size_t bytes);
 
 }  // namespace relief

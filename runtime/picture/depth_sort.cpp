@@ -193,9 +193,8 @@ const GlTexture& DepthSorter::order() const {
 Result<DepthSorter> DepthSorter::create(std::uint32_t capacity, StepPath path) {
     RELIEF_TRY(checkContext());
     if (capacity == 0 || capacity > kCapacityMax) {
-        return fail(ErrorCode::kUsage, "a depth sorter for " + std::to_string(capacity) +
-                                           " particles is not possible; choose 1 to " +
-                                           std::to_string(kCapacityMax));
+        return fail(ErrorCode::kUsage, "a depth sorter cannot sort " + std::to_string(capacity) +
+                                           " particles; choose 1 to " + std::to_string(kCapacityMax));
     }
     const std::uint32_t rows = std::max(regionFor(capacity) / kWidth, 1U);
     RELIEF_TRY(checkTextureSize(kWidth, rows, "the ranks of " + std::to_string(capacity) + " particles",
