@@ -58,7 +58,7 @@ inline constexpr double kHoleMax = 3.4028235e38;  ///< the largest float, as wri
 
 void fields(FieldVisitor& visit, HeightsSpec& spec);
 
-/// Parses settings. Errors: kUsage, naming the key and the cure.
+/// Parses settings. Errors: kUsage, naming the key and the fix.
 [[nodiscard]] Result<HeightsSpec> parseHeightsSpec(std::string_view text);
 /// Adds the settings that the extension of a raw file implies: .hgt is big-endian int16 with -32768 as hole.
 [[nodiscard]] HeightsSpec completed(HeightsSpec spec, const std::filesystem::path& file);

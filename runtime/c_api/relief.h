@@ -5,7 +5,7 @@
  *
  * Errors. Arguments are validated. An invalid argument never crashes; the exceptions are arrays shorter than their
  * count and strings without a terminating zero. A failed call changes nothing. relief_error() returns one line that
- * names the argument and the cure; relief_error_count() counts failures. On failure, functions that create an object
+ * names the argument and the fix; relief_error_count() counts failures. On failure, functions that create an object
  * return NULL, functions of type int and int64_t return a negative number, counts are 0, and strings are "". Output
  * values are NaN.
  *
@@ -25,7 +25,7 @@
  * relief_collider_nearest() may also share a handle. Errors are stored per thread.
  *
  * Units. Lengths are in the units of the mesh, times in seconds. A vector is three consecutive floats; a matrix is
- * sixteen floats in column-major order. All numbers must be finite. Where no range is given, it is -1e15 to 1e15.
+ * sixteen floats in column-major order. All numbers must be finite. If no range is given, it is -1e15 to 1e15.
  *
  * Structures only grow at their end. Set `size` to sizeof(the structure), and members that you do not need to 0. A
  * `size` that matches no version of the structure, such as 0, is an error. */
@@ -176,7 +176,7 @@ int relief_textures_play(relief_textures* animated_textures, uint32_t body, cons
 int relief_textures_set_joints(relief_textures* animated_textures, uint32_t body, const float* matrices,
                                size_t joint_count, const float* weights, size_t weight_count);
 /* Streams a world: keeps full-detail colliders within a budget of `gpu_bytes`, 1 to 2^40; 268435456 is a good value.
- * The coarse collider replaces each one that is not loaded. A background thread reads the files. Since 1.2. */
+ * Coarse versions replace colliders that are not loaded. A background thread reads the files. Since 1.2. */
 relief_textures* relief_textures_stream_world(const char* world_path, uint64_t gpu_bytes);
 
 typedef struct relief_ball {

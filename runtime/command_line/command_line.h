@@ -15,8 +15,8 @@ class App;
 
 namespace relief {
 
-/// Adds --help and --version. Call it before options and verbs are added. Help begins with the examples, which are the lines
-/// of the footer. \param help  the help text of --help.
+/// Adds --help and --version. Call it before options and verbs are added. Help begins with the examples, which are the
+/// lines of the footer. \param help  the help text of --help.
 void setUpHelp(CLI::App& app, const std::string& help = "Print this help and exit");
 /// Adds --help and --manual to a verb. --manual prints the help with all details; the manual page is made from it.
 void setUpVerbHelp(CLI::App& verb);
@@ -31,8 +31,8 @@ struct OptionGroup {
     std::string title;
     std::vector<std::string> options;
 };
-/// Lists the options under headings, in this order; an option named twice, under the first. Call it once all options are
-/// added. Options without a heading follow under "Options".
+/// Lists the options under headings, in this order; an option named twice, under the first. Call it once all options
+/// are added. Options without a heading follow under "Options".
 void groupOptions(CLI::App& app, const std::vector<OptionGroup>& groups);
 
 struct AppDeleter {
@@ -55,7 +55,7 @@ struct GivenOption {
 /// Parses the command line. Prints the texts of --help, --manual and --version.
 /// \param arguments  arguments without the program's name
 /// \return false if such a text was printed and the program is done
-/// Errors: kUsage with a one-line message that names the option and the cure; kIo if the text cannot be printed.
+/// Errors: kUsage with a one-line message that names the option and the fix; kIo if the text cannot be printed.
 [[nodiscard]] Result<bool> parseCommandLine(CLI::App& app, std::vector<std::string> arguments);
 
 /// Returns all arguments except the program's name.

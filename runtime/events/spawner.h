@@ -41,8 +41,8 @@ struct SpawnSettings {
     /// may itself move.
     float inherit = 0.0F;
     /// Additional speed, uniform in [speed_min, speed_max] plus `kick` times the speed of the hit; world units/s, ≥ 0.
-    /// Its direction is around the normal of a hit, or around the velocity of a particle that dies of age (upwards if
-    /// it is at rest).
+    /// Its direction is around the normal of a hit, or around the velocity of a particle that dies of old age (upwards
+    /// if it is at rest).
     float speed_min = 0.0F;
     float speed_max = 0.0F;
     float kick = 0.0F;

@@ -35,7 +35,7 @@ class SceneSweep {
 
     /// Returns the sweep of a step: collision.sweep if the scene sets it.
     /// \param warnings  receives one line, once, if particles can still pass through thin colliders: their number, the
-    ///                  thinnest, and the cure.
+    ///                  thinnest, and the fix.
     [[nodiscard]] float lengthFor(float dt, const Scene& scene, std::vector<std::string>& warnings);
 
   private:
