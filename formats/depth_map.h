@@ -117,9 +117,9 @@ struct Vote {
     glm::vec3 normal{0.0F};       ///< unit length, outwards; zero for kFarOutside
 };
 
-/// Combination rule of votes, independent of their order (paper section 4.1, rule 2). One outside vote is enough for
-/// outside. The smallest positive vote wins; without one, the largest negative vote. A vote of 0 is outside: with the
-/// paper's `vote > 0`, points exactly on a surface would depend on the order.
+/// Combination rule of votes, independent of their order (paper section 4.1, rule 2). A point is outside if any vote is
+/// outside. The smallest outside vote wins; if there is none, the inside vote closest to 0. A vote of 0 is outside:
+/// with the paper's `vote > 0`, the result exactly on a surface would depend on the order.
 [[nodiscard]] constexpr bool replaces(float vote, float best) {
     return (best < 0.0F && vote > best) || (vote >= 0.0F && vote < best);
 }

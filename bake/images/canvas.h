@@ -19,7 +19,7 @@ namespace relief {
 /// sRGB, each in [0, 1].
 using Color = glm::dvec3;
 
-/// Color of text and contours.
+/// Colour of text and contours.
 inline constexpr Color kInk{0.13, 0.14, 0.16};
 
 class Canvas {
@@ -32,7 +32,7 @@ class Canvas {
     void text(double x, double y, const std::string& words);
     [[nodiscard]] double textWidth(const std::string& words) const;
     void circle(double x, double y, double radius, double line, const Color& color);
-    /// \param color  returns the color of a pixel (column, row), from the upper left.
+    /// \param color  returns the colour of a pixel (column, row), from the upper left.
     /// \param zoom  pixels per image pixel, with sharp edges
     void image(double x, double y, std::uint32_t width, std::uint32_t height, double zoom,
                const std::function<Color(std::uint32_t, std::uint32_t)>& color);

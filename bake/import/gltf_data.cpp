@@ -212,7 +212,7 @@ Result<GltfChunks> gltfChunks(std::span<const std::byte> bytes) {
     }
     const auto word = [bytes](std::size_t at) { return load<std::uint32_t>(bytes.data() + at); };
     if (word(4) != 2) {
-        return fail(ErrorCode::kUnsupported, "binary glTF of version " + std::to_string(word(4)) +
+        return fail(ErrorCode::kUnsupported, "binary glTF version " + std::to_string(word(4)) +
                                                  " is not supported; save it as glTF 2.0");
     }
     const std::size_t length = word(8);

@@ -39,8 +39,8 @@ Result<void> checkVersion(const GltfValue& document) {
             return asset->wrong("has the invalid version '" + cleanUtf8(text, 20) + "'; save it as glTF 2.0");
         }
         if (*major != 2 || (*minor > 0 && !any_minor)) {
-            return fail(ErrorCode::kUnsupported, "glTF of version '" + cleanUtf8(text, 20) +
-                                                     "' is not supported; save it as glTF 2.0");
+            return fail(ErrorCode::kUnsupported,
+                        "glTF version '" + cleanUtf8(text, 20) + "' is not supported; save it as glTF 2.0");
         }
     }
     return {};

@@ -34,7 +34,7 @@ class PngRows : public SampleRows {
         if ((colour & PNG_COLOR_MASK_PALETTE) != 0 || bits < 8) {
             const char* const kind = bits < 8 ? "an image of fewer than 8 bits" : "an image with a palette";
             return fail(ErrorCode::kUnsupported,
-                        std::string("it is ") + kind + "; save it as grey of 16 bits, without alpha");
+                        std::string("it is ") + kind + "; save it as 16-bit grey, without alpha");
         }
         channels_ = png_get_channels(png_, info_);
         if (png_get_interlace_type(png_, info_) != PNG_INTERLACE_NONE) {
@@ -90,7 +90,7 @@ class PngRows : public SampleRows {
         return fail(ErrorCode::kUnsupported,
                     std::string("it is ") + (coloured ? "in colour" : "transparent") + " at column " +
                         std::to_string(column) + " of row " + std::to_string(row_number_) +
-                        "; save it as grey of 16 bits, without alpha");
+                        "; save it as 16-bit grey, without alpha");
     }
 
     bool readHeader() {

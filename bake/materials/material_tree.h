@@ -15,7 +15,7 @@ namespace relief {
 
 /// Maximum size of the materials, as a fraction of the maps' bytes.
 inline constexpr double kMaterialsShare = 0.06;
-/// Minimum allowance for a small collider: patches of flat surfaces use few bytes, whatever materials they have.
+/// Minimum allowance for a small collider: patches of flat surfaces use few bytes, regardless of their materials.
 inline constexpr std::size_t kMaterialsBytesMin = 4096;
 
 /// Returns the materials of an imported mesh, merged by name; none if all have the same name.

@@ -19,7 +19,7 @@ using UnitTriangle = std::array<glm::dvec3, 3>;
 
 /// A cube in object space, and the triangles that meet it.
 struct MeshCell {
-    /// A point of the unit cube near its center.
+    /// A point of the unit cube near its centre.
     static constexpr glm::dvec3 kKnown{0.5137, 0.4919, 0.5113};
 
     glm::dvec3 low{0.0};
@@ -52,12 +52,12 @@ struct ClippedPolygon {
 /// A plane in the unit cube of a cell.
 struct CellPlane {
     glm::dvec3 normal{0.0, 1.0, 0.0};  ///< unit length, outwards
-    double offset = 0.0;               ///< signed distance of the cube's center, in cells, negative inside
+    double offset = 0.0;               ///< signed distance of the cube's centre, in cells, negative inside
 
     [[nodiscard]] double at(const glm::dvec3& in_cell) const { return dot(normal, in_cell - 0.5) + offset; }
 };
 /// Returns the plane through the centroid of a surface, with its mean normal. The normal is +y if the normals cancel
-/// out; the plane passes through the center of the cell if no piece has an area.
+/// out; the plane passes through the centre of the cell if no piece has an area.
 [[nodiscard]] CellPlane meanPlane(std::span<const ClippedTriangle> pieces);
 /// Returns the mean normal of faces of either orientation; reverses the normals that point against `along`.
 [[nodiscard]] glm::dvec3 meanNormalAlong(std::span<const ClippedTriangle> pieces, const glm::dvec3& along);

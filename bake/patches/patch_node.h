@@ -38,7 +38,7 @@ inline constexpr std::size_t kFlatsAndSingles = 5;
 /// Planes of a leaf for points deep inside, in addition to its surface (depth_planes.h).
 enum class DepthPlanes : std::uint8_t {
     kNone,
-    kOne,  ///< for a leaf without a surface, in a record of its own
+    kOne,  ///< for a leaf without a surface, in a separate record
     kTwo,  ///< stored like a pair of patches; in a leaf with a single surface, that surface and another plane
 };
 
@@ -65,7 +65,7 @@ struct PatchNode {
 
     [[nodiscard]] bool empty() const { return cell.triangles.empty(); }
     /// The same as empty() after a trial, but does not access the cell, which is rarely in the CPU cache: a node with
-    /// triangles has tried both flats.
+    /// triangles has tried both shapes without a surface.
     [[nodiscard]] bool seenEmpty() const { return tried == 1; }
     [[nodiscard]] const PatchShape& shape() const { return kPatchShapes[chosen]; }
     [[nodiscard]] bool surface() const { return shape().side > 0; }

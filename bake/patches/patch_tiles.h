@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cuts a tree of patches into tiles: boxes of its roots, each a tree of its own.
+// Cuts a tree of patches into tiles: boxes of its roots, each of which is a separate tree.
 //
 //      roots     0 … 31 32 33 … 63 64 65 … 95
 //      tile 0    |--------|
@@ -34,8 +34,8 @@ struct PatchTile {
     DepthMap map{};
 };
 
-/// Adds cuts across the longest side of the tiles until each is small enough, or a limit of the options or the number of
-/// roots is reached. Omits tiles whose own roots are all outside: their points are far outside of all other tiles.
+/// Adds cuts across the longest side of the tiles until each is small enough, or a limit of the options or the number
+/// of roots is reached. Omits tiles whose own roots are all outside: their points are far outside of all other tiles.
 /// \param whole  a valid map of patches.
 /// \return the tiles, x fastest. If the tree needs no cut, a single tile without texels: use `whole`.
 [[nodiscard]] std::vector<PatchTile> cutIntoTiles(const DepthMap& whole, const PatchTileOptions& options);

@@ -17,7 +17,7 @@ struct WallCandidate {
     bool may_be_solid = false;  ///< OpenShell::is_solid
 };
 
-/// Joins the rims of candidates of similar size whose bounds contain each other's center. Tests only pairs that overlap
+/// Joins the rims of candidates of similar size whose bounds contain each other's centre. Tests only pairs that overlap
 /// along x, because a file may have thousands of open parts.
 /// \param name  of the mesh.
 /// \return shells as indices of candidates.

@@ -31,8 +31,8 @@ struct OptionGroup {
     std::string title;
     std::vector<std::string> options;
 };
-/// Lists the options under headings, in this order; an option named twice, under the first. Call it once all options
-/// are added. Options without a heading follow under "Options".
+/// Lists the options under headings, in this order. An option that is named twice appears under the first heading. Call
+/// it once all options are added. Options without a heading follow under "Options".
 void groupOptions(CLI::App& app, const std::vector<OptionGroup>& groups);
 
 struct AppDeleter {
