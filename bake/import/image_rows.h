@@ -19,9 +19,9 @@ namespace relief {
 /// Decodes an image in a worker (the program relief-import), sandboxed, with limits on memory and time. The worker
 /// decodes a few rows ahead. Rows are untrusted.
 /// \param image  sharedBytes() of the file, borrowed during the call.
-/// Errors, without the file name, also of rows: those of openImageRows; kInvalidInput (the importer crashed), kLimit
-/// (memory, processor time or wall time exceeded), kFailure (the worker could not be started, or was killed from
-/// outside).
+/// Errors here and when reading rows, without the file name: those of openImageRows; kInvalidInput (the importer
+/// crashed), kLimit (memory, processor time or wall time exceeded), kFailure (the worker could not be started, or was
+/// killed from outside).
 [[nodiscard]] Result<std::unique_ptr<SampleRows>> openImageRowsInWorker(int image,
                                                                         const ImportLimits& limits);
 

@@ -50,7 +50,7 @@ class AnimatedCollider {
     /// Checks a pose. Errors: kUsage (wrong number of joints or weights, a number that is not finite, a pose that
     /// exceeds the room).
     [[nodiscard]] Result<void> check(const MeshPose& pose) const;
-    /// Moves the vertices; update() renders them. Call it once between two updates.
+    /// Moves the vertices; update() renders them. Call it at most once between two updates.
     /// Errors: those of check(); kUsage (called twice). The state is then unchanged.
     [[nodiscard]] Result<void> setPose(const MeshPose& pose);
     /// Treats the last change as a jump: LiveCollider::settle(). Body poses are handled by WorldTextures.
