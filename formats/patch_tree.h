@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A map of patches: an octree whose leaves contain small depth maps of the surface. Each patch looks along the one of
-// 13 axes that sees its piece of surface best, so that no part of a mesh is hidden. formats/README.md specifies the
+// A map of patches: an octree whose leaves contain small depth maps of the surface. Each patch looks along one of 13
+// axes: the one that sees its piece of the surface best. No part of a mesh is hidden. formats/README.md specifies the
 // format and shaders/collider/patches.glsl implements it in GLSL; change all three together.
 //
 // Map space is measured in root cells: the volume is [0, n.x] × [0, n.y] × [0, n.z], and cells are cubes in object

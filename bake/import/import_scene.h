@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Holds a reader's result: surfaces, and the nodes that place them. scene_polygons.h adds polygons to it, and
-// scene_flattener.h merges it into one mesh.
+// Holds the result of a reader (surfaces, and the nodes that place them), and flattens it to one TriangleMesh.
 #pragma once
 
 #include <array>
