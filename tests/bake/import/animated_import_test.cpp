@@ -458,8 +458,7 @@ TEST(AnimatedImport, MutatedFilesAreReadOrRejectedInOneLine) {
 TEST(AnimatedImport, OnlyGltfIsRead) {
     const TemporaryFolder folder;
     expectRefused(importAnimatedInWorker(folder.write("t.obj", tetrahedronObj()), {}),
-                  "animations of a .obj are not supported; convert it to glTF",
-                  ErrorCode::kUnsupported);
+                  "animations of a .obj are not supported; convert it to glTF", ErrorCode::kUnsupported);
 }
 
 TEST(AnimatedImport, InvalidWorkerResultsAreRejected) {
