@@ -12,19 +12,19 @@ find bake formats runtime samples shaders tests \( -name '*.h' -o -name '*.cpp' 
 [ "${1:-}" = --check ] || exit 0
 
 sources='\.(h|hpp|cpp|c|glsl|vert|frag|comp|js|mjs|ts|py|sh|cmake)$|CMakeLists\.txt$'
-opening='^ *(//|#|\*)[/!<]* *(Of|What|Where|Whatever|Whoever|Who) |[;,{] +(//|/\*)[/!<]* *(Of|Where|Whatever|Whoever|Who) '
+opening='^ *(//|#|/?\*|""")[/!<*]* *(Of|What|Where|Whatever|Whoever|Who) |[;,{] +(//|/\*)[/!<]* *(Of|Where|Whatever|Whoever|Who) '
 words='\b(alone|heed(s|ed)?|mend(s|ed|ing)?|has (it|them))\b'
 quoted="((^|[^:])//|#|\"|^ *\*).*$words"
 found=0
 while IFS= read -r file; do
     case $file in
-        scripts/format.sh | CONTRIBUTING.md | *node_modules*) continue ;;
+        scripts/format.sh | ./CONTRIBUTING.md | *node_modules*) continue ;;
         *.md) pattern=$words ;;
         *) pattern="$opening|$quoted" ;;
     esac
     ! grep -nHE "$pattern" "$file" || found=1
-done < <(find . -path ./build -prune -o -path ./out -prune -o -path ./.git -prune -o -type f -print |
-    sed 's|^\./||' | grep -E "$sources|\.md$" | sort)
+done < <(find CMakeLists.txt ./*.md .github bake formats runtime samples scripts shaders tests -type f |
+    grep -E "$sources|\.md$|/hooks/" | sort)
 [ "$found" = 0 ] || {
     echo "format.sh: rewrite the lines above: no comment opens with Of, What or Where; only, not alone; fix, not mend" >&2
     exit 1

@@ -4,7 +4,8 @@
 #
 # Sets the version in CMakeLists.txt and in the pages that quote it, commits and tags v<VERSION>, builds the artefacts, and
 # writes them with SHA256SUMS to out/release/<VERSION>: source archive, Debian packages, Python wheel, npm package, and the
-# page that plays scenes. CHANGELOG.md needs a heading of that version. Pushes nothing.
+# page that plays scenes. VERSION is the topmost heading of CHANGELOG.md. Run scripts/test.sh and scripts/nightly.sh on the
+# commit before; this script runs no tests. Pushes nothing.
 #
 # If the tag exists on HEAD, only builds the artefacts: a build that failed can be repeated.
 set -euo pipefail
@@ -18,17 +19,20 @@ die() {
 version=${1:-}
 [[ $version =~ ^[0-9]+\.[0-9]+\.[0-9]+$ ]] || die "usage: scripts/release.sh VERSION, such as 0.2.0"
 [ -z "$(git status --porcelain)" ] || die "the working tree has changes; commit them first"
-grep -q "^## $version\$" CHANGELOG.md || die "CHANGELOG.md has no heading '## $version'; write it first"
+[ "$(grep -m1 '^## ' CHANGELOG.md)" = "## $version" ] || die "the topmost heading of CHANGELOG.md is not '## $version'; write it first"
+old=$(sed -n 's/^project(Relief VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
+[ -n "$old" ] || die "CMakeLists.txt has no line 'project(Relief VERSION …'"
+[ "$(printf '%s\n' "$old" "$version" | sort -V | tail -n 1)" = "$version" ] || die "$version is lower than $old; choose a higher version"
 
 tag=v$version
 if tagged=$(git rev-parse -q --verify "refs/tags/$tag^{commit}"); then
     [ "$tagged" = "$(git rev-parse HEAD)" ] || die "$tag is another commit; check it out, or choose another version"
 else
-    old=$(sed -n 's/^project(Relief VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
     sed -i "s/^project(Relief VERSION $old/project(Relief VERSION $version/" CMakeLists.txt
     sed -i "s/find_package(Relief ${old%.*} /find_package(Relief ${version%.*} /" README.md scripts/install/README.md \
         samples/in_your_build.md
     sed -i "/relief_version/s/\"$old\"/\"$version\"/" runtime/c_api/relief.h
+    ! git grep -n "find_package(Relief [0-9]" -- '*.md' | grep -v "Relief ${version%.*} " || die "these lines name another version"
     [ "$old" = "$version" ] || git commit -qam "release: set the version to $version"
     git tag -a "$tag" -m "Relief $version"
 fi
@@ -51,7 +55,7 @@ rm -rf build/packages/deb
 cpack --preset packages >/dev/null
 cp build/packages/deb/*.deb "$out/"
 
-python3 - "$out" <<'P'
+python3 -B - "$out" <<'P'
 import sys
 sys.path.insert(0, "bake/python")
 import build_wheel

@@ -33,7 +33,8 @@ constexpr std::array kBakeDetails = std::to_array<OptionDetails>({
      "budget is an upper limit. With --world, it is shared by all colliders, and its default is 16MB."},
     {"texel",
      "A cell is split while its patch is off by more than a quarter of the texel and its side is longer than "
-     "two texels. With --budget, the texel grows until the patches fit, and a warning states its length. "
+     "two texels; all patches take at most 134 MB. With --budget, the texel grows until the patches fit, and "
+     "a warning states its length. "
      "With --world, the length is in units of the level, and each mesh is baked for its largest scale."},
     {"max_error",
      "Tries budgets from 32kB to 64MB, or up to --budget, and measures each as `relief check` does, with "

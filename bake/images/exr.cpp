@@ -74,8 +74,9 @@ Result<std::vector<std::byte>> encodeExr(const ExrImage& image) {
     try {
         return encode(image);
     } catch (const std::bad_alloc&) {
-        return fail(ErrorCode::kLimit,
-                    "out of memory while encoding an EXR image; lower --size or --resolution");
+        return fail(
+            ErrorCode::kLimit,
+            "out of memory while encoding an EXR image; lower --size or --resolution, or bake smaller maps");
     } catch (const std::exception& e) {
         return fail(ErrorCode::kFailure, std::string("cannot encode an EXR image: ") + e.what());
     }

@@ -64,7 +64,7 @@ def blob(center, scale, dents):
 
 
 def crossings(curve, axis, at):
-    """Where the line of coordinate `at` on an axis crosses a curve: point and outward normal, by the other coordinate."""
+    """Intersects a curve with the line where coordinate `axis` is `at`: points and outward normals, in order along the line."""
     found = []
     for a, b in zip(curve, curve[1:] + curve[:1]):
         if (a[axis] <= at) != (b[axis] <= at):

@@ -40,7 +40,7 @@ unset LD_LIBRARY_PATH
 cat >CMakeLists.txt <<'C'
 cmake_minimum_required(VERSION 3.25)
 project(c LANGUAGES C CXX)
-find_package(Relief 0.1 REQUIRED)
+find_package(Relief REQUIRED)
 foreach(name c c_static)
     add_executable(by_${name} ${SOURCE})
     target_compile_features(by_${name} PRIVATE c_std_99)

@@ -16,7 +16,7 @@ rate = 3000.0
 T
 
 if [ "$RELIEF_OPENVDB" != ON ]; then
-    expect_error 5 'no OpenVDB .*no relief-vdb.so.*install libopenvdb-dev' "$relief" export b.relief --vdb b.vdb
+    expect_error 5 'no OpenVDB .*relief-vdb.so is missing.*install libopenvdb-dev' "$relief" export b.relief --vdb b.vdb
     expect_error 5 'no OpenVDB' "$relief" export b.relief --mesh b.ply
     expect_error 5 'no OpenVDB' "$relief_sim" s.toml -q --dump s.vdb
     expect_error 5 'no OpenVDB' "$relief_sim" s.toml -q --dump-frames frames --dump-format vdb

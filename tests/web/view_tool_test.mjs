@@ -205,7 +205,7 @@ test("clicks pick bodies; a check colours bodies and lists the worst; keys fly",
     await page.click("#bodies li:first-child button");
     assert.equal(await picked(), "first");
     assert.ok(await page.evaluate("document.querySelector('#bodies img').naturalWidth") > 300);
-    assert.match(await page.locator("#bodies .place >> nth=0").textContent(), /ts pose in the world differs from the level: bake the level again\.$/);
+    assert.match(await page.locator("#bodies .place >> nth=0").textContent(), /Its pose in the world differs from the level: bake the level again\.$/);
     await page.click("#wrong + span");
     assert.equal(await page.evaluate("reliefView.bodies.color(4)"), undefined);
 
