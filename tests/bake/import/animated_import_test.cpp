@@ -457,8 +457,8 @@ TEST(AnimatedImport, MutatedFilesAreReadOrRejectedInOneLine) {
 
 TEST(AnimatedImport, OnlyGltfIsRead) {
     const TemporaryFolder folder;
-    expectRefused(importAnimatedInWorker(folder.write("t.obj", tetrahedronObj()), {}),
-                  "animations of a .obj are not supported; convert it to glTF", ErrorCode::kUnsupported);
+    expectRejected(importAnimatedInWorker(folder.write("t.obj", tetrahedronObj()), {}),
+                   "animations of a .obj are not supported; convert it to glTF", ErrorCode::kUnsupported);
 }
 
 TEST(AnimatedImport, InvalidWorkerResultsAreRejected) {
