@@ -235,7 +235,7 @@ const std::vector<Refusal>& refusals() {
         {"half-float depth", [](auto& c) { poke<std::uint16_t>(c.maps[2], 0, 2, 0x03ff); }},
         {"half-float depth", [](auto& c) { poke<std::uint16_t>(c.maps[2], 0, 3, 0x3c01); }},
         {"half-float depth", [](auto& c) { poke<std::uint16_t>(c.maps[2], 0, 2, 0x8400); }},
-        {"1025 maps are more", [](auto& c) { c.maps.assign(1025, c.maps[3]); }, ErrorCode::kLimit},
+        {"1025 maps exceed", [](auto& c) { c.maps.assign(1025, c.maps[3]); }, ErrorCode::kLimit},
     };
     return all;
 }

@@ -458,7 +458,8 @@ TEST(AnimatedImport, MutatedFilesAreReadOrRejectedInOneLine) {
 TEST(AnimatedImport, OnlyGltfIsRead) {
     const TemporaryFolder folder;
     expectRejected(importAnimatedInWorker(folder.write("t.obj", tetrahedronObj()), {}),
-                   "animations of a .obj are not supported; convert it to glTF", ErrorCode::kUnsupported);
+                   "animations in .obj files are not supported; convert the file to glTF",
+                   ErrorCode::kUnsupported);
 }
 
 TEST(AnimatedImport, InvalidWorkerResultsAreRejected) {
