@@ -442,7 +442,7 @@ TEST_F(HeightMaps, GreyCanBeSavedAsOpaqueColor) {
                         whole),
               heights);
     rejects(png(PNG_FORMAT_RGB, {1, 1, 1, 2, 2, 2, 3, 3, 3, 250, 251, 250}), whole,
-            "c.png': it is in colour at column 1 of row 1; save it as grey", ErrorCode::kUnsupported);
+            "c.png': it is in colour at column 1 of row 1; save it as 16-bit grey", ErrorCode::kUnsupported);
     rejects(png(PNG_FORMAT_RGB, {1, 1, 2, 2, 2, 2, 3, 3, 3, 4, 4, 4}), whole,
             "in colour at column 0 of row 0", ErrorCode::kUnsupported);
     rejects(png(PNG_FORMAT_GA, {1, 255, 2, 254, 3, 255, 250, 255}), whole,
