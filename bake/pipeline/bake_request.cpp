@@ -265,7 +265,7 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
            .fallback = "normal",
            .recorded = true});
     visit("prefer", request.prefer,
-          {.help = "Classify doubtful space as inside, as outside, or as whichever gives fewer errors",
+          {.help = "Treat doubtful space as inside, as outside, or for the fewest errors",
            .fallback = "neither",
            .recorded = true});
     visit("threads", request.threads,

@@ -14,7 +14,7 @@ expect 0 "$relief_sim" bunny.relief --steps 3 --device "$number" --json
 json stdout 'd["device"].endswith(", device '"$number"'")'
 expect 0 "$relief_sim" bunny.relief --steps 3 --device "$number" --api gles --json
 expect_error 1 'no device 97.*EGL has [1-9]' "$relief_sim" bunny.relief --steps 3 --device 97
-expect_error 1 'device.*number' "$relief_sim" bunny.relief --steps 3 --device first
+expect_error 1 '--device is .first. but must be the index of a device' "$relief_sim" bunny.relief --steps 3 --device first
 expect_error 1 'gpu-timeout.*seconds' "$relief_sim" bunny.relief --steps 3 --gpu-timeout soon
 expect_error 1 'gpu-timeout.*seconds' "$relief_sim" bunny.relief --steps 3 --gpu-timeout -1
 expect_error 1 'excludes' "$relief_sim" bunny.relief --check --device 0

@@ -104,4 +104,4 @@ P
 
 # Rejected inputs.
 "$relief" export box.relief 2>message && die 'export wrote and printed nothing'
-grep -q 'give a folder with -o or --gpu' message || die "$(cat message)"
+grep -q 'add -o DIR, --gpu DIR' message || die "$(cat message)"

@@ -89,7 +89,7 @@ test("a lost context is reported, and restored", { timeout: 60_000 }, async (t) 
         assert.match(outcomes[name][1], /context is lost.*webglcontextrestored/, name);
     }
     for (const [name, cure] of [["step", "restart\\(\\)"], ["bind", "GpuCollider"]]) {
-        assert.match(outcomes[`${name} after`].join(": "), new RegExp(`^ReliefError: .*lost since; .*${cure}`));
+        assert.match(outcomes[`${name} after`].join(": "), new RegExp(`^ReliefError: .*lost meanwhile; .*${cure}`));
     }
     for (const name of ["dispose", "another context's step", "the CPU's query", "dispose after", "restart after"]) {
         assert.equal(outcomes[name][0], "no error", `${name}: ${outcomes[name][1]}`);

@@ -109,8 +109,8 @@ test("each error has its message", { timeout: 60_000 }, async (t) => {
                 await new Function("relief", "collider", "gpu", "system", "eye", `return ${error};`)(
                     relief, collider, gpu, system, eye);
                 answers[error] = ["nothing", "no error"];
-            } catch (error) {
-                answers[error] = [error instanceof relief.ReliefError ? "ReliefError" : error.name, error.message];
+            } catch (thrown) {
+                answers[error] = [thrown instanceof relief.ReliefError ? "ReliefError" : thrown.name, thrown.message];
             }
             gpu.dispose();
             system.dispose();

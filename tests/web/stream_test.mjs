@@ -253,7 +253,7 @@ test("a missing or damaged tile is reported once, and its coarse tile stays", { 
     const expected = [/streamWorld\(\) needs a radius above 0/, /needs a radius above 0/, /memory must be a number/, /no option 'speed'/, /404/, /needs 'load'/,
                       /No such file/, /resident colliders.*allow more/, /has no \[stream\]/, /'warn' must be a function/, /near\(\) takes a list/,
                       /item 1 is invalid/, /near\(\): number 1 is NaN/, /use streamWorld\(\)/, /only the radius of 'stream' can change/, /only the radius of 'stream' can change/,
-                      /stream.*needs world/];
+                      /stream needs .world/];
     assert.equal(got.errors.length, expected.length);
     got.errors.forEach((message, i) => {
         assert.match(message, /^ReliefError: /);
