@@ -210,7 +210,7 @@ test("missing features give a message; a lost context is restored", { timeout: 3
         HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
             return kind === "webgl2" ? null : get.call(this, kind, ...rest);
         };
-    }, /no WebGL2/);
+    }, /does not support WebGL2/);
     await without(() => {
         const get = WebGL2RenderingContext.prototype.getExtension;
         WebGL2RenderingContext.prototype.getExtension = function (name) {
