@@ -302,7 +302,7 @@ void setUpHelp(CLI::App& app, const std::string& help) {
 
 void setUpVerbHelp(CLI::App& verb) {
     verb.set_help_flag("-h,--help", "Print this help and exit");
-    verb.add_flag(kManualOption, "Print this help with every detail and exit");
+    verb.add_flag(kManualOption)->description("Print this help with every detail and exit");
 }
 
 std::string withDetails(const std::string& help, const std::string& details) {
