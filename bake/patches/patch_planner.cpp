@@ -32,8 +32,8 @@ constexpr double kSpareByte = 0.25;
 constexpr double kBytesPerRoot = 168.4;
 /// PatchOptions::trial_bytes is multiplied by the ratio of the errors with 3² heights to those with 5², clamped to this
 /// range. On a smooth surface, more heights in one patch help a lot, and eight patches cost more.
-constexpr double kMendedLeast = 1.2;
-constexpr double kMendedMost = 2.5;
+constexpr double kTrialFactorMin = 1.2;
+constexpr double kTrialFactorMax = 2.5;
 constexpr std::uint32_t kLevels = 10;
 constexpr int kSteps = 60;
 /// Fraction of the time spent on the search.
@@ -213,8 +213,8 @@ class Planner {
         if (node.tried < kFlatsAndSingles) {
             return options_.trial_bytes;
         }
-        const double mended = node.errors[3] / node.errors[4];
-        return options_.trial_bytes * std::clamp(mended, kMendedLeast, kMendedMost);
+        const double improvement = node.errors[3] / node.errors[4];
+        return options_.trial_bytes * std::clamp(improvement, kTrialFactorMin, kTrialFactorMax);
     }
 
     void makeChildren(PatchNode& node) const {

@@ -69,12 +69,13 @@ std::string folded(const std::string& text, std::size_t column) {
     return out;
 }
 
+/// Lists the names in alphabetical order: CLI11's set is ordered by address.
 std::string namesOf(const std::set<CLI::Option*>& options) {
-    std::string text;
+    std::set<std::string> names;
     for (const CLI::Option* option : options) {
-        text += (text.empty() ? "" : ", ") + option->get_name();
+        names.insert(option->get_name());
     }
-    return text;
+    return listed(std::vector<std::string_view>(names.begin(), names.end()));
 }
 
 /// Help that begins with examples: CLI11's footer, moved to the top.
