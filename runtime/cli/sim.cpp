@@ -33,32 +33,23 @@ std::optional<FrameSize> parseFrameSize(std::string_view text) {
     return size[0] > 0 && size[1] > 0 ? std::optional(FrameSize{size[0], size[1]}) : std::nullopt;
 }
 
-// Sections of --help.
-constexpr const char* kOutput = "Output";
-constexpr const char* kFrames = "Frames and pictures";
-constexpr const char* kSimulation = "Simulation";
-constexpr const char* kLimits = "Limits";
-
 void addOutputs(CLI::App& app, SimCommand& command) {
     PlayerOptions& player = command.player;
     addOption(app, "--dump", player.dump,
               "Write the particles at the end as PLY, or as OpenVDB points if the name ends in .vdb; - for "
               "standard output")
-        ->valueText("OUT.ply")
-        ->group(kOutput);
-    addWords(app, "--dump-format", command.dump_format,
-             WordsFor<DumpFormat>{{"ply", DumpFormat::kPly}, {"vdb", DumpFormat::kVdb}},
-             "Format of --dump and --dump-frames (default: vdb if the name of --dump ends in .vdb, else ply)")
-        ->group(kOutput);
+        ->valueText("OUT.ply");
+    addWords(
+        app, "--dump-format", command.dump_format,
+        WordsFor<DumpFormat>{{"ply", DumpFormat::kPly}, {"vdb", DumpFormat::kVdb}},
+        "Format of --dump and --dump-frames (default: vdb if the name of --dump ends in .vdb, else ply)");
     addOption(app, "--events", player.events, "Write each hit as a line of JSON; - for standard output")
-        ->valueText("OUT.jsonl")
-        ->group(kOutput);
+        ->valueText("OUT.jsonl");
     addOption(app, "--events-min-speed", player.events_min_speed,
               "Omit hits slower than V from --events, in world units per second (default: 0)")
         ->valueText("V")
         ->needs("--events")
-        ->transform(number(0.0F, 1e9F, "a speed, 0 or more"))
-        ->group(kOutput);
+        ->transform(number(0.0F, 1e9F, "a speed, 0 or more"));
 }
 
 void addFrames(CLI::App& app, SimCommand& command) {
@@ -67,32 +58,26 @@ void addFrames(CLI::App& app, SimCommand& command) {
         app, "--frames", player.frames,
         "Write pictures frame_0000.png and so on to this folder; it is created if missing, and other files "
         "in it are kept")
-        ->valueText("DIR")
-        ->group(kFrames);
+        ->valueText("DIR");
     addParsed(app, "--size", command.size, parseFrameSize, "a size such as 960x720, each side at least 1",
               "Size of the pictures in pixels (default: render.size of the scene)")
         ->valueText("WxH")
-        ->needs("--frames")
-        ->group(kFrames);
+        ->needs("--frames");
     addOption(app, "--dump-frames", player.dump_frames,
               "Write the particles of each frame as particles_0000.ply and so on to this folder")
-        ->valueText("DIR")
-        ->group(kFrames);
+        ->valueText("DIR");
     addOption(app, "--first-frame", player.overrides.first_frame,
               "Step of the first frame; 0: before the first step (default: render.first of the scene)")
         ->valueText("N")
-        ->transform(wholeNumber(0, kStepsMax))
-        ->group(kFrames);
+        ->transform(wholeNumber(0, kStepsMax));
     addOption(app, "--last-frame", player.overrides.last_frame,
               "Step of the last frame; the run continues to its end (default: render.last of the scene)")
         ->valueText("N")
-        ->transform(wholeNumber(0, kStepsMax))
-        ->group(kFrames);
+        ->transform(wholeNumber(0, kStepsMax));
     addOption(app, "--frame-every", player.overrides.frame_every,
               "Number of steps from frame to frame (default: render.every of the scene)")
         ->valueText("N")
-        ->transform(wholeNumber(1, kStepsMax))
-        ->group(kFrames);
+        ->transform(wholeNumber(1, kStepsMax));
 }
 
 void addSimulation(CLI::App& app, SimCommand& command) {
@@ -100,37 +85,30 @@ void addSimulation(CLI::App& app, SimCommand& command) {
     addOption(app, "--steps", player.overrides.steps,
               "Number of steps to simulate (default: time.steps of the scene)")
         ->valueText("N")
-        ->transform(wholeNumber(0, kStepsMax))
-        ->group(kSimulation);
+        ->transform(wholeNumber(0, kStepsMax));
     addOption(app, "--seed", player.overrides.seed,
               "Random seed of the emitters (default: those of the scene)")
         ->valueText("S")
-        ->transform(wholeNumber(0, kSeedMax))
-        ->group(kSimulation);
+        ->transform(wholeNumber(0, kSeedMax));
     addOption(app, "--root", player.overrides.root,
               "Allow the scene to name files in this folder by .. (default: only files in the scene's own "
               "folder)")
-        ->valueText("DIR")
-        ->group(kSimulation);
+        ->valueText("DIR");
     addWords(app, "--api", player.gpu.api,
              WordsFor<GlApi>{{"gl", GlApi::kGl33Core}, {"gles", GlApi::kGles30}},
-             "Use OpenGL 3.3 (gl) or OpenGL ES 3.0 (gles) (default: gl)")
-        ->group(kSimulation);
+             "Use OpenGL 3.3 (gl) or OpenGL ES 3.0 (gles) (default: gl)");
     addWords(
         app, "--path", player.path,
         WordsFor<StepPath>{
             {"auto", StepPath::kAuto}, {"fragment", StepPath::kFragment}, {"compute", StepPath::kCompute}},
         "Use fragment or compute shaders (OpenGL 4.3, OpenGL ES 3.1) for particles (default: auto, which "
         "uses "
-        "compute if the GPU supports it)")
-        ->group(kSimulation);
+        "compute if the GPU supports it)");
 }
 
 void addLimits(CLI::App& app, PlayerOptions& player) {
-    const std::vector<OptionRef> gpu = addFields(app, player.gpu);  // --device, --gpu-timeout
-    gpu.front()->group(kSimulation);
-    gpu.back()->group(kLimits);
-    addMemoryOption(app, player.overrides.limits)->group(kLimits);
+    addFields(app, player.gpu);  // --device, --gpu-timeout
+    addMemoryOption(app, player.overrides.limits);
 }
 
 /// Rejects combinations of options without effect.
@@ -222,24 +200,29 @@ void defineSim(CLI::App& app, SimCommand& command) {
     addOption(app, "INPUT", command.player.input, "Scene (.toml), collider (.relief) or world (world.json)")
         ->typeName("SCENE.toml|COLLIDER.relief|WORLD.json");
     addOutputs(app, command);
-    const OptionRef check =
-        addFlag(app, "--check", command.check, "Validate the scene and all its files, and exit; needs no GPU")
-            ->group(kOutput);
-    addFlag(app, "--json", command.json, "Print the report, or the result of --check, as JSON")
-        ->group(kOutput);
+    const OptionRef check = addFlag(app, "--check", command.check,
+                                    "Validate the scene and all its files, and exit; needs no GPU");
+    addFlag(app, "--json", command.json, "Print the report, or the result of --check, as JSON");
     const OptionRef page =
         addOption(
             app, "--page", command.page,
             "Write one HTML file that plays the scene in a browser, and exit; needs no GPU, but the player "
             "that scripts/build.sh web builds")
-            ->valueText("OUT.html")
-            ->group(kOutput);
+            ->valueText("OUT.html");
     addFlag(app, "-q,--quiet", command.quiet,
-            "Print no progress and no summary; errors and the output of --json remain")
-        ->group(kOutput);
+            "Print no progress and no summary; errors and the output of --json remain");
     addFrames(app, command);
     addSimulation(app, command);
     addLimits(app, command.player);
+    groupOptions(
+        app, {{"Options", {"--help", "--version"}},
+              {"Output",
+               {"--dump", "--dump-format", "--events", "--events-min-speed", "--check", "--json", "--page",
+                "--quiet"}},
+              {"Frames and pictures",
+               {"--frames", "--size", "--dump-frames", "--first-frame", "--last-frame", "--frame-every"}},
+              {"Simulation", {"--steps", "--seed", "--root", "--api", "--path", "--device"}},
+              {"Limits", {"--gpu-timeout", "--max-memory"}}});
     for (const char* played :
          {"--frames", "--dump", "--dump-frames", "--events", "--path", "--device", "--gpu-timeout"}) {
         check->excludes(played);

@@ -62,10 +62,6 @@ OptionRef OptionRef::excludes(const std::string& name) const {
     return option_->excludes(name);
 }
 
-OptionRef OptionRef::group(const std::string& heading) const {
-    return option_->group(heading);
-}
-
 OptionRef OptionRef::transform(const WordReader& read) const {
     return option_->transform(CLI::Validator(read, ""));
 }
@@ -108,11 +104,11 @@ WordReader oneOf(std::span<const std::string_view> words) {
     return fieldValue<std::string>({.words = words});
 }
 
-OptionRef addMemoryOption(CLI::App& app, ContainerLimits& limits) {
+void addMemoryOption(CLI::App& app, ContainerLimits& limits) {
     limits.memory = kToolMemory;
-    return addOption(app, "--max-memory", limits.memory,
-                     "Memory limit for a collider's unpacked texels (default: 160MB, or 16 times the file "
-                     "size if larger)")
+    addOption(app, "--max-memory", limits.memory,
+              "Memory limit for a collider's unpacked texels (default: 160MB, or 16 times the file "
+              "size if larger)")
         ->valueText("BYTES")
         ->transform(fieldValue<std::uint64_t>({.unit = "bytes", .range = kFromOne}));
 }

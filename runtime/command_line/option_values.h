@@ -40,7 +40,6 @@ class OptionRef {
     OptionRef needs(const std::string& name) const;
     OptionRef excludes(OptionRef other) const;
     OptionRef excludes(const std::string& name) const;
-    OptionRef group(const std::string& heading) const;  ///< the section of --help that lists the option
     OptionRef transform(const WordReader& read) const;
     OptionRef range(double least, double most) const;
 
@@ -104,7 +103,7 @@ OptionRef addParsed(CLI::App& app, const std::string& names, std::optional<T>& f
 inline constexpr std::uint64_t kToolMemory = 160'000'000;
 
 /// Sets limits.memory to kToolMemory, and adds --max-memory, which changes it. `limits` must outlive the app.
-OptionRef addMemoryOption(CLI::App& app, ContainerLimits& limits);
+void addMemoryOption(CLI::App& app, ContainerLimits& limits);
 
 /// Adds an option for each field of a struct or group, which must outlive the app: "max_error" becomes --max-error.
 /// Messages are those of readWord(), prefixed with the option's name (parseCommandLine). \return the options, in that
