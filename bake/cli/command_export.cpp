@@ -95,7 +95,7 @@ Result<void> exportForGpu(const Collider& collider, const std::filesystem::path&
                    {"unit", collider.unit},
                    {"maps", collider.maps.size()},
                    {"glsl", kGlsl},
-                   {"block", {{"name", "ReliefCollider"}, {"file", kBlock}, {"bytes", image.block.size()}}},
+                   {"block", {{"name", "ReliefMaps"}, {"file", kBlock}, {"bytes", image.block.size()}}},
                    {"textures", textures}};
     return writeFile(folder / kSizes, bytesOf(jsonText(all)));
 }

@@ -38,7 +38,7 @@ void MapTextures::attach(GLuint program, const ShaderCollider::Binding& binding)
         glUniform1i(glGetUniformLocation(program, texelFormat(static_cast<TexelKind>(kind)).sampler),
                     binding.first_unit + static_cast<GLint>(kind));
     }
-    const GLuint index = glGetUniformBlockIndex(program, "ReliefCollider");
+    const GLuint index = glGetUniformBlockIndex(program, "ReliefMaps");
     if (index != GL_INVALID_INDEX) {
         glUniformBlockBinding(program, index, static_cast<GLuint>(binding.uniform_block));
     }

@@ -35,7 +35,7 @@ struct GpuTexture {
 
 struct GpuImage {
     std::array<GpuTexture, kTexelKinds> textures;  ///< indexed by TexelKind
-    std::vector<std::byte> block;                  ///< ReliefCollider, std140
+    std::vector<std::byte> block;                  ///< ReliefMaps, std140
     std::string defines;                           ///< lines to compile collider.glsl with
 };
 

@@ -131,7 +131,7 @@ export class GpuCollider {
         gl.useProgram(program);
         ["u_relief_float", "u_relief_fixed", "u_relief_front_back"].forEach((name, i) =>
             gl.uniform1i(gl.getUniformLocation(program, name), unit + i));
-        const at = gl.getUniformBlockIndex(program, "ReliefCollider");
+        const at = gl.getUniformBlockIndex(program, "ReliefMaps");
         if (at !== gl.INVALID_INDEX) {
             gl.uniformBlockBinding(program, at, block);
         }

@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
     glGenBuffers(1, &buffer), glGenFramebuffers(1, &framebuffer);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, buffer);
     glBufferData(GL_UNIFORM_BUFFER, size, block, GL_STATIC_DRAW);
-    glUniformBlockBinding(program, glGetUniformBlockIndex(program, "ReliefCollider"), 0);
+    glUniformBlockBinding(program, glGetUniformBlockIndex(program, "ReliefMaps"), 0);
     const struct { const char *file, *sampler; GLenum internal, format, type; int bytes; } kinds[3] = {
         {"float.bin", "u_relief_float", GL_RGBA32F, GL_RGBA, GL_FLOAT, 16},
         {"fixed.bin", "u_relief_fixed", GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, 4},

@@ -12,7 +12,7 @@
 //     by u_relief_levels       lists of the broad phase (body_grid.h): index of the second entry; index after the last;
 //                              body (negative: none) and hash of the first entry
 //     by the lists             entries: body and hash; 0; 0
-layout(std140) uniform ReliefCollider {
+layout(std140) uniform ReliefMaps {
     ivec4 u_relief_count;        // maps in use; then RELIEF_LOG2_WIDTHS
     ivec4 u_relief_world_place;  // log2 of the width; the first texel of body 0; bodies; levels
     ivec4 u_relief_levels[RELIEF_WORLD_LEVELS];  // cells per world unit, as a float's bits; texel of the first list;

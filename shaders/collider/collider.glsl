@@ -37,6 +37,8 @@ bool reliefReplaces(float vote, float best) {
     return (best < 0.0 && vote > best) || (vote >= 0.0 && vote < best);
 }
 
+#define RELIEF_LOG2_WIDTH RELIEF_LOG2_WIDTHS.z
+//!include engines/relief.glsl
 //!include collider/texels.glsl
 //!include collider/map_votes.glsl
 

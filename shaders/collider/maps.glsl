@@ -31,7 +31,7 @@ ivec2 reliefTexel(int index, int log2_width) {
 //!layer bodies/world.glsl
 #else
 
-layout(std140) uniform ReliefCollider {
+layout(std140) uniform ReliefMaps {
     ivec4 u_relief_count;  // maps in use; then RELIEF_LOG2_WIDTHS
     ReliefMap u_relief_maps[RELIEF_MAP_CAPACITY];
 };
@@ -41,7 +41,7 @@ layout(std140) uniform ReliefCollider {
 // memory. It is copied from the same buffer bound as storage, because copying also reads different addresses. The
 // counts stay in the block.
 #if defined(RELIEF_TOUR)
-layout(std140, binding = RELIEF_TOUR_STORAGE) readonly buffer ReliefColliderStorage {
+layout(std140, binding = RELIEF_TOUR_STORAGE) readonly buffer ReliefMapsStorage {
     ivec4 b_relief_count;
     ReliefMap b_relief_maps[RELIEF_MAP_CAPACITY];
 };

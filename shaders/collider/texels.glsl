@@ -1,31 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // For collider.glsl: decoding of normals and depths, and transforms between the spaces of a map.
 
-// Equation 3: maps indices 0...2 half_range in each direction to the octahedron; reliefUnit() projects it onto the
-// sphere. Computed in index steps, so that it is exact. shaderTexels() removes index 255.
-vec3 reliefFold(vec2 index, float half_range) {
-    vec2 st = index - half_range;
-    float z = half_range - abs(st.x) - abs(st.y);
-    // Below the equator both are reflected by their excess.
-    uint beyond = floatBitsToUint(max(-z, 0.0));
-    return vec3(st.x - uintBitsToFloat(beyond | (floatBitsToUint(st.x) & 0x80000000u)),
-                st.y - uintBitsToFloat(beyond | (floatBitsToUint(st.y) & 0x80000000u)), z);
-}
-
+// Equation 3 in index steps, so that it is exact. shaderTexels() removes index 255.
 vec3 reliefOctahedron(vec2 index) {
     return reliefFold(index, float(RELIEF_NORMAL_HALF_RANGE));
 }
 
 vec3 reliefOctahedron(uint code) {
     return reliefOctahedron(vec2(float(code >> 8), float(code & 255u)));
-}
-
-vec3 reliefUnit(vec3 v) {
-    return v * inversesqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-}
-
-float reliefRow(vec4 r, vec3 p) {
-    return r.x * p.x + (r.y * p.y + (r.z * p.z + r.w));
 }
 
 // Transforms a point from object space to the space of map i.
@@ -41,11 +23,6 @@ bool reliefInWindow(int i, vec3 p) {
 
 bool reliefInDepth(vec3 p) {
     return p.z >= 0.0 && p.z <= 1.0;
-}
-
-// Uses the operation order of the C++ version, because that of dot() depends on the driver.
-float reliefDot(vec3 a, vec3 b) {
-    return a.x * b.x + (a.y * b.y + a.z * b.z);
 }
 
 float reliefLength(vec3 v) {

@@ -76,8 +76,8 @@ vec3 colorOf(int i, vec3 p) {
     if (reliefIsPatches(u_relief_maps[i].info)) {
         ivec4 place = u_relief_maps[i].place;
         vec3 q = clamp(reliefInMap(i, p), vec3(0.0), reliefPatchRoots(i) * (1.0 - 1e-6));
-        ReliefLeaf leaf = reliefPatchLeaf(place, q);
-        float level = -log2(leaf.beside ? 0.5 * leaf.cell : leaf.cell);
+        ReliefLeaf leaf = reliefPatchLeaf(u_relief_front_back, place, q);
+        float level = -log2(hasNoRecord(leaf) ? 0.5 * leaf.cell : leaf.cell);
         return levelColor(i, level / max(float(place.w), 1.0));
     }
 #endif

@@ -121,7 +121,7 @@ class PageTextures {
         const { gl } = this;
         gl.useProgram(program);
         kTextures.forEach(([sampler], i) => gl.uniform1i(gl.getUniformLocation(program, sampler), unit + i));
-        const block = gl.getUniformBlockIndex(program, "ReliefCollider");
+        const block = gl.getUniformBlockIndex(program, "ReliefMaps");
         if (block !== gl.INVALID_INDEX) {
             gl.uniformBlockBinding(program, block, 0);
         }

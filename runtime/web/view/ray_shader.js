@@ -252,7 +252,7 @@ Stretch aheadInPatch(int first, uvec2 record, vec3 q, vec3 way, float tiny, floa
         bool comes = here < range.x && range.x < ends;
         return Stretch(upper ? above : -above, comes ? range.x : ends, comes ? -1 : border);
     }
-    float squares = reliefPatchSquares(record);
+    float squares = float(1u << ((record.x >> 2u) & 3u));
     vec2 x = squares * from.xy;
     vec2 dx = squares * across.xy;
     vec2 per_square = 1.0 / (dx + 1e-20 * (vec2(1.0) - abs(sign(dx))));
@@ -263,7 +263,7 @@ Stretch aheadInPatch(int first, uvec2 record, vec3 q, vec3 way, float tiny, floa
         vec2 leaves = max((corner - x) * per_square, (corner + 1.0 - x) * per_square);
         float next = min(max(min(leaves.x, leaves.y), here + 0.5 * tiny), last);
         vec3 f = overSquare(x + here * dx - corner, dx, from.z + here * across.z, across.z,
-                            reliefPatchCodes(first, record, corner, squares), unit);
+                            reliefPatchCodes(u_relief_front_back, first, record, corner, squares), unit);
         over = k == 0 ? f.z >= 0.0 : over;
         // If the signs differ, rounding hid the zero in the previous square.
         float zero = here + (over == (f.z >= 0.0) ? firstZero(f) : 0.0);
@@ -283,13 +283,18 @@ Stretch aheadInLeaf(int first, uvec2 record, vec3 q, vec3 way, float tiny, float
     int decides = (record.x & 16u) != 0u ? 1 : -1;
     Stretch stretch = Stretch(0, NEVER, -1);
     for (int k = 0; k < (pair ? 2 : 1); ++k) {
-        Stretch one = aheadInPatch(first, pair ? reliefPatchTexel(at + k) : record, q, way, tiny, ends, border);
+        uvec2 own = pair ? reliefPatchTexel(u_relief_front_back, at + k) : record;
+        Stretch one = aheadInPatch(first, own, q, way, tiny, ends, border);
         bool decided = one.side == decides;
         if (k == 0 || (one.side == stretch.side ? decided == (one.end > stretch.end) : decided)) {
             stretch = one;
         }
     }
     return stretch;
+}
+
+bool hasNoRecord(ReliefLeaf leaf) {
+    return (leaf.record.x & 3u) == 2u;
 }
 
 // Advances leaf by leaf through the tree, and from crossing to crossing within a patch.
@@ -307,10 +312,10 @@ Stretch aheadPatches(int i, vec3 o, vec3 d, float t, float far) {
         return Stretch(beyond, comes ? max(volume, t + u_tiny) : NEVER, comes ? leastOf(-enters) : -1);
     }
     vec3 p = clamp(o + next * d, vec3(0.0), roots * (1.0 - 1e-6));
-    ReliefLeaf leaf = reliefPatchLeaf(place, p);
+    ReliefLeaf leaf = reliefPatchLeaf(u_relief_front_back, place, p);
     vec3 low = p - leaf.cell * leaf.q;
     float cell = leaf.cell;
-    if (leaf.beside) {
+    if (hasNoRecord(leaf)) {
         cell *= 0.5;
         low += cell * step(vec3(0.5), leaf.q);
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The distance and normal of a patch map at a point, each with a bound of its rounding error.
-// Evaluates the formulas of formats/patch_tree.cpp and shaders/collider/patches.glsl again in doubles. Every operation
+// Evaluates the formulas of formats/patch_tree.cpp and shaders/engines/relief.glsl again in doubles. Every operation
 // adds the error of one rounding to float, 2^-24 of its result, to the errors of its operands. The bound also holds if
 // a multiply-add is fused, because that only omits a rounding. The transform to map space dominates: a rounding of a
 // coordinate p is p / cell in leaf units, and the gradient of a patch of 5² heights changes within a quarter of that.
