@@ -49,7 +49,7 @@ def metal(text):
 
 
 def godot(text):
-    return text.replace("highp usampler2D", "usampler2D")
+    return text  # Godot reads GLSL ES, but only includes files with this suffix
 
 
 def ends_of(text, at, step):
