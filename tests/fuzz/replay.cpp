@@ -1,14 +1,68 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs a fuzz target on every file in the given folders: relief_replay_X FOLDER….
+// Runs a fuzz target on every file in the given folders: relief_replay_X FOLDER…. With RELIEF_MUTANTS, also on that many
+// mutants of each file; they are the same in every run.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "tests/fuzz/target.h"
+
+#ifdef RELIEF_MUTANTS
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
+                                               unsigned seed);
+
+namespace {
+
+std::mt19937 random;
+
+std::size_t below(std::size_t end) {
+    return random() % end;
+}
+
+void runMutants(const std::string& bytes) {
+    std::vector<std::uint8_t> mutant(bytes.size() + 16);
+    for (int i = 0; i < RELIEF_MUTANTS; ++i) {
+        std::copy(bytes.begin(), bytes.end(), mutant.begin());
+        const std::size_t size = LLVMFuzzerCustomMutator(mutant.data(), bytes.size(), mutant.size(),
+                                                         static_cast<unsigned>(random()));
+        LLVMFuzzerTestOneInput(mutant.data(), size);
+    }
+}
+
+}  // namespace
+
+// Called by the custom mutator in place of libFuzzer's function: changes one to four bytes or four-byte numbers, or
+// removes or repeats a few bytes.
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size) {
+    if (size > 16 && below(16) == 0) {
+        const std::size_t count = 1 + below(16);
+        const std::size_t at = below(size - count);
+        if (below(2) == 0) {
+            std::copy(data + at + count, data + size, data + at);
+            return size - count;
+        }
+        if (size + count <= max_size) {
+            std::copy_backward(data + at, data + size, data + size + count);
+            return size + count;
+        }
+    }
+    for (std::size_t changes = 1 + below(4); changes > 0; --changes) {
+        // Half of them in the header and the metadata, which are short.
+        const std::size_t at = below(below(2) == 0 ? size : std::min<std::size_t>(size, 600));
+        constexpr std::uint8_t kCommon[] = {0, 1, 2, 4, 127, 128, 254, 255};
+        const std::size_t count = below(4) == 0 ? std::min<std::size_t>(4, size - at) : 1;
+        for (std::size_t i = 0; i < count; ++i) {
+            data[at + i] = below(2) == 0 ? kCommon[below(8)] : static_cast<std::uint8_t>(random());
+        }
+    }
+    return size;
+}
+#endif
 
 int main(int argc, char** argv) {
     namespace fs = std::filesystem;
@@ -29,6 +83,9 @@ int main(int argc, char** argv) {
         std::printf("%s\n", file.filename().c_str());  // in case the run crashes
         std::fflush(stdout);
         LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+#ifdef RELIEF_MUTANTS
+        runMutants(bytes);
+#endif
     }
     std::printf("%zu inputs\n", files.size());
     return files.empty() ? 1 : 0;

@@ -21,6 +21,8 @@ failed=0
 for target in "${targets[@]}"; do
     found=out/fuzz/$target
     mkdir -p "$found/corpus"
+    corpus=tests/fuzz/corpus/$target
+    [ "$target" != single ] || corpus=tests/fuzz/corpus/container
     timeout=10
     [ "$target" != bake ] || timeout=60 # tests several hundred thousand points under sanitizers
     options=(-max_total_time="$seconds" -timeout="$timeout" -rss_limit_mb=2048 -print_final_stats=1 -artifact_prefix="$found/")
@@ -28,7 +30,7 @@ for target in "${targets[@]}"; do
     [ ! -s "$found/dict" ] || options+=(-dict="$found/dict")
     status=0
     ASAN_OPTIONS=allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1 \
-        "$bin/relief_fuzz_$target" "${options[@]}" "$found/corpus" "tests/fuzz/corpus/$target" 2>"$found/log" || status=$?
+        "$bin/relief_fuzz_$target" "${options[@]}" "$found/corpus" "$corpus" 2>"$found/log" || status=$?
     runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$found/log")
     edges=$(grep -o 'cov: [0-9]*' "$found/log" | tail -1 | cut -d' ' -f2)
     echo "fuzz: $target: ${runs:-?} inputs in $seconds s, ${edges:-?} edges, exit code $status"
