@@ -134,8 +134,10 @@ Result<Materials> readMaterials(const fb::Materials& stored) {
     if (packing == Packing::kZstd) {
         nodes = RELIEF_TRY(withPrefix("the nodes of the materials", decompress(bytes, size)));
     }
-    materials.nodes.resize(size / sizeof(MaterialNode));
-    std::memcpy(materials.nodes.data(), nodes.data(), nodes.size());
+    if (size > 0) {  // memcpy() must not be called with null pointers
+        materials.nodes.resize(size / sizeof(MaterialNode));
+        std::memcpy(materials.nodes.data(), nodes.data(), nodes.size());
+    }
     return materials;
 }
 

@@ -31,7 +31,7 @@ else
     sed -i "s/^project(Relief VERSION $old/project(Relief VERSION $version/" CMakeLists.txt
     sed -i "s/find_package(Relief ${old%.*} /find_package(Relief ${version%.*} /" README.md scripts/install/README.md \
         samples/in_your_build.md
-    sed -i "/relief_version/s/\"$old\"/\"$version\"/" runtime/c_api/relief.h
+    sed -i "/relief_version/s/\"$old\"/\"$version\"/" runtime/c_api/relief_runtime.h
     ! git grep -n "find_package(Relief [0-9]" -- '*.md' | grep -v "Relief ${version%.*} " || die "these lines name another version"
     [ "$old" = "$version" ] || git commit -qam "release: set the version to $version"
     git tag -a "$tag" -m "Relief $version"

@@ -18,7 +18,7 @@
 #include "formats/base/result.h"
 #include "formats/collider.h"
 
-struct relief_collider;  // of relief.h
+struct relief_collider;  // of relief_runtime.h
 
 namespace relief {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The objects behind the handles of relief.h, and helpers that its functions share.
+// The objects behind the handles of relief_runtime.h, and helpers that its functions share.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 #include "runtime/births/mesh_trail.h"
 #include "runtime/bodies/world_textures.h"
 #include "runtime/c_api/call.h"
-#include "runtime/c_api/relief.h"
+#include "runtime/c_api/relief_runtime.h"
 #include "runtime/live/animated_collider.h"
 #include "runtime/particles/particle_system.h"
 #include "runtime/picture/particle_renderer.h"
@@ -129,7 +129,7 @@ struct HandleType<relief_emitter> {
     static constexpr const char* kName = "relief_emitter";
 };
 
-// Ranges of relief.h. A particle beyond 1e15 counts as lost (isLost()).
+// Ranges of relief_runtime.h. A particle beyond 1e15 counts as lost (isLost()).
 inline constexpr FieldRange kAny{-1e15, 1e15};
 inline constexpr FieldRange kNotNegative{0.0, 1e15};
 inline constexpr FieldRange kFraction{0.0, 1.0};

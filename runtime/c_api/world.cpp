@@ -18,7 +18,7 @@ using namespace relief;  // NOLINT: the C functions are outside of it
 
 namespace {
 
-// Limits of relief.h and of the format.
+// Limits of relief_runtime.h and of the format.
 constexpr FieldRange kRotation = within(1.001);
 constexpr float kUnitTolerance = 1e-3F;
 constexpr double kStreamBytesMax = 1099511627776.0;

@@ -18,7 +18,7 @@
 #include "formats/world/collider_info.h"
 #include "runtime/c_api/call.h"
 #include "runtime/c_api/objects.h"
-#include "runtime/c_api/relief.h"
+#include "runtime/c_api/relief_runtime.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/pass_state.h"
 #include "runtime/web/player.h"

@@ -5,7 +5,7 @@ import { free, use, useUnlessLost } from "./context.js";
 import { ReliefError, bytesOf } from "./fetch.js";
 import { call, callChecked, callForHandle, init, textAt, wasm } from "./wasm.js";
 
-/** Runs a query and splits its relief_samples (runtime/c_api/relief.h) into arrays; `which` names the last one. */
+/** Runs a query and splits its relief_samples (relief_runtime.h) into arrays; `which` names the last one. */
 export function runQuery(query, handle, points, which) {
     const xyz = checkFinite("points", numbers("points", points, 3));
     const count = xyz.length / 3;

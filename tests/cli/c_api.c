@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Uses relief.h from C99; tests/runtime/c_api calls every function. c_api POINTS.csv COLLIDER.relief prints
+/* Uses relief_runtime.h from C99; tests/runtime/c_api calls every function. c_api POINTS.csv COLLIDER.relief prints
  * x,y,z,f,nx,ny,nz,map for each point. */
-#include <relief.h>
+#include <relief_runtime.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# The installed relief.h, librelief.so and librelief_c.a: a C99 program links with either and gives the results of
-# `relief query`. The shared library exports exactly the functions of the header.
+# The installed relief_runtime.h, librelief.so and librelief_c.a: a C99 program links with either and gives the results
+# of `relief query`. The shared library exports exactly the functions of the header.
 . "$(dirname "$0")/lib.sh"
 
 for component in development library; do
@@ -12,7 +12,7 @@ read -ra flags < <(pkg-config --cflags --libs relief)
 cc -std=c99 -Wall -Wextra -Wpedantic -Werror "$RELIEF_SOURCE/tests/cli/c_api.c" -o c_api "${flags[@]}" 2>log ||
     die "does not compile: $(head -20 log)"
 library=$(find "$work/installed" -name 'librelief.so')
-echo '#include <relief.h>
+echo '#include <relief_runtime.h>
 int main() { return relief_api_version() >= RELIEF_API_VERSION ? 0 : 1; }' >in_cpp.cpp
 g++ -std=c++11 -Wall -Wextra -Werror in_cpp.cpp -o in_cpp "${flags[@]}" || die "does not compile as C++"
 
@@ -61,7 +61,7 @@ for program in ./c_api_static by_cmake/by_c_static by_cmake/by_c; do
 done
 
 # The ABI: every function of the header, and no other symbol.
-grep -oE '\brelief_[a-z_]+\(' "$RELIEF_SOURCE/runtime/c_api/relief.h" | tr -d '(' | sort -u >declared
+grep -oE '\brelief_[a-z_]+\(' "$RELIEF_SOURCE/runtime/c_api/relief_runtime.h" | tr -d '(' | sort -u >declared
 nm -D --defined-only "$library" | awk '$2 != "A" { print $3 }' | sed 's/@.*//' | sort -u >exported
 diff declared exported >log || die "the header and the library differ: $(cat log)"
 [ "$(wc -l <exported)" -ge 37 ] || die "only $(wc -l <exported) functions"

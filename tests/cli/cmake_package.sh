@@ -11,7 +11,7 @@ export CMAKE_PREFIX_PATH=$prefix
 for file in bin/relief bin/relief-sim share/man/man1/relief.1 share/man/man1/relief-bake.1 share/man/man1/relief-sim.1 \
     share/bash-completion/completions/relief share/bash-completion/completions/relief-sim share/doc/relief/README.md share/doc/relief/formats/README.md \
     share/doc/relief/samples/rain.toml share/relief/schemas/bake.schema.json \
-    share/relief/shaders/collider/collider.glsl share/relief/collider.fbs share/doc/relief/samples/own_engine/own_engine.c include/relief/runtime/particles/particle_system.h; do
+    share/relief/shaders/collider/collider.glsl share/relief/collider.fbs share/doc/relief/samples/own_engine/bounce.c include/relief.h include/relief_runtime.h include/relief/runtime/particles/particle_system.h; do
     [ -s "$prefix/$file" ] || die "$file is not installed"
 done
 ! grep -rIlF "$RELIEF_SOURCE" "$prefix" --include='*.cmake' --include='*.pc' --include='*.h' --include='*.1' ||

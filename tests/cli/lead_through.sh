@@ -38,7 +38,7 @@ follow in_your_engine.md
 cat >engine.c <<'C'
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
-#include <relief.h>
+#include <relief_runtime.h>
 #include <stdio.h>
 int snow_begin(const char* file);
 void snow_frame(const relief_birth* births, size_t count, float seconds, const relief_view* view);

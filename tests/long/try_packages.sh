@@ -69,7 +69,7 @@ development() {
     read -ra flags < <(pkg-config --cflags --libs relief-runtime)
     g++ -std=c++20 consumer/main.cpp -o by_pkg_config "${flags[@]}" || die "does not build by pkg-config"
     cat >load.c <<'C'
-#include <relief.h>
+#include <relief_runtime.h>
 #include <stdio.h>
 int main(int count, char** arguments) {
     relief_collider* collider = relief_collider_load(count > 1 ? arguments[1] : "");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every invalid argument of a function of relief.h gives an error that names it, and changes nothing else: every
-// argument NULL, freed, of another kind, or out of range; every field of every structure not finite; every wrong size.
+// Every invalid argument of a function of relief_runtime.h gives an error that names it, and changes nothing else:
+// every argument NULL, freed, of another kind, or out of range; every field of every structure not finite; every wrong
+// size.
 #include <epoxy/egl.h>
 #include <gtest/gtest.h>
 

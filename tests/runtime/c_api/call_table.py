@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""relief.h as tables for C++: call_table.py RELIEF_H OUT_INC
+"""relief_runtime.h as tables for C++: call_table.py RELIEF_H OUT_INC
 
 Lists every function with its arguments and every structure with its fields, so that tests include new ones. Unknown syntax
 is an error: extend this script.
@@ -42,7 +42,7 @@ for match in taken(r'([\w ]+?[ *]+)(relief_\w+)\(([^()]*)\);'):
     functions.append((' '.join(match[1].split()), match[2], arguments))
 
 if header.strip(' \n}'):
-    sys.exit('call_table.py cannot parse this part of relief.h: ' + ' '.join(header.split()))
+    sys.exit('call_table.py cannot parse this part of relief_runtime.h: ' + ' '.join(header.split()))
 
 lines = ['const std::vector<Structure> kStructures{']
 for name, fields in structures:

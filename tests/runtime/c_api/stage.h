@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Valid arguments for every function of relief.h, one of which a test can replace. call_table.py generates the tables
-// from relief.h, so new functions are tested without being listed here.
+// Valid arguments for every function of relief_runtime.h, one of which a test can replace. call_table.py generates the
+// tables from relief_runtime.h, so new functions are tested without being listed here.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@
 #include "formats/base/hash.h"
 #include "formats/container.h"
 #include "formats/world/world.h"
-#include "runtime/c_api/relief.h"
+#include "runtime/c_api/relief_runtime.h"
 #include "runtime/gl/gl_context.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/gl_object.h"
@@ -276,7 +276,7 @@ class Stage {
         EXPECT_TRUE(writeFile(world_path_, std::as_bytes(std::span(text))));
     }
 
-    /// The object to pass for an argument of type T. A new type in relief.h does not compile without an entry here.
+    /// The object to pass for an argument of type T. A new type in the header does not compile without an entry here.
     template <class T>
     T pointer(T /*type*/) {
         using Thing = std::remove_const_t<std::remove_pointer_t<T>>;

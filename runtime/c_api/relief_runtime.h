@@ -29,8 +29,12 @@
  *
  * Structures only grow at their end. Set `size` to sizeof(the structure), and members that you do not need to 0. A
  * `size` that matches no version of the structure, such as 0, is an error. */
-#ifndef RELIEF_H
-#define RELIEF_H
+#ifndef RELIEF_RUNTIME_H
+#define RELIEF_RUNTIME_H
+
+#ifdef RELIEF_H
+#error "relief_runtime.h and relief.h both define relief_collider; include them in different source files"
+#endif
 
 #include <stddef.h>
 #include <stdint.h>
