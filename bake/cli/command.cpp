@@ -87,7 +87,7 @@ void defineRelief(CLI::App& app, Action& action) {
         "collide with the mesh on the GPU.\n"
         "After baking, `relief check` measures the collider against its mesh and suggests fixes, and `relief "
         "slice` and `relief view` show it. `relief-sim` collides particles with it. To use it in your "
-        "engine, link the runtime library, or upload the files of `relief export --gpu`.");
+        "engine, link the runtime library, or upload the files of `relief export --engine`.");
     app.footer(
         "relief bake bunny.obj -o bunny.relief\n"
         "relief check bunny.relief --mesh bunny.obj\n"

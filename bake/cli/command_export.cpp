@@ -11,18 +11,17 @@
 
 #include "bake/cli/command.h"
 #include "bake/cli/option_details.h"
+#include "bake/engines/engine_export.h"
 #include "bake/images/map_image.h"
 #include "bake/images/view_image.h"
 #include "bake/volume/level_set.h"
 #include "formats/base/file_io.h"
 #include "formats/base/result.h"
 #include "formats/container.h"
-#include "formats/fields/json_value.h"
+#include "formats/world/world.h"
 #include "runtime/command_line/command_line.h"
 #include "runtime/command_line/option_values.h"
-#include "runtime/layout/gpu_image.h"
 #include "runtime/vdb/vdb_writer.h"
-#include "shaders/shader_text.h"
 
 namespace relief {
 namespace {
@@ -32,7 +31,7 @@ struct ExportCommand {
     std::string file;
     std::string output;
     ContainerLimits limits;
-    std::string gpu;
+    std::vector<std::string> engine;  ///< its name and the folder; empty: none
     std::string vdb;
     std::string mesh;
     std::optional<std::uint32_t> voxels;
@@ -40,66 +39,6 @@ struct ExportCommand {
 };
 
 constexpr std::uint32_t kResolution = 512;
-constexpr int kFormat = 1;
-constexpr const char* kBlock = "block.bin";
-constexpr const char* kGlsl = "collider.glsl";
-constexpr const char* kSizes = "gpu.json";
-constexpr std::array<TexelKind, kTexelKinds> kKinds{kFloatTexels, kFixedTexels, kFrontBackTexels};
-constexpr std::array<const char*, kTexelKinds> kFiles{"float.bin", "fixed.bin", "front_back.bin"};
-
-std::span<const std::byte> bytesOf(std::string_view text) {
-    return std::as_bytes(std::span(text));
-}
-
-Json describe(const Collider& collider, const GpuImage& image, TexelKind kind) {
-    const GpuTexture& texture = image.textures[kind];
-    const TexelFormat& format = texelFormat(kind);
-    return {{"sampler", format.sampler},
-            {"file", isUsed(collider, kind) ? Json(kFiles[kind]) : Json()},
-            {"width", texture.width},
-            {"height", texture.height},
-            {"bytes", texture.texels.size()},
-            {"internal_format_name", format.name},
-            {"internal_format", format.internal_format},
-            {"format", format.format},
-            {"type", format.type}};
-}
-
-/// The files that exportForGpu() writes: gpu.json, block.bin, collider.glsl, and one per texture in use.
-std::vector<std::string> gpuFileNames(const Collider& collider) {
-    std::vector<std::string> names{kBlock, kGlsl, kSizes};
-    for (const TexelKind kind : kKinds) {
-        if (isUsed(collider, kind)) {
-            names.emplace_back(kFiles[kind]);
-        }
-    }
-    return names;
-}
-
-/// Writes the files for other renderers: runtime/layout/LAYOUT.md.
-Result<void> exportForGpu(const Collider& collider, const std::filesystem::path& folder) {
-    const GpuImage image = RELIEF_TRY(gpuImage(collider));
-    const std::string core = RELIEF_TRY(shaderText("collider/collider.glsl"));
-    Json textures = Json::array();
-    for (const TexelKind kind : kKinds) {
-        textures.push_back(describe(collider, image, kind));
-        if (isUsed(collider, kind)) {
-            RELIEF_TRY(writeFile(folder / kFiles[kind], image.textures[kind].texels));
-        }
-    }
-    RELIEF_TRY(writeFile(folder / kBlock, image.block));
-    RELIEF_TRY(writeFile(folder / kGlsl, bytesOf(std::string(kShaderLicence) + image.defines + core)));
-    const Json all{{"format", kFormat},
-                   {"tool", collider.provenance.tool_version},
-                   {"bounds", {{"min", jsonOf(collider.bounds.min)}, {"max", jsonOf(collider.bounds.max)}}},
-                   {"unit", collider.unit},
-                   {"maps", collider.maps.size()},
-                   {"glsl", kGlsl},
-                   {"block", {{"name", "ReliefMaps"}, {"file", kBlock}, {"bytes", image.block.size()}}},
-                   {"textures", textures}};
-    return writeFile(folder / kSizes, bytesOf(jsonText(all)));
-}
-
 bool isPatches(const DepthMap& map) {
     return map.format == MapFormat::kPatches;
 }
@@ -150,8 +89,12 @@ Result<void> prepareFolder(const std::filesystem::path& folder, const std::vecto
 
 Result<void> checkTogether(const ExportCommand& command) {
     const bool grids = !command.vdb.empty() || !command.mesh.empty();
-    if (command.output.empty() && command.gpu.empty() && !grids) {
-        return fail(ErrorCode::kUsage, "no output; add -o DIR, --gpu DIR, --vdb FILE or --mesh FILE");
+    if (command.output.empty() && command.engine.empty() && !grids) {
+        return fail(ErrorCode::kUsage, "no output; add -o DIR, --engine NAME DIR, --vdb FILE or --mesh FILE");
+    }
+    if (namesWorld(command.file) && (!command.output.empty() || grids)) {
+        return fail(ErrorCode::kUsage,
+                    quotedPath(command.file) + " is a level; only --engine exports levels");
     }
     if (command.voxels && !grids) {
         return fail(ErrorCode::kUsage, "--voxels has no effect without --vdb or --mesh; add one of them");
@@ -159,6 +102,51 @@ Result<void> checkTogether(const ExportCommand& command) {
     if (command.resolution && command.output.empty()) {
         return fail(ErrorCode::kUsage, "--resolution has no effect without -o; add -o DIR");
     }
+    return {};
+}
+
+std::string engineWords() {
+    std::string words;
+    for (const std::string_view name : kEngineNames) {
+        words.append(words.empty() ? "" : "|").append(name);
+    }
+    return words;
+}
+
+/// The engine of --engine, or nullopt without that option.
+Result<std::optional<Engine>> engineOf(const ExportCommand& command) {
+    if (command.engine.empty()) {
+        return std::nullopt;
+    }
+    const auto* const found = std::ranges::find(kEngineNames, command.engine.front());
+    if (found == kEngineNames.end()) {
+        return fail(ErrorCode::kUsage,
+                    "--engine is '" + command.engine.front() + "' but must be one of " + engineWords());
+    }
+    return static_cast<Engine>(found - kEngineNames.begin());
+}
+
+/// Writes the files of --engine. \param source  a Collider or a LoadedWorld
+template <class Source>
+Result<void> exportForEngine(const Source& source, Engine engine, const ExportCommand& command,
+                             FileGuard& files) {
+    const std::filesystem::path input = command.file;
+    // All worlds have the same file name.
+    std::string name =
+        (namesWorld(command.file) ? std::filesystem::absolute(input).parent_path() : input).stem().string();
+    name = cleanUtf8(name).empty() || command.file == "-" ? "collider" : cleanUtf8(name);
+    const std::vector<EngineFile> exported =
+        RELIEF_TRY(withPrefix(shownInput(command.file), engineFiles(source, name, engine)));
+    const std::filesystem::path folder = command.engine.back();
+    for (const EngineFile& file : exported) {
+        RELIEF_TRY(files.writes(folder / file.name, "--engine", folder));
+    }
+    for (const EngineFile& file : exported) {
+        RELIEF_TRY(files.makes((folder / file.name).parent_path(), "--engine"));
+        RELIEF_TRY(writeFile(folder / file.name, file.bytes));
+    }
+    spdlog::info("wrote {} files into {}; README.md there lists the next steps", exported.size(),
+                 quotedPath(folder));
     return {};
 }
 
@@ -198,6 +186,10 @@ Result<void> runExport(const ExportCommand& command, FileGuard& files) {
     if (!command.vdb.empty() || !command.mesh.empty()) {
         RELIEF_TRY(checkVdb());
     }
+    const std::optional<Engine> engine = RELIEF_TRY(engineOf(command));
+    if (namesWorld(command.file)) {
+        return exportForEngine(RELIEF_TRY(loadWorld(command.file, command.limits)), *engine, command, files);
+    }
     const Collider collider = RELIEF_TRY(loadCollider(command.file, command.limits));
     if (command.resolution && !collider.hasPatches()) {
         return fail(
@@ -205,23 +197,18 @@ Result<void> runExport(const ExportCommand& command, FileGuard& files) {
             shownInput(command.file) + " has no patches, and its maps have fixed sizes; remove --resolution");
     }
     const std::vector<NamedImage> images = imagesOf(collider, command.resolution.value_or(kResolution));
-    const std::vector<std::string> gpu = gpuFileNames(collider);
     if (!command.output.empty()) {
         std::vector<std::string> names;
         std::ranges::transform(images, std::back_inserter(names), &NamedImage::name);
         RELIEF_TRY(prepareFolder(command.output, names, "-o", files));
     }
-    if (!command.gpu.empty()) {
-        RELIEF_TRY(prepareFolder(command.gpu, gpu, "--gpu", files));
+    if (engine) {
+        RELIEF_TRY(exportForEngine(collider, *engine, command, files));
     }
     if (!command.output.empty()) {
         RELIEF_TRY(exportImages(images, command.output));
         spdlog::info("wrote {} images into {}", images.size(),
                      quotedPath(std::filesystem::path(command.output)));
-    }
-    if (!command.gpu.empty()) {
-        RELIEF_TRY(exportForGpu(collider, command.gpu));
-        spdlog::info("wrote {} files into {}", gpu.size(), quotedPath(std::filesystem::path(command.gpu)));
     }
     return exportGrids(collider, command);
 }
@@ -233,8 +220,8 @@ void addExport(CLI::App& app, Action& action) {
     CLI::App& verb = addVerb(
         app, command->common, "export",
         withDetails(
-            "Write maps as images, data for your renderer, a level set or a mesh\n\n"
-            "Choose at least one of -o (OpenEXR images), --gpu (textures and GLSL for your engine), --vdb "
+            "Write maps as images, files for your engine, a level set or a mesh\n\n"
+            "Choose at least one of -o (OpenEXR images), --engine (data and shaders for your engine), --vdb "
             "(OpenVDB level set) and --mesh (PLY).",
             "-o writes one image per map, such as map0_front-back.exr, and per face of a cube, "
             "map3_cube_+x.exr to map3_cube_-z.exr. Channels are Z and N.X, N.Y, N.Z; front-back maps also "
@@ -244,22 +231,27 @@ void addExport(CLI::App& app, Action& action) {
             "direction. depth.front and depth.back are the distances of the first and last surface from the "
             "near face of the bounds, in object units; normal.X, normal.Y and normal.Z are the normal of the "
             "first surface. Z and depth are +inf without a surface.\n"
-            "--gpu writes raw textures, the uniform block, GLSL, and their sizes as JSON "
-            "(runtime/layout/LAYOUT.md)."),
+            "--engine writes an uncompressed collider, its texels and constants, the collision function in "
+            "the engine's shading language, and README.md with the steps that remain. It needs a collider of "
+            "patches, the default of relief bake. For the world.json of a level, it writes the texels of all "
+            "colliders, a table of the bodies, and a grid to find them."),
         "relief export bunny.relief -o maps/ --resolution 1024\n"
-        "relief export bunny.relief --gpu engine/bunny/\n"
+        "relief export bunny.relief --engine unity Assets/Bunny\n"
+        "relief export level/world.json --engine c level_data\n"
         "relief export bunny.relief --vdb bunny.vdb --voxels 256\n"
         "relief export bunny.relief --mesh bunny.ply");
-    addOption(verb, "FILE", command->file, "Collider; - for standard input")->typeName("")->required();
+    addOption(verb, "FILE", command->file, "Collider, or world.json with --engine; - for standard input")
+        ->typeName("")
+        ->required();
     addOption(verb, "-o,--output", command->output, "Folder for OpenEXR images; created if missing")
         ->valueText("DIR");
     addOption(verb, "--resolution", command->resolution,
               "Texels along the longer side of each view of patches (default: 512)")
         ->valueText("N")
         ->transform(wholeNumber(kViewSizeMin, kViewSizeMax));
-    addOption(verb, "--gpu", command->gpu,
-              "Folder for the data that your own renderer uploads; created if missing")
-        ->valueText("DIR");
+    addOption(verb, "--engine", command->engine, "Engine, and the folder for its files; created if missing")
+        ->valueText(engineWords() + " DIR")
+        ->values(2);
     addOption(verb, "--vdb", command->vdb,
               "Level set of signed distances, named \"surface\"; - for standard output")
         ->valueText("OUT.vdb");
@@ -270,7 +262,7 @@ void addExport(CLI::App& app, Action& action) {
         ->valueText("N")
         ->transform(wholeNumber(kVoxelsMin, kVoxelsMax));
     addMemoryOption(verb, command->limits);
-    groupVerbOptions(verb, {{"Output", {"--output", "--gpu", "--vdb", "--mesh"}},
+    groupVerbOptions(verb, {{"Output", {"--output", "--engine", "--vdb", "--mesh"}},
                             {"Quality", {"--resolution", "--voxels"}}});
     onVerb(verb, [command, &action] {
         action = [command](FileGuard& files) { return runExport(*command, files); };

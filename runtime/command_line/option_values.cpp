@@ -46,6 +46,10 @@ OptionRef OptionRef::required() const {
     return option_->required();
 }
 
+OptionRef OptionRef::values(int count) const {
+    return option_->expected(count);
+}
+
 OptionRef OptionRef::needs(OptionRef other) const {
     return option_->needs(other.option_);
 }

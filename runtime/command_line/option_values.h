@@ -36,6 +36,7 @@ class OptionRef {
     OptionRef valueText(const std::string& text) const;  ///< the value's name in --help: "OUT.png"
     OptionRef typeName(const std::string& name) const;   ///< the same for a positional argument
     OptionRef required() const;                          ///< state it in the help of an option
+    OptionRef values(int count) const;                   ///< the number of values of a list
     OptionRef needs(OptionRef other) const;
     OptionRef needs(const std::string& name) const;
     OptionRef excludes(OptionRef other) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The data that ColliderTextures uploads, as bytes, for your own loaders (LAYOUT.md). Independent of GL.
+// The data that ColliderTextures uploads, as bytes, for pages. Independent of GL.
 #pragma once
 
 #include <array>

@@ -76,7 +76,7 @@ std::string scriptText(const Json& json) {
 /// Maximum data of a page in bytes, before encoding; browsers fail above.
 constexpr std::uint64_t kViewBytesMax = std::uint64_t{128} << 20;
 
-/// Returns a collider for a page: the output of `relief export --gpu`, and facts.
+/// Returns a collider for a page: its block, textures and GLSL (gpu_image.h), and facts.
 Result<Json> colliderJson(const Collider& collider) {
     const GpuImage image = RELIEF_TRY(gpuImage(collider));
     const std::string core = RELIEF_TRY(shaderText("collider/collider.glsl"));

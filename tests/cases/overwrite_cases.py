@@ -174,7 +174,7 @@ def relief_case(arena, random):
         lambda: ["relief", "check", "box.relief", "--mesh", "box.obj", "--samples", "50", "--html",
                  lead("box.relief", "box.obj", "box.mtl")],
         lambda: ["relief", "export", "box.relief", "--mesh", lead("box.relief"), "--voxels", "16"],
-        lambda: ["relief", "export", "box.relief", "--gpu", gpu_folder()],
+        lambda: ["relief", "export", "box.relief", "--engine", "c", engine_folder()],
         lambda: recipe() + [random.choice(["--stamp", "--depfile"]),
                             lead("recipe.toml", "box.obj", "box.mtl", ".relief-cache.json",
                                  "baked/box.relief")],
@@ -188,8 +188,8 @@ def relief_case(arena, random):
         (arena.folder / name / file).symlink_to("../box.relief")
         return name
 
-    def gpu_folder():
-        return folder_with(random.choice(["gpu.json", "block.bin", "collider.glsl"]))
+    def engine_folder():
+        return folder_with(random.choice(["box.relief", "box.texels", "relief.glsl", "README.md"]))
 
     def maps_folder():
         return folder_with(random.choice(["view_+x.exr", "view_-z.exr"]))

@@ -27,7 +27,7 @@ done
 exrheader small/view_-y.exr | matches '(39 ' || die "not 40 texels along the longer side: $(exrheader small/view_-y.exr)"
 "$relief" export - -o again --resolution 40 <p.relief
 diff -r small again || die "two exports differ"
-expect_error 1 'resolution has no effect without -o' "$relief" export p.relief --gpu gpu --resolution 40
+expect_error 1 'resolution has no effect without -o' "$relief" export p.relief --mesh gpu --resolution 40
 expect_error 1 'no patches.*remove --resolution' "$relief" export b.relief -o none --resolution 40
 expect_error 1 '--resolution' "$relief" export p.relief -o none --resolution 5000
 [ ! -e none ] || die "a rejected export created a folder"
@@ -44,16 +44,24 @@ expect_error 1 'out.jpg. must end in .png or .exr' "$relief" slice p.relief -o o
 cp p.relief p.exr
 expect_error 1 'output' "$relief" slice p.exr -o p.exr
 
-# An exported shader states its licence, is ASCII, and has no unused constants.
-"$relief" export b.relief --gpu gpu
-python3 - <<'P' || die "collider.glsl: $(head -5 gpu/collider.glsl)"
-import re
-text = open('gpu/collider.glsl', 'rb').read().decode('ascii')
-assert text.startswith('// SPDX-License-Identifier: Apache-2.0\n')
-head = text[text.index('#define RELIEF_ALL'):text.index('struct ReliefMap')]
-unused = [n for n in re.findall(r'(?m)^#define (RELIEF_[A-Z0-9_]+) \S', head) if len(re.findall(rf'\b{n}\b', text)) < 2]
-assert not unused, unused
-P
+# Files for other engines. Texts state their licence, and pages have no links to files that are not there.
+"$relief" bake "$bunny" -o engine.relief -q --budget 20kB
+"$relief" export engine.relief --engine c engine_c/deep
+cmp engine.relief engine_c/deep/engine.relief || die "the exported collider differs"
+[ "$(stat -c %s engine_c/deep/engine.constants)" -eq 80 ] || die "80 bytes of constants"
+[ "$(($(stat -c %s engine_c/deep/engine.texels) % 16384))" -eq 0 ] || die "texels are not whole rows"
+for engine in c godot unity unreal three playcanvas; do
+    "$relief" export engine.relief --engine $engine engine_$engine -q
+    find engine_$engine -name '*.h' -o -name '*.glsl' -o -name '*.hlsl' -o -name '*.wgsl' -o -name '*.gd*' | while read -r file; do
+        head -1 "$file" | grep -q 'SPDX-License-Identifier: Apache-2.0' || die "$file has no licence"
+    done
+    [ -s engine_$engine/README.md ] && ! grep -q '](\.' engine_$engine/README.md || die "$engine has no page, or dead links"
+done
+expect_error 1 "engine is 'quake' but must be one of c|godot" "$relief" export engine.relief --engine quake none
+expect_error 1 'engine' "$relief" export engine.relief --engine c
+expect_error 1 'b.relief.*: engines read one map of patches.* bake it again without --map' "$relief" export b.relief --engine c none
+expect_error 1 'only --engine exports levels' "$relief" export level/world.json -o none
+[ ! -e none ] || die "a rejected export created a folder"
 
 # Outputs are deterministic.
 "$relief" slice b.relief --axis z --at center --size 200 -o again.png

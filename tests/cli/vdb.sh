@@ -84,5 +84,5 @@ expect_error 1 'output .* is the input' "$relief" export b.relief --vdb b.relief
 expect_error 2 'folder' "$relief" export b.relief --vdb nowhere/x.vdb
 [ ! -e x.vdb ] || die "a rejected export left a file"
 mkdir -p both
-expect_error 1 '--mesh and --gpu would both write' "$relief" export b.relief --mesh both/block.bin --gpu both
+expect_error 1 '--mesh and --engine would both write' "$relief" export b.relief --mesh both/relief.glsl --engine c both
 [ -z "$(ls both)" ] || die "a rejected export wrote files"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The collider of a page without a scene: the output of `relief export --gpu` (runtime/layout/LAYOUT.md), and facts.
+// The collider of a page without a scene: its uniform block, textures and GLSL (runtime/layout/gpu_image.h), and facts.
 // Has the members of Collider and GpuCollider of relief-particles that the page uses.
 import { damaged, fromBase64 } from "./page_data.js";
 

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// The broad phase of an exported level: a uniform grid as plain data.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bake/engines/engine_constants.h"
+
+namespace relief {
+
+/// A body of a level: 7 texels of RGBA32F.
+struct EngineBody {
+    EngineConstants constants;  ///< in world space
+    std::array<float, 4>
+        min_restitution{};  ///< minimum of the world-space box; factor of the particle's restitution
+    std::array<float, 4> max_friction{};  ///< maximum; factor of 1 - friction
+};
+static_assert(sizeof(EngineBody) == 112);
+
+/// Returns a grid over the boxes of the bodies, as words: the numbers of cells along x, y and z; the number of entries;
+/// as floats, the minimum corner and the edge of a cell; the index of the first entry of each cell, x fastest, and of
+/// the end; the entries, which are indices of bodies in ascending order within a cell.
+[[nodiscard]] std::vector<std::uint32_t> bodyCells(std::span<const EngineBody> bodies);
+
+}  // namespace relief

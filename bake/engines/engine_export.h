@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// The files that another engine needs to collide particles with a collider or a level.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/base/result.h"
+#include "formats/collider.h"
+#include "formats/world/world.h"
+
+namespace relief {
+
+enum class Engine : std::uint8_t { kC, kGodot, kUnity, kUnreal, kThree, kPlaycanvas };
+
+/// By Engine.
+inline constexpr std::array<std::string_view, 6> kEngineNames{"c",      "godot", "unity",
+                                                              "unreal", "three", "playcanvas"};
+
+/// A file of an export.
+struct EngineFile {
+    std::string name;  ///< below the folder of the export, with `/`
+    std::vector<std::byte> bytes;
+};
+
+/// Returns NAME.relief without compression, NAME.texels and NAME.constants, the texts of the engine, and README.md.
+/// \param name  of the collider, a file name without extension.
+/// Errors: those of engineMap() and writeContainer().
+[[nodiscard]] Result<std::vector<EngineFile>> engineFiles(const Collider& collider, std::string_view name,
+                                                          Engine engine);
+
+/// Returns the same files for a level, with NAME.bodies and NAME.grid in place of NAME.relief and NAME.constants.
+/// README.md in this folder describes them.
+/// Errors: those of engineMap(); kLimit (more texels than a texture holds).
+[[nodiscard]] Result<std::vector<EngineFile>> engineFiles(const LoadedWorld& world, std::string_view name,
+                                                          Engine engine);
+
+}  // namespace relief
