@@ -189,7 +189,7 @@ fn reliefPatches(texels: texture_2d<u32>, place: vec4i, p: vec3f, whole: bool) -
         vote = reliefPatch(texels, place.x, record, leaf.q);
         if (pair) {
             let other = reliefPatch(texels, place.x, reliefPatchTexel(texels, first + 1), leaf.q);
-            vote = select(vote, other, (select(other.w < vote.w, other.w > vote.w, (leaf.record.x & 16u) != 0u)));
+            vote = select(vote, other, (select((other.w < vote.w), (other.w > vote.w), (leaf.record.x & 16u) != 0u)));
         }
         vote.w = leaf.cell * vote.w;
     } else if (leaf.inside || whole) {

@@ -65,6 +65,11 @@ def ends_of(text, at, step):
     return at if step > 0 else at + 1
 
 
+def argument(text):
+    """Returns an argument of select(); WGSL reads `<` and a later `>` in a list of arguments as a template."""
+    return f"({text})" if re.search(" [<>] ", text) else text
+
+
 def without_choices(expression):
     """Replaces `c ? a : b` by select(b, a, c), from the last one to the first."""
     while "?" in expression:
@@ -75,7 +80,8 @@ def without_choices(expression):
         condition, yes, no = (expression[begin:at].strip(), expression[at + 1:colon].strip(),
                               expression[colon + 1:end].strip())
         space = " " if expression[begin] == " " else ""
-        expression = f"{expression[:begin]}{space}select({no}, {yes}, {condition}){expression[end:]}"
+        choice = f"select({argument(no)}, {argument(yes)}, {condition})"
+        expression = f"{expression[:begin]}{space}{choice}{expression[end:]}"
     return expression
 
 
