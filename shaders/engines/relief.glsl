@@ -10,6 +10,9 @@
 #ifndef RELIEF_FAR_OUTSIDE
 #define RELIEF_FAR_OUTSIDE 1.0e30
 #endif
+#ifndef RELIEF_PRECISE  // define it as precise, if the compiler has that qualifier, for exactly the signs of the CPU
+#define RELIEF_PRECISE
+#endif
 struct ReliefCollider {
     vec4 row_x;   // object space to map space, whose unit is a root cell
     vec4 row_y;
@@ -38,7 +41,8 @@ float reliefDot(vec3 a, vec3 b) {
     return a.x * b.x + (a.y * b.y + a.z * b.z);
 }
 float reliefRow(vec4 row, vec3 p) {
-    return row.x * p.x + (row.y * p.y + (row.z * p.z + row.w));
+    RELIEF_PRECISE float sum = row.x * p.x + (row.y * p.y + (row.z * p.z + row.w));
+    return sum;
 }
 vec3 reliefUnit(vec3 v) {
     return v * inversesqrt(v.x * v.x + v.y * v.y + v.z * v.z);
@@ -74,7 +78,7 @@ vec3 reliefPatchAcross(uvec2 record, vec3 q) {
     vec3 abc = axis == 0u ? q : axis == 1u ? q.yzx : q.zxy;
     float a = (record.x & 0x200u) != 0u ? 1.0 - abc.x : abc.x;
     float b = (record.x & 0x400u) != 0u ? 1.0 - abc.y : abc.y;
-    vec3 at = vec3(b, abc.z, a);
+    RELIEF_PRECISE vec3 at = vec3(b, abc.z, a);
     if (diagonal == 1u) {
         at = vec3(0.5 * (a - b + 1.0), abc.z, a + b);
     } else if (diagonal == 2u) {
@@ -111,10 +115,7 @@ vec4 reliefPatchCodes(highp usampler2D texels, int first, uvec2 record, vec2 cor
                 float(reliefPatchByte(words, at + side)), float(last));
 }
 
-// Return the height of code 0, and the height of one code step.
-float reliefPatchBase(uvec2 record) {
-    return (float((record.x >> 11u) & 0xfffu) - 2048.0) * (1.0 / 512.0);
-}
+// Returns the height of one code step.
 float reliefPatchStep(uvec2 record) {
     uint scale = record.y >> 24u;
     float power = uintBitsToFloat(((scale >> 4u) + 115u) << 23u);  // 2^((scale >> 4) - 12); exp2() may round
@@ -134,7 +135,8 @@ vec4 reliefPatch(highp usampler2D texels, int first, uvec2 record, vec3 q) {
     float unit = reliefPatchStep(record);
     float lower = c.x + t.x * (c.y - c.x);
     float upper = c.z + t.x * (c.w - c.z);
-    float height = reliefPatchBase(record) + unit * (lower + t.y * (upper - lower));
+    float base = (float((record.x >> 11u) & 0xfffu) - 2048.0) * (1.0 / 512.0);  // height of code 0
+    RELIEF_PRECISE float height = base + unit * (lower + t.y * (upper - lower));
     float by_u = (unit * squares) * ((c.y - c.x) + t.y * ((c.w - c.z) - (c.y - c.x)));
     float by_v = (unit * squares) * (upper - lower);
     vec3 g = vec3(1.0, -by_u, -by_v);

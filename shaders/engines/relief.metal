@@ -41,7 +41,8 @@ inline float reliefDot(float3 a, float3 b) {
     return a.x * b.x + (a.y * b.y + a.z * b.z);
 }
 inline float reliefRow(float4 row, float3 p) {
-    return row.x * p.x + (row.y * p.y + (row.z * p.z + row.w));
+    float sum = row.x * p.x + (row.y * p.y + (row.z * p.z + row.w));
+    return sum;
 }
 inline float3 reliefUnit(float3 v) {
     return v * rsqrt(v.x * v.x + v.y * v.y + v.z * v.z);
@@ -114,10 +115,7 @@ inline float4 reliefPatchCodes(texture2d<uint> texels, int first, uint2 record, 
                 float(reliefPatchByte(words, at + side)), float(last));
 }
 
-// Return the height of code 0, and the height of one code step.
-inline float reliefPatchBase(uint2 record) {
-    return (float((record.x >> 11u) & 0xfffu) - 2048.0) * (1.0 / 512.0);
-}
+// Returns the height of one code step.
 inline float reliefPatchStep(uint2 record) {
     uint scale = record.y >> 24u;
     float power = as_type<float>(((scale >> 4u) + 115u) << 23u);  // 2^((scale >> 4) - 12); exp2() may round
@@ -137,7 +135,8 @@ inline float4 reliefPatch(texture2d<uint> texels, int first, uint2 record, float
     float unit = reliefPatchStep(record);
     float lower = c.x + t.x * (c.y - c.x);
     float upper = c.z + t.x * (c.w - c.z);
-    float height = reliefPatchBase(record) + unit * (lower + t.y * (upper - lower));
+    float base = (float((record.x >> 11u) & 0xfffu) - 2048.0) * (1.0 / 512.0);  // height of code 0
+    float height = base + unit * (lower + t.y * (upper - lower));
     float by_u = (unit * squares) * ((c.y - c.x) + t.y * ((c.w - c.z) - (c.y - c.x)));
     float by_v = (unit * squares) * (upper - lower);
     float3 g = float3(1.0, -by_u, -by_v);

@@ -35,7 +35,8 @@ fn reliefDot(a: vec3f, b: vec3f) -> f32 {
     return a.x * b.x + (a.y * b.y + a.z * b.z);
 }
 fn reliefRow(row: vec4f, p: vec3f) -> f32 {
-    return row.x * p.x + (row.y * p.y + (row.z * p.z + row.w));
+    let sum = row.x * p.x + (row.y * p.y + (row.z * p.z + row.w));
+    return sum;
 }
 fn reliefUnit(v: vec3f) -> vec3f {
     return v * inverseSqrt(v.x * v.x + v.y * v.y + v.z * v.z);
@@ -108,10 +109,7 @@ fn reliefPatchCodes(texels: texture_2d<u32>, first: i32, record: vec2u, corner: 
         f32(reliefPatchByte(words, at + side)), f32(last));
 }
 
-// Return the height of code 0, and the height of one code step.
-fn reliefPatchBase(record: vec2u) -> f32 {
-    return (f32((record.x >> 11u) & 0xfffu) - 2048.0) * (1.0 / 512.0);
-}
+// Returns the height of one code step.
 fn reliefPatchStep(record: vec2u) -> f32 {
     let scale = record.y >> 24u;
     let power = bitcast<f32>(((scale >> 4u) + 115u) << 23u);  // 2^((scale >> 4) - 12); exp2() may round
@@ -131,7 +129,8 @@ fn reliefPatch(texels: texture_2d<u32>, first: i32, record: vec2u, q: vec3f) -> 
     let unit = reliefPatchStep(record);
     let lower = c.x + t.x * (c.y - c.x);
     let upper = c.z + t.x * (c.w - c.z);
-    let height = reliefPatchBase(record) + unit * (lower + t.y * (upper - lower));
+    let base = (f32((record.x >> 11u) & 0xfffu) - 2048.0) * (1.0 / 512.0);  // height of code 0
+    let height = base + unit * (lower + t.y * (upper - lower));
     let by_u = (unit * squares) * ((c.y - c.x) + t.y * ((c.w - c.z) - (c.y - c.x)));
     let by_v = (unit * squares) * (upper - lower);
     var g = vec3f(1.0, -by_u, -by_v);

@@ -24,6 +24,12 @@ def words(text, table):
     return re.sub(r"\b(%s)\b" % "|".join(table), lambda match: table[match[1]], text)
 
 
+def without_precise(text):
+    """Removes RELIEF_PRECISE, for languages without that qualifier."""
+    text = re.sub(r"#ifndef RELIEF_PRECISE.*\n.*\n#endif\n", "", text)
+    return text.replace("RELIEF_PRECISE ", "")
+
+
 def aligned(text):
     """Aligns the comments of the members of each structure."""
     def align(match):
@@ -41,6 +47,7 @@ def hlsl(text):
 
 
 def metal(text):
+    text = without_precise(text)
     text = FETCH.sub(lambda match: f"{match[1]}.read(uint2({match[2]}))", text)
     text = text.replace("highp usampler2D", "texture2d<uint>")
     text = re.sub(r"^(\w+ \w+\()", r"inline \1", text, flags=re.M)
@@ -49,7 +56,7 @@ def metal(text):
 
 
 def godot(text):
-    return text  # Godot reads GLSL ES, but only includes files with this suffix
+    return without_precise(text)  # Godot reads GLSL ES, but only includes files with this suffix
 
 
 def ends_of(text, at, step):
@@ -116,7 +123,7 @@ def wrapped(line):
 
 
 def wgsl(text):
-    text = joined(text)
+    text = joined(without_precise(text))
     text = re.sub(r"#ifndef \w+\n#define (\w+) (\S+)\n#endif\n", r"const \1 = \2;\n", text)
     text = FETCH.sub(r"textureLoad(\1, ivec2(\2), 0)", text)
     functions = re.split(r"(?<=^}\n)", text, flags=re.M)
