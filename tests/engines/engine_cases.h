@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ten colliders and their queries, to compare the texts of shaders/engines with the CPU's field (formats/collider.h).
+// Every program that executes a text uses the inputs of Case and returns one Answer per query.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "formats/collider.h"
+
+namespace relief::engines {
+
+inline constexpr std::uint32_t kWidth = 2048;  ///< texels per row of the texture
+
+/// The 80 bytes of ReliefCollider in relief.glsl.
+struct Constants {
+    std::array<glm::vec4, 3> rows;
+    glm::vec4 size;
+    std::array<std::int32_t, 4> place;
+};
+static_assert(sizeof(Constants) == 80);
+
+/// The inputs of reliefDistance() and reliefCollide(); object space. The last number of point and velocity is unused.
+struct Query {
+    glm::vec4 point;
+    glm::vec4 velocity;
+    glm::vec4 reaction;  ///< radius, restitution, friction, unused
+};
+
+/// The results of both functions.
+struct Answer {
+    glm::vec4 surface;   ///< normal, distance
+    glm::vec4 position;  ///< of the motion; then its distance
+    glm::vec4 velocity;  ///< of the motion; then 0
+    glm::vec4 normal;    ///< of the motion; then 0
+};
+
+struct Case {
+    std::string name;
+    Collider collider;  ///< one map of patches
+    Constants constants;
+    std::vector<std::uint16_t> texels;  ///< rows of kWidth texels, four words each
+    std::vector<Query> queries;
+
+    [[nodiscard]] std::uint32_t height() const {
+        return static_cast<std::uint32_t>(texels.size() / (4 * kWidth));
+    }
+};
+
+/// Patches in all 13 frames and 3 sizes, pairs, cells without a patch, coarse cells, one root and many, a deep tree, a
+/// tree behind others in its texture, rotations, reflections, scales from 0.001 to 1000, and a baked bunny.
+/// \param count  queries per collider: uniform, close to the surface, on borders of cells, and a few of them not finite.
+[[nodiscard]] std::vector<Case> makeCases(std::size_t count);
+
+/// A case from a baked collider; also for files.
+/// \param before  texels in front of the tree.
+[[nodiscard]] Case makeCase(std::string name, Collider collider, std::size_t count, std::uint32_t seed,
+                            std::uint32_t before = 0);
+
+/// How the answers of a text differ from the CPU's. Only queries that agree in sign and are not at a border count for the
+/// largest differences.
+struct Difference {
+    std::size_t inside = 0;   ///< queries that both evaluate as inside
+    std::size_t outside = 0;  ///< queries that both evaluate as outside, within the roots
+    std::size_t beyond = 0;   ///< queries that both evaluate as outside the roots
+    std::size_t hits = 0;     ///< queries that move the particle
+
+    std::size_t signs = 0;    ///< queries with different signs, or outside the roots for only one
+    std::size_t rounded = 0;  ///< the same, but within kRounding of the surface
+    std::size_t borders = 0;  ///< queries that rounding moves into another cell or square of heights
+    double patches = 0.0;     ///< largest difference of distances to patches, in root cells
+    double flat = 0.0;        ///< the same in cells without a patch; relative to the distance if that is longer
+    double normal = 0.0;      ///< largest difference of normals
+    double motion = 0.0;      ///< largest error of reliefCollide(), relative to its inputs
+    std::size_t reactions = 0;  ///< queries whose motion has another distance, hit or normal than its formula
+    std::string first;          ///< the first query with a different sign or reaction
+
+    /// Returns whether no sign and no reaction differ, and all differences are within the bounds below.
+    /// \param exact  distances to patches are equal bit by bit, also their signs and borders
+    [[nodiscard]] bool isWithinBounds(bool exact) const;
+    [[nodiscard]] std::string text() const;
+};
+
+/// Compares distances and normals with the CPU's, and motions with their formula in doubles for the text's own surface.
+[[nodiscard]] Difference compare(const Case& one, std::span<const Answer> answers);
+
+/// One ulp of a root cell's edge, as a fraction of that edge.
+inline constexpr double kUlp = 0x1p-23;
+/// Bound of distances. Compilers may reorder operations unless a text is `precise`. Texts also multiply by
+/// 1 / length if the CPU divides normals of cells without a patch by their length.
+inline constexpr double kRounding = 4.0 * kUlp;
+inline constexpr double kNormalMax = 2e-6;
+inline constexpr double kMotionMax = 4e-7;
+inline constexpr double kBorderMax = 2e-3;  ///< fraction of queries
+
+}  // namespace relief::engines

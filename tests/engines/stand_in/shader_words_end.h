@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ends shader_words_begin.h, and removes the macros of the text.
+#undef float
+#undef float2
+#undef float3
+#undef float4
+#undef vec2
+#undef vec3
+#undef vec4
+#undef ivec2
+#undef ivec4
+#undef uvec2
+#undef uvec4
+#undef highp
+#undef xy
+#undef xyz
+#undef yzx
+#undef zxy
+#undef yzw
+#undef RELIEF_LOG2_WIDTH
+#undef RELIEF_FAR_OUTSIDE
+#ifdef __clang__
+#pragma clang diagnostic pop
+#endif
