@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
@@ -102,8 +103,8 @@ DepthMap makeTree(const PatchTreeSize& size, Random& random, const Choice& choos
             case Kind::kSplit: {
                 const glm::vec3 normal = direction(random);
                 const auto inside = below(random, 256);
-                records.push_back(PatchRecord::split(node.children, inside, first[i], normal,
-                                                     within(random, -0.9F, 0.9F)));
+                records.push_back(
+                    PatchRecord::split(node.children, inside, first[i], normal, within(random, -0.9F, 0.9F)));
                 break;
             }
             case Kind::kPatch:
@@ -208,24 +209,29 @@ Gap gapOf(const Answer& answer, const FieldSample& cpu, double edge) {
     // A NaN differs.
     gap.sign = !((own.w < 0.0F) == cpu.inside() && (own.w >= kFarOutside) == (cpu.distance >= kFarOutside) &&
                  !std::isnan(own.w));
-    gap.distance = std::abs(double{own.w} - double{cpu.distance}) / std::max(edge, std::abs(double{cpu.distance}));
+    gap.distance =
+        std::abs(double{own.w} - double{cpu.distance}) / std::max(edge, std::abs(double{cpu.distance}));
     gap.normal = double{glm::length(glm::vec3(own) - cpu.normal)};
     return gap;
 }
 
-/// Whether the answer agrees with the CPU at one of 26 points around p, as far away as rounding may move p.
+/// Whether the answer agrees with the CPU at one of 26 points around p, at one of three distances by which rounding may
+/// move p. The largest may cross another border.
 bool isAtBorder(const Collider& collider, const glm::vec3& p, const Answer& answer) {
     const DepthMap& map = collider.maps[0];
     const double edge = double{map.object_per_map.x};
     float largest = 1.0F;
     for (const glm::vec4& row : map.object_to_map.row) {
-        largest = std::max({largest, std::abs(row.x * p.x) + std::abs(row.y * p.y) + std::abs(row.z * p.z), std::abs(row.w)});
+        const glm::vec3 terms = glm::abs(glm::vec3(row) * p);
+        largest = std::max({largest, terms.x + terms.y + terms.z, std::abs(row.w)});
     }
-    const float step = map.object_per_map.x * 4.0F * static_cast<float>(kUlp) * largest;
-    for (int k = 0; k < 27; ++k) {
-        const glm::vec3 way(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
-        if (gapOf(answer, evaluate(collider, p + step * way), edge).agrees()) {
-            return true;
+    for (const float ulps : {0.5F, 1.0F, 4.0F}) {
+        const float step = map.object_per_map.x * ulps * static_cast<float>(kUlp) * largest;
+        for (int k = 0; k < 27; ++k) {
+            const glm::vec3 way(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+            if (gapOf(answer, evaluate(collider, p + step * way), edge).agrees()) {
+                return true;
+            }
         }
     }
     return false;
@@ -251,13 +257,12 @@ double motionError(const Query& query, const Answer& answer) {
         return unchanged || std::isnan(query.point.x + query.point.y + query.point.z) ? 0.0 : -1.0;
     }
     const double speed = glm::dot(v, n);
-    const glm::dvec3 velocity = speed < 0.0 ? (1.0 - friction) * (v - speed * n) -
-                                                  double{query.reaction.y} * speed * n
-                                            : v;
+    const glm::dvec3 velocity =
+        speed < 0.0 ? (1.0 - friction) * (v - speed * n) - double{query.reaction.y} * speed * n : v;
     const glm::dvec3 position = p - double{distance} * n;
-    return std::max(glm::length(glm::dvec3(answer.position) - position) /
-                        (glm::length(p) + std::abs(double{distance})),
-                    glm::length(glm::dvec3(answer.velocity) - velocity) / (glm::length(v) + 1e-30));
+    return std::max(
+        glm::length(glm::dvec3(answer.position) - position) / (glm::length(p) + std::abs(double{distance})),
+        glm::length(glm::dvec3(answer.velocity) - velocity) / (glm::length(v) + 1e-30));
 }
 
 }  // namespace
@@ -320,7 +325,10 @@ std::vector<Case> makeCases(std::size_t count) {
     map = makeTree({{24, 20, 16}, 1}, random, [&](std::uint32_t level, std::size_t i) {
         const auto kind = below(random, level == 0 ? 4 : 3);
         Node node = randomPatch(random);
-        node.kind = kind == 0 ? Kind::kFlat : kind == 1 ? Kind::kPatch : kind == 2 ? Kind::kPair : Kind::kSplit;
+        node.kind = kind == 0   ? Kind::kFlat
+                    : kind == 1 ? Kind::kPatch
+                    : kind == 2 ? Kind::kPair
+                                : Kind::kSplit;
         node.children = static_cast<std::uint32_t>(i) & 255U;
         return node;
     });
@@ -372,6 +380,9 @@ Difference compare(const Case& one, std::span<const Answer> answers) {
             double& distance = !far && isInPatch(map, p) ? difference.patches : difference.flat;
             distance = std::max(distance, gap.distance);
             difference.normal = std::max(difference.normal, gap.normal);
+            if (!gap.agrees()) {
+                note(i, "another distance");
+            }
         }
         const double error = motionError(one.queries[i], answers[i]);
         difference.hits += answers[i].position.w < 0.0F ? 1U : 0U;
@@ -386,7 +397,8 @@ Difference compare(const Case& one, std::span<const Answer> answers) {
 
 bool Difference::isWithinBounds(bool exact) const {
     const auto queries = static_cast<double>(inside + outside + beyond);
-    return signs == 0 && reactions == 0 && flat <= kRounding && normal <= kNormalMax && motion <= kMotionMax &&
+    return signs == 0 && reactions == 0 && flat <= kRounding && normal <= kNormalMax &&
+           motion <= kMotionMax &&
            (exact ? rounded == 0 && borders == 0 && patches == 0.0
                   : static_cast<double>(rounded + borders) <= kBorderMax * queries && patches <= kRounding);
 }
@@ -394,10 +406,11 @@ bool Difference::isWithinBounds(bool exact) const {
 std::string Difference::text() const {
     std::ostringstream out;
     out.precision(3);
-    out << inside << " inside, " << outside << " outside, " << beyond << " beyond, " << hits << " hits; " << signs
-        << " signs differ, " << rounded << " within rounding, " << borders << " at borders; distances "
-        << patches / kUlp << " ulp at patches, " << flat / kUlp << " ulp elsewhere; normals " << normal
-        << "; motions " << motion << ", " << reactions << " reactions differ";
+    out << inside << " inside, " << outside << " outside, " << beyond << " beyond, " << hits << " hits; "
+        << signs << " signs differ, " << rounded << " within rounding, " << borders
+        << " at borders; distances " << patches / kUlp << " ulp at patches, " << flat / kUlp
+        << " ulp elsewhere; normals " << normal << "; motions " << motion << ", " << reactions
+        << " reactions differ";
     return first.empty() ? out.str() : out.str() + "; " + first;
 }
 

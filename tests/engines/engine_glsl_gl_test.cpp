@@ -82,8 +82,8 @@ Result<std::vector<Answer>> evaluateOnGpu(const GlProgram& program, const Case& 
 
 class EngineGlTest : public GlTest {};
 
-void expectTheCpuField(std::size_t points) {
-    const GlProgram program = required(makeQueryProgram("engines/relief.glsl", kMain));
+void expectTheCpuField(std::size_t points, const std::string& defines, bool exact) {
+    const GlProgram program = required(makeQueryProgram("engines/relief.glsl", kMain, defines));
     glUniformBlockBinding(program.name(), glGetUniformBlockIndex(program.name(), "u_constants"), 0);
     program.use();
     const char* const names[] = {"u_texels", "u_points", "u_velocities", "u_reactions"};
@@ -93,7 +93,16 @@ void expectTheCpuField(std::size_t points) {
     glUseProgram(0);
     for (const Case& one : makeCases(points)) {
         SCOPED_TRACE(one.name);
-        expectEqualFields(one, required(evaluateOnGpu(program, one)), false);
+        expectEqualFields(one, required(evaluateOnGpu(program, one)), exact);
+    }
+}
+
+/// Also precise, with the extension that adds this qualifier to GLSL 330.
+void expectTheCpuField(std::size_t points) {
+    expectTheCpuField(points, "", false);
+    if (!isGles()) {
+        expectTheCpuField(points, "#extension GL_ARB_gpu_shader5 : require\n#define RELIEF_PRECISE precise\n",
+                          true);
     }
 }
 

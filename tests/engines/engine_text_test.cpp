@@ -59,7 +59,10 @@ void expectTheCpuField(std::size_t points, auto distance, auto collide) {
     for (const Case& one : makeCases(points)) {
         SCOPED_TRACE(one.name);
         const Constants& own = one.constants;
-        const Collider collider{real4(own.rows[0]), real4(own.rows[1]), real4(own.rows[2]), real4(own.size),
+        const Collider collider{real4(own.rows[0]),
+                                real4(own.rows[1]),
+                                real4(own.rows[2]),
+                                real4(own.size),
                                 {own.place[0], own.place[1], own.place[2], own.place[3]}};
         const Texture texels{&one.texels};
         std::vector<Answer> answers;
@@ -76,11 +79,11 @@ void expectTheCpuField(std::size_t points, auto distance, auto collide) {
     }
 }
 
-#define RELIEF_TEXT_TEST(language, points, Texture)                                    \
-    TEST(EngineText, language##EqualsTheCpuAt##points##Points) {                       \
-        expectTheCpuField<stand_in::language::ReliefCollider, Texture>(                \
+#define RELIEF_TEXT_TEST(language, points, Texture)                                       \
+    TEST(EngineText, language##EqualsTheCpuAt##points##Points) {                          \
+        expectTheCpuField<stand_in::language::ReliefCollider, Texture>(                   \
             points, [](auto... in) { return stand_in::language::reliefDistance(in...); }, \
-            [](auto... in) { return stand_in::language::reliefCollide(in...); });      \
+            [](auto... in) { return stand_in::language::reliefCollide(in...); });         \
     }
 RELIEF_TEXT_TEST(Glsl, 4000, stand_in::Texels)
 RELIEF_TEXT_TEST(Glsl, 100000, stand_in::Texels)

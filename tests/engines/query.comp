@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Executes relief.glsl in Vulkan, for vulkan_host.cpp.
+// Executes relief.glsl in Vulkan for vulkan_host.cpp. DISTANCE_ONLY is for --time.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "relief.glsl"
@@ -31,11 +31,10 @@ void main() {
         return;
     }
     Query query = queries[i];
-#ifdef DISTANCE_ONLY
     ReliefSurface s = reliefDistance(texels, collider, query.point.xyz);
+#ifdef DISTANCE_ONLY
     answers[i].surface = vec4(s.normal, s.distance);
 #else
-    ReliefSurface s = reliefDistance(texels, collider, query.point.xyz);
     ReliefMotion m = reliefCollide(texels, collider, query.point.xyz, query.velocity.xyz, query.reaction.x,
                                    query.reaction.y, query.reaction.z);
     answers[i] = Answer(vec4(s.normal, s.distance), vec4(m.position, m.distance), vec4(m.velocity, 0.0),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Executes relief.hlsl in Vulkan, for vulkan_host.cpp.
+// Executes relief.hlsl in Vulkan for vulkan_host.cpp.
 #include "relief.hlsl"
 [[vk::binding(0)]] Texture2D<uint4> texels : register(t0);
 [[vk::binding(1)]] cbuffer Constants : register(b0) {
@@ -28,15 +28,11 @@ void main(uint3 id : SV_DispatchThreadID) {
         ReliefSurface s = reliefDistance(texels, collider, query.at.xyz);
         Answer answer;
         answer.surface = float4(s.normal, s.distance);
-#ifndef DISTANCE_ONLY
         ReliefMotion m = reliefCollide(texels, collider, query.at.xyz, query.velocity.xyz, query.reaction.x,
                                        query.reaction.y, query.reaction.z);
         answer.position = float4(m.position, m.distance);
         answer.velocity = float4(m.velocity, 0.0);
         answer.normal = float4(m.normal, 0.0);
-#else
-        answer.position = answer.velocity = answer.normal = float4(0.0, 0.0, 0.0, 0.0);
-#endif
         answers[id.x] = answer;
     }
 }

@@ -3,8 +3,8 @@
 //
 //     relief_vulkan_host glsl|hlsl SHADER.spv CASE ANSWERS [--time N]
 //
-// Reads a case of write_engine_cases.cpp and writes its answers. --time also runs N queries 20 times and prints the median
-// time per query. Needs only libvulkan. VK_ICD_FILENAMES selects a driver.
+// Reads a case of write_engine_cases.cpp and writes its answers. --time also runs N queries 20 times and prints the
+// median time per query. Needs only libvulkan. VK_ICD_FILENAMES selects a driver.
 #include <vulkan/vulkan.h>
 
 #include <algorithm>
@@ -317,8 +317,8 @@ class Program {
                     write.descriptorType = texture_type_;
                     write.pImageInfo = &image;
                 } else {
-                    write.descriptorType = i == 1 ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
-                                                  : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+                    write.descriptorType =
+                        i == 1 ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
                     buffer = {buffers[i - 1]->name, 0, buffers[i - 1]->size};
                     write.pBufferInfo = &buffer;
                 }

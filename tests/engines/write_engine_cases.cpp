@@ -2,8 +2,9 @@
 // Writes the colliders and queries of engine_cases.h for programs in other languages, and compares their answers:
 //
 //     relief_engine_cases write FOLDER [QUERIES [FILE.relief]]   0.case, 1.case, …
-//     relief_engine_cases compare FOLDER NAME [QUERIES [FILE.relief]]   0.NAME, 1.NAME, …; fails if one differs
+//     relief_engine_cases compare|exact FOLDER NAME [QUERIES [FILE.relief]]   0.NAME, …; fails if one differs
 //
+// exact requires distances to patches that are equal bit by bit.
 // FILE.relief adds a baked collider. A case is little-endian: u32 height, u32 queries; 80 bytes of constants;
 // 2048 · height texels of 8 bytes; queries of 12 floats. Answers have 16 floats each. engine_cases.h names them.
 #include <cstdlib>
@@ -46,9 +47,12 @@ bool write(const std::filesystem::path& path, const Case& one) {
 int main(int argc, char** argv) {
     const std::vector<std::string> words(argv + 1, argv + argc);
     const bool writes = !words.empty() && words[0] == "write";
+    const bool exact = !words.empty() && words[0] == "exact";
     const std::size_t own = writes ? 2 : 3;  // words before the options
-    if (words.size() < own || words.size() > own + 2 || (!writes && words[0] != "compare")) {
-        return fail("usage: relief_engine_cases write FOLDER | compare FOLDER NAME, then [QUERIES [FILE.relief]]");
+    if (words.size() < own || words.size() > own + 2 || (!writes && !exact && words[0] != "compare")) {
+        return fail(
+            "usage: relief_engine_cases write FOLDER | compare|exact FOLDER NAME, then [QUERIES "
+            "[FILE.relief]]");
     }
     const std::size_t count =
         words.size() > own ? std::strtoul(words[own].c_str(), nullptr, 10) : std::size_t{100'000};
@@ -83,9 +87,9 @@ int main(int argc, char** argv) {
         }
         std::memcpy(answers.data(), bytes->data(), bytes->size());
         const Difference difference = compare(cases[i], answers);
-        equal = equal && difference.isWithinBounds(false);
+        equal = equal && difference.isWithinBounds(exact);
         std::cout << words[2] << ", " << cases[i].name << ": " << difference.text()
-                  << (difference.isWithinBounds(false) ? "" : " - NOT EQUAL") << '\n';
+                  << (difference.isWithinBounds(exact) ? "" : " - NOT EQUAL") << '\n';
     }
     return equal ? 0 : 7;
 }

@@ -107,6 +107,14 @@ job_oracle() {
     programs '*' "$bin/relief_oracle_test"
 }
 
+job nightly 3 engines
+job_engines() {
+    release relief relief_engine_cases relief_vulkan_host relief_engine_shaders
+    "$bin/relief" bake /usr/share/glmark2/models/bunny.obj -o "$work/bunny.relief" -q
+    python3 tests/engines/vulkan_texts.py "$bin" "$work" "$work/bunny.relief" | sed "s/^/$name: /"
+    python3 tests/engines/page_snippets.py | sed "s/^/$name: /"
+}
+
 job nightly 2 bench
 job_bench() {
     release

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// C++ types and functions that stand in for those of GLSL, HLSL and MSL, as far as the texts of shaders/engines use them.
-// A text compiles as C++ between shader_words_begin.h and shader_words_end.h, inside relief::stand_in. That executes its
-// arithmetic on the CPU; it does not prove that a shader compiler accepts the text.
+// C++ types and functions that stand in for those of GLSL, HLSL and MSL, as far as the texts of shaders/engines use
+// them. A text compiles as C++ between shader_words_begin.h and shader_words_end.h, inside relief::stand_in. That
+// executes its arithmetic on the CPU; it does not prove that a shader compiler accepts the text.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ struct Real {
 
     Real() = default;
     template <class T>
-        requires std::floating_point<T> || std::integral<T>
+    requires std::floating_point<T> || std::integral<T>
     constexpr Real(T number) : value(static_cast<float>(number)) {}  // NOLINT(google-explicit-constructor)
     explicit operator int() const { return static_cast<int>(value); }
     explicit operator uint() const { return static_cast<uint>(value); }
@@ -141,7 +141,8 @@ struct Texels {
     [[nodiscard]] uint4 at(int x, int y) const {
         constexpr int kWidth = 2048;
         const auto word = [&](std::size_t i) {
-            return uint{words->at(4 * (static_cast<std::size_t>(y) * kWidth + static_cast<std::size_t>(x)) + i)};
+            return uint{
+                words->at(4 * (static_cast<std::size_t>(y) * kWidth + static_cast<std::size_t>(x)) + i)};
         };
         return {word(0), word(1), word(2), word(3)};
     }
