@@ -239,7 +239,7 @@ const int SQUARES_MAX = 10;  // squares that a ray can cross in a patch: 4 + 3, 
 Stretch aheadInPatch(int first, uvec2 record, vec3 q, vec3 way, float tiny, float ends, int border) {
     vec3 from = reliefPatchAcross(record, q);
     vec3 across = reliefPatchAcross(record, way) - reliefPatchAcross(record, vec3(0.0));
-    from.z -= reliefPatchBase(record);
+    from.z -= (float((record.x >> 11u) & 0xfffu) - 2048.0) * (1.0 / 512.0);  // the height of code 0
     float unit = reliefPatchStep(record);
     int above = (record.x & 16u) != 0u ? -1 : 1;
     float here = 0.5 * tiny;
