@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// A collider for other engines, without WebAssembly: reads a container, answers queries on the CPU, and has the collision
+// function as text for shaders. Lengths are in object units, distances positive outside.
+
+/** Three numbers that a function writes: an array, or a Float32Array. */
+export type WritableVec3 = [number, number, number] | number[] | Float32Array;
+export type Vec3 = readonly [number, number, number] | readonly number[] | Float32Array;
+
+/** A collider with one map of patches, the default of `relief bake`. Its buffers are for upload; do not change them. */
+export interface Collider {
+    /** The uniform block ReliefCollider in the layout std140: 80 bytes. `floats` and `integers` are views of it. */
+    readonly constants: ArrayBuffer;
+    /** 16 floats: row_x, row_y, row_z and size of ReliefCollider, four each. */
+    readonly floats: Float32Array;
+    /** Four integers: place of ReliefCollider. */
+    readonly integers: Int32Array;
+    /** The texture, RGBA16UI: four words per texel, row by row. Sample it without filtering. */
+    readonly texels: Uint16Array;
+    /** The same bytes in 32-bit words. */
+    readonly words: Uint32Array;
+    /** Texels: always 2048. */
+    readonly width: number;
+    /** Texels: 1 to 8192. WebGPU supports 8192, WebGL2 gl.getParameter(gl.MAX_TEXTURE_SIZE). */
+    readonly height: number;
+    /** The box of the mesh. */
+    readonly bounds: { readonly min: readonly number[]; readonly max: readonly number[] };
+    /** The unit of length, such as "m"; "" if the mesh has none. */
+    readonly unit: string;
+}
+
+export interface OpenOptions {
+    /** Decompresses a zstd frame of known size, such as `decompress` of fzstd. Only for `relief bake --compress`. */
+    decompress?: (packed: Uint8Array, size: number) => Uint8Array;
+}
+
+/**
+ * Reads a `.relief` container. The result owns its memory.
+ * @throws Error with one line if the bytes are damaged, or of another version, or have another map than one of patches
+ */
+export function openCollider(bytes: ArrayBuffer | ArrayBufferView, options?: OpenOptions): Collider;
+
+/**
+ * Returns the signed distance of a point from the surface, the same float as the C++ library; 1e30 outside the cells.
+ * @param normal  is set to the normal: outwards, of unit length; 0 outside the cells
+ */
+export function distance(collider: Collider, point: Vec3, normal?: WritableVec3): number;
+
+export interface Contact {
+    /** Radius of the particle, at least 0 (default: 0). */
+    radius?: number;
+    /** Factor of the velocity along the normal, 0 to 1 (default: 0). */
+    restitution?: number;
+    /** Loss of the velocity along the surface, 0 to 1 (default: 0). With restitution 0: 0 slides, 1 sticks. */
+    friction?: number;
+    /** Is set to the normal of the surface that was hit, or to 0. */
+    normal?: WritableVec3;
+}
+
+/**
+ * Moves a particle that overlaps the collider to its surface, and reflects its velocity: reliefCollide() on the CPU.
+ * @param position  after the step; changed if the particle hits
+ * @param velocity  likewise
+ * @returns the distance less the radius: negative if the particle hit
+ */
+export function collide(collider: Collider, position: WritableVec3, velocity: WritableVec3, contact?: Contact): number;
+
+/** shaders/engines/relief.glsl, for GLSL ES 3.00, 3.30 and Vulkan: reliefDistance() and reliefCollide(). */
+export const glsl: string;
+/** shaders/engines/relief.wgsl, for WebGPU. */
+export const wgsl: string;
