@@ -7,7 +7,6 @@
 README.md: links to the scene keys point to SCENE.md, which is included; other links out of it become plain text.
 package.json: gets the version.
 relief.d.ts: gets the scene types, generated from the JSON Schema of scenes.
-engines/shaders.js: the texts of shaders/engines, as strings.
 """
 import json
 import pathlib
@@ -60,15 +59,6 @@ def within(text, files, renamed):
     return re.sub(r"(?<!!)\[([^\]]*)\]\(([^)\s]+)\)", link, text)
 
 
-def shader_texts(folder):
-    """Returns a module that exports the shader texts."""
-    lines = ["// SPDX-License-Identifier: Apache-2.0"]
-    for name in ("glsl", "wgsl"):
-        text = (folder / f"relief.{name}").read_text(encoding="utf-8")
-        lines.append(f"export const {name} = {json.dumps(text, ensure_ascii=False)};")
-    return "\n".join(lines) + "\n"
-
-
 def main():
     source, package, version = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3]
     about = json.loads((source / "package.json").read_text(encoding="utf-8"))
@@ -81,9 +71,8 @@ def main():
         "README.md": within((source / "README.md").read_text(encoding="utf-8"), files, {SCENE: "SCENE.md"}),
         "SCENE.md": within((source / SCENE).read_text(encoding="utf-8"), files, {}),
         "package.json": json.dumps(about, indent=4, ensure_ascii=False) + "\n",
-        "engines/shaders.js": shader_texts(source / "../../shaders/engines"),
     }
-    (package / "engines").mkdir(parents=True, exist_ok=True)
+    package.mkdir(parents=True, exist_ok=True)
     for name, text in texts.items():
         file = package / name
         if not file.exists() or file.read_text(encoding="utf-8") != text:

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The entry relief-particles/collider: a collider for other engines, without WebAssembly. index.d.ts documents it.
+// esbuild bundles it into one file and embeds the shader texts: CMakeLists.txt beside this folder.
 export { openCollider } from "./open.js";
 export { collide, distance } from "./patches.js";
-export { glsl, wgsl } from "./shaders.js";
+export { default as glsl } from "../../../shaders/engines/relief.glsl";
+export { default as wgsl } from "../../../shaders/engines/relief.wgsl";

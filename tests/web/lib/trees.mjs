@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Containers of patches written by hand: random trees with every kind of leaf, and damaged files whose checksums are right.
-import { xxh3 } from "../../../out/npm/engines/xxh3.js";
+import { xxh3 } from "../../../runtime/web/engines/xxh3.js";
 import { generator } from "./native.mjs";
 
 /** The 13 frames: [diagonal, first axis, mirrored]. */
