@@ -138,8 +138,9 @@ class Writer {
 }
 
 /**
- * A container with one map of patches.
+ * A container with one map of patches. Its last bytes are the payload.
  * transform: 12 numbers, the rows of object_to_map; root: the edge of a root cell; map: other values of its fields.
+ * @returns { bytes, hashAt, payloadAt }: the container, and places in it
  */
 export function containerOf(words, { transform = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0], root = 1, ...map } = {}) {
     const texels = words.length / 2;
@@ -156,13 +157,13 @@ export function containerOf(words, { transform = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 
     const floats = (values) => [4 * values.length, 4, () => writer.floats(values)];
     writer.number(0, 4);
     writer.bytes.push(...Buffer.from("RLF2"));
-    const root_ = writer.table(0, [floats([0, 0, 0]), floats([1, 1, 1]), offset, offset, offset]);
-    writer.text(root_[2], "m");
-    const provenance = writer.table(root_[3], [offset, offset, [8, 8, () => writer.number(12, 8)], offset]);
+    const collider = writer.table(0, [floats([0, 0, 0]), floats([1, 1, 1]), offset, offset, offset]);
+    writer.text(collider[2], "m");
+    const provenance = writer.table(collider[3], [offset, offset, [8, 8, () => writer.number(12, 8)], offset]);
     writer.text(provenance[0], "tree.obj");
     writer.text(provenance[1], "00112233445566778899aabbccddeeff");
     writer.text(provenance[3], "test");
-    writer.follow(root_[4]);
+    writer.follow(collider[4]);
     writer.number(1, 4);
     const list = writer.bytes.length;
     writer.number(0, 4);
@@ -174,8 +175,7 @@ export function containerOf(words, { transform = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 
                                        byte(fields.decode)]);
     const end = 64 + writer.bytes.length;
     const at = Math.ceil(end / 64) * 64;
-    const payloadAt = places[9];
-    [0, 8, 16, 24].forEach((shift, i) => (writer.bytes[payloadAt + i] = (at >> shift) & 0xff));
+    writer.patch(places[9], at);
     const bytes = new Uint8Array(at + payload.length);
     bytes.set([0xab, ...Buffer.from("RELIEF"), 0xbb, 13, 10, 26, 10, 2, 0, 0, 0, 64]);
     bytes.set(writer.bytes, 64);
@@ -184,12 +184,18 @@ export function containerOf(words, { transform = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 
     view.setBigUint64(24, BigInt(bytes.length), true);
     view.setBigUint64(32, 64n, true);
     view.setBigUint64(40, BigInt(writer.bytes.length), true);
-    return seal(bytes);
+    return { bytes: seal(bytes), hashAt: 64 + places[9] + 24, payloadAt: at };
 }
 
-/** Corrects the checksums of the metadata and of the header, so that readers reach the checks behind them. */
-export function seal(bytes) {
+/**
+ * Corrects the checksums, so that readers reach the checks behind them. hashAt, payloadAt: as of containerOf(), for the
+ * checksum of the payload.
+ */
+export function seal(bytes, hashAt, payloadAt) {
     const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+    if (hashAt) {
+        view.setBigUint64(hashAt, xxh3(bytes.subarray(payloadAt)), true);
+    }
     const size = view.getBigUint64(40, true);
     if (size >= 9n && size <= BigInt(bytes.length - 64)) {
         view.setBigUint64(48, xxh3(bytes.subarray(64, 64 + Number(size))), true);
