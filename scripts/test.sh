@@ -3,7 +3,7 @@
 # Installs missing packages, builds the product once, and tests it. Needs no GPU. scripts/test.sh [--quick|--gpu]
 #
 #   (nothing)  the default tier: every area of the product, sanitizers on all readers of untrusted bytes, and the page of a
-#              collider in a real browser
+#              collider and the collision function for other engines in a real browser
 #   --quick    after an edit: builds what changed; skips slow cases, scripts longer than a few seconds, and the browser
 #   --gpu      every GL test on this machine's GPU: scripts/gpu_test.sh
 #
@@ -39,4 +39,5 @@ stage 'web setup' scripts/setup.sh web
 stage 'web build' scripts/build.sh web
 export RELIEF_BIN=$PWD/build/test/bin LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp:print_suppressions=0
 stage 'browser test' node --test tests/web/collider_page_test.mjs
+stage 'collision function in a browser' node --test tests/web/engines_test.mjs
 stage 'particles in a browser' node --test --test-name-pattern='^particles meet the body' tests/web/view_test.mjs

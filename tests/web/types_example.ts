@@ -2,6 +2,8 @@
 // Uses every declaration of relief-particles once, for the compiler: types_test.mjs.
 import Relief, { Collider, GpuCollider, ParticleSystem, ReliefError, World, init, load, streamWorld } from "relief-particles";
 import type { Answers, Birth, Scene } from "relief-particles";
+import { collide, distance, glsl, openCollider, wgsl } from "relief-particles/collider";
+import type { Contact } from "relief-particles/collider";
 
 export async function everything(gl: WebGL2RenderingContext, program: WebGLProgram, file: File): Promise<string[]> {
     await init({ wasmUrl: new URL("https://example.org/relief_wasm.wasm") });
@@ -57,4 +59,16 @@ export async function everything(gl: WebGL2RenderingContext, program: WebGLProgr
     }
     [system, other, gpu, collider, dropped].forEach((one) => one.dispose());
     return [source, String(texture), String(sum + accepted + alive + missing)];
+}
+
+export function withoutWebAssembly(bytes: Uint8Array, unzip: (packed: Uint8Array) => Uint8Array): string {
+    const { constants, texels, width, height, bounds, unit, ...collider } = openCollider(bytes, { decompress: (packed) => unzip(packed) });
+    const position = new Float32Array(3);
+    const velocity = [0, -1, 0];
+    const contact: Contact = { radius: 0.01, restitution: 0.4, friction: 0.2, normal: new Float32Array(3) };
+    const whole = openCollider(bytes.buffer as ArrayBuffer);
+    const left: number = collide(whole, position, velocity, contact) + distance(whole, [0, 1, 0], position);
+    // @ts-expect-error: a point has three numbers
+    distance(whole, 1);
+    return `${glsl}${wgsl}${unit}${left + constants.byteLength + texels[0] + width + height + bounds.min[0] + collider.floats[0] + collider.integers[0]}`;
 }

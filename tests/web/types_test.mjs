@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief.d.ts type-checks an example that uses everything, by `tsc --strict`, and declares exactly the exports of
-// relief.js.
+// relief.d.ts and engines.d.ts type-check an example that uses everything, by `tsc --strict`, and declare exactly the
+// exports of relief.js and engines.js.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { copyFileSync, mkdirSync, readFileSync, symlinkSync, writeFileSync } from "node:fs";
@@ -10,7 +10,7 @@ import test from "node:test";
 import { modules, root } from "./lib/browser.mjs";
 import { scratch } from "./lib/native.mjs";
 
-test("the types compile and are complete", { timeout: 60_000 }, (t) => {
+test("the types compile and are complete", { timeout: 60_000 }, async (t) => {
     const folder = scratch(t);
     mkdirSync(path.join(folder, "node_modules"));
     symlinkSync(path.join(root, "out/npm"), path.join(folder, "node_modules/relief-particles"));
@@ -24,4 +24,5 @@ test("the types compile and are complete", { timeout: 60_000 }, (t) => {
     const exported = (file) => [...readFileSync(path.join(root, "out/npm", file), "utf8")
         .matchAll(/^export (?:(?:async )?(?:class|function|const)|\{) (\w+)/gm)].map(([, name]) => name).sort();
     assert.deepEqual(exported("relief.d.ts"), exported("relief.js"));
+    assert.deepEqual(exported("engines.d.ts"), Object.keys(await import("../../out/npm/engines.js")).sort());
 });
