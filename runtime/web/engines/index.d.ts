@@ -29,7 +29,10 @@ export interface Collider {
 }
 
 export interface OpenOptions {
-    /** Decompresses a zstd frame of known size, such as `decompress` of fzstd. Only for `relief bake --compress`. */
+    /**
+     * Decompresses a zstd frame of known size, as fzstd does. Only for `relief bake --compress`. Its result is checked, but
+     * only this function can tell a malformed frame whose checksum is right.
+     */
     decompress?: (packed: Uint8Array, size: number) => Uint8Array;
 }
 

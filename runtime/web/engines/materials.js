@@ -22,7 +22,8 @@ function checkNodes(bytes, leaves) {
         }
         const head = view.getUint32(kNodeBytes * i, true);
         const mask = head & 0xff;
-        check(i < known && level <= kLevelsMax && head >>> 8 === (mask === 0 ? 0 : known), `material node ${i} is out of order`);
+        check(i < known && level <= kLevelsMax && head >>> 8 === (mask === 0 ? 0 : known),
+              `material node ${i} is out of order`);
         for (let octant = 0; octant < 8; ++octant) {
             const isNode = ((mask >>> octant) & 1) !== 0;
             const leaf = bytes[kNodeBytes * i + 4 + octant];
@@ -45,10 +46,12 @@ export function validateMaterials({ list, sides, origin, size, nodes, compressio
           "a material has a number out of range");
     const pairs = (sides?.byteLength ?? 0) / 3;
     const leaves = list.length + pairs;
-    check(pairs <= 255 && leaves <= 256, `there are ${pairs} pairs of sides; together with the materials, more than 256`);
+    check(pairs <= 255 && leaves <= 256,
+          `there are ${pairs} pairs of sides; together with the materials, more than 256`);
     for (let i = 0; i < pairs; ++i) {
         const [axis, towards, against] = [0, 1, 2].map((k) => sides.getUint8(3 * i + k));
-        check(axis < kAxes && towards < list.length && against < list.length, "a pair of sides has an invalid axis or material");
+        check(axis < kAxes && towards < list.length && against < list.length,
+              "a pair of sides has an invalid axis or material");
     }
     const stored = nodes ? bytesOf(nodes) : new Uint8Array(0);
     let raw = stored;
@@ -58,9 +61,10 @@ export function validateMaterials({ list, sides, origin, size, nodes, compressio
               "the size of the material nodes does not match their bytes");
         raw = compression === 0 ? stored : unpack(stored, nodesSize, decompress, "the tree of the materials");
     }
-    check(list.length > 0 || (pairs === 0 && size === 0 && raw.length === 0 && [0, 4, 8].every((at) => origin.getFloat32(at, true) === 0)),
+    const corner = [0, 4, 8].map((at) => origin.getFloat32(at, true));
+    check(list.length > 0 || (pairs === 0 && size === 0 && raw.length === 0 && corner.every((x) => x === 0)),
           "there is a material tree, but no materials");
-    check([0, 4, 8].every((at) => Number.isFinite(origin.getFloat32(at, true))) && size >= 0 && Number.isFinite(size) &&
-          (size > 0 || raw.length === 0), "the cube of the materials is not finite, or empty");
+    check([...corner, size].every(Number.isFinite) && size >= 0 && (size > 0 || raw.length === 0),
+          "the cube of the materials is not finite, or empty");
     checkNodes(raw, leaves);
 }

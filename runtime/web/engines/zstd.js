@@ -35,10 +35,16 @@ function exactFrame(bytes, size) {
     return stated === size && at + (descriptor & 4) === bytes.length;
 }
 
+/** Decompresses bytes by the caller's function. what: the subject of messages. */
 export function unpack(packed, size, decompress, what) {
     check(decompress, `${what} is compressed with zstd; pass { decompress }, or bake again with --compress 0`);
     check(exactFrame(packed, size), `${what} is not exactly one zstd frame with a content size of ${size} bytes`);
-    const texels = decompress(packed, size);
-    check(texels instanceof Uint8Array && texels.length === size, `${what} does not decompress to ${size} bytes`);
-    return texels;
+    let raw;
+    try {
+        raw = decompress(packed, size);
+    } catch (error) {
+        check(false, `${what} cannot be decompressed: ${error.message}`);
+    }
+    check(raw instanceof Uint8Array && raw.length === size, `${what} does not decompress to ${size} bytes`);
+    return raw;
 }

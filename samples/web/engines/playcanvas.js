@@ -7,8 +7,8 @@ import { kParticles } from "./snow.js";
 // The collider: a texture, and four vectors of floats and one of integers, for all particle systems of the device.
 function setCollider(device, { texels, width, height, floats, integers }) {
     const texture = new pc.Texture(device, {
-        width, height, format: pc.PIXELFORMAT_RGBA16U, mipmaps: false, minFilter: pc.FILTER_NEAREST, magFilter: pc.FILTER_NEAREST,
-        levels: [texels],
+        width, height, format: pc.PIXELFORMAT_RGBA16U, levels: [texels], mipmaps: false,
+        minFilter: pc.FILTER_NEAREST, magFilter: pc.FILTER_NEAREST,
     });
     device.scope.resolve("reliefTexels").setValue(texture);
     device.scope.resolve("reliefRows[0]").setValue(floats);
@@ -65,7 +65,8 @@ export async function start() {
         read: async () => {
             const rows = await Promise.all(systems.map(({ emitter }) => {
                 const texture = emitter.swapTex ? emitter.particleTexOUT : emitter.particleTexIN;
-                return texture.read(0, 0, perSystem, 1, { renderTarget: emitter.swapTex ? emitter.rtParticleTexOUT : emitter.rtParticleTexIN });
+                const renderTarget = emitter.swapTex ? emitter.rtParticleTexOUT : emitter.rtParticleTexIN;
+                return texture.read(0, 0, perSystem, 1, { renderTarget });
             }));
             return Float32Array.from(rows.flatMap((row) => [...row]));
         },
