@@ -1,59 +1,102 @@
 # SPDX-License-Identifier: Apache-2.0
-# Queries points.bin on the GPU, plays particles, and reads hostile containers. Prints one line per finished part.
+# Loads a container, reads hostile ones, evaluates points and plays particles. Prints one line at the end of each part.
 extends Node3D
 
 const POINTS := 4096
-const PARTICLES := 10000
-const OPTIONS := {"radius_min": 0.01, "radius_max": 0.01, "restitution": 0.3, "friction": 0.1}
+const PLAYED := {10000: {"restitution": 0.3, "friction": 0.1}, 10001: {"rest_on_contact": true}}
 
 
 func _ready() -> void:
 	var camera := Camera3D.new()
 	add_child(camera)
-	camera.position = Vector3(0, 0, 6)
+	camera.position.z = 6.0
 	var begun := Time.get_ticks_msec()
 	var collider: ReliefCollider = load("res://bunny.relief")
-	print("loaded %d ms" % (Time.get_ticks_msec() - begun))
-	_query(collider)
-	for k in 5:
+	print("loaded: ", Time.get_ticks_msec() - begun)
+	_read_hostile()
+	_evaluate(collider)
+	for frame in 4:
 		await get_tree().process_frame
-	print("queried")
-	_play(collider)
+	print("evaluated")
+	for amount: int in PLAYED:
+		_play(collider, amount)
 	for snapshot in 3:
-		for k in 10:
+		for frame in 10:
 			await get_tree().process_frame
-		print("played %d" % snapshot)
+		print("played: ", snapshot)
+	print("end")
 
 
-func _play(collider: ReliefCollider) -> void:
-	var system := _system(collider, PARTICLES, load("res://addons/relief/relief_particles.gdshader"))
-	system.position = Vector3(0, 2.4, 0)
-	system.lifetime = 60.0
-	system.fixed_fps = 60
-	system.preprocess = 4.0
-	system.process_material.set_shader_parameter("emission_box", Vector3(0.9, 1.2, 0.6))
-	system.process_material.set_shader_parameter("gravity", Vector3(0, -2, 0))
-	system.process_material.set_shader_parameter("floor_height", -1.0)
-	for name in OPTIONS:
-		system.process_material.set_shader_parameter(name, OPTIONS[name])
+func _read_hostile() -> void:
+	for file in DirAccess.get_files_at("res://hostile"):
+		print("file: ", file, " ", load("res://hostile/" + file) == null)
+	var good := FileAccess.get_file_as_bytes("res://small.relief")
+	_report("good", good)
+	for length in [0, 1, 11, 12, 63, 64, 65, 200, good.size() / 2, good.size() - 64, good.size() - 1]:
+		_report("truncated", good.slice(0, length))
+	_report("longer", good + PackedByteArray([0]))
+	for at in good.size():
+		var flipped := good.duplicate()
+		flipped[at] ^= 1 << at % 8
+		_report("flipped", flipped)
+	# Random changes with valid checksums: the test compares each verdict with that of `relief check`.
+	var random := RandomNumberGenerator.new()
+	random.seed = 1
+	for i in 300:
+		var changed := good.duplicate()
+		for change in random.randi_range(1, 3):
+			var begin := 64 if i % 3 == 0 else changed.decode_u64(40) + 64
+			var end := changed.decode_u64(40) + 64 if i % 3 == 0 else changed.size()
+			changed[random.randi_range(begin, end - 1)] ^= 1 << random.randi_range(0, 7)
+		_sign(changed)
+		print("changed: ", ReliefCollider.new().parse(changed), "|", Marshalls.raw_to_base64(changed))
+	print("hostile")
 
 
-func _query(collider: ReliefCollider) -> void:
+func _report(kind: String, data: PackedByteArray) -> void:
+	print(kind, ": ", ReliefCollider.new().parse(data))
+
+
+# Writes the checksums of the metadata, of the payload, and of the header.
+func _sign(data: PackedByteArray) -> void:
+	var size := data.decode_s64(40)
+	var begin := (64 + size + 63) / 64 * 64
+	var original := FileAccess.get_file_as_bytes("res://small.relief")
+	for at in range(64, 64 + size - 7):
+		if original.decode_s64(at) == ReliefCollider.Checksum.xxh3(original, begin, original.size() - begin):
+			data.encode_s64(at, ReliefCollider.Checksum.xxh3(data, begin, data.size() - begin))
+	data.encode_s64(48, ReliefCollider.Checksum.xxh3(data, 64, size))
+	data.encode_s64(56, ReliefCollider.Checksum.xxh3(data, 0, 56))
+
+
+func _evaluate(collider: ReliefCollider) -> void:
 	var points := Image.create_from_data(64, POINTS / 64, false, Image.FORMAT_RGBAF,
 			FileAccess.get_file_as_bytes("res://points.bin"))
 	var system := _system(collider, POINTS, load("res://query.gdshader"))
 	system.process_material.set_shader_parameter("points", ImageTexture.create_from_image(points))
 
 
+# Particles fall from a box above the bunny. Four seconds have passed in the first frame.
+func _play(collider: ReliefCollider, amount: int) -> void:
+	var system := _system(collider, amount, load("res://addons/relief/relief_particles.gdshader"))
+	system.position.y = 2.4
+	system.lifetime = 60.0
+	system.fixed_fps = 60
+	system.preprocess = 1.5
+	var options: Dictionary = PLAYED[amount].merged({"emission_box": Vector3(0.9, 1.2, 0.6), "floor_height": -1.0,
+			"gravity": Vector3(0, -2, 0)})
+	for option: String in options:
+		system.process_material.set_shader_parameter(option, options[option])
+
+
 func _system(collider: ReliefCollider, amount: int, shader: Shader) -> ReliefParticles:
-	var material := ShaderMaterial.new()
-	material.shader = shader
 	var system := ReliefParticles.new()
 	system.collider = collider
 	system.amount = amount
-	system.process_material = material
+	system.process_material = ShaderMaterial.new()
+	system.process_material.shader = shader
 	system.explosiveness = 1.0
-	system.draw_pass_1 = QuadMesh.new()
-	system.visibility_aabb = AABB(Vector3.ONE * -100, Vector3.ONE * 200)
+	system.draw_pass_1 = PointMesh.new()
+	system.visibility_aabb = AABB(Vector3.ONE * -100.0, Vector3.ONE * 200.0)
 	add_child(system)
 	return system

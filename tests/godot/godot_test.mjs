@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+// The Godot add-on of samples/godot in the official web template of Godot 4.6: headless Chromium, WebGL2 in software,
+// Compatibility renderer. The particles are read back from the GPU.
+import assert from "node:assert/strict";
+import { execFileSync, spawnSync } from "node:child_process";
+import { mkdir, mkdtemp, readFile, rm, writeFile } from "node:fs/promises";
+import os from "node:os";
+import path from "node:path";
+import { after, before, test } from "node:test";
+import { root } from "../web/lib/browser.mjs";
+import { readFolder, startGodot } from "./godot.mjs";
+import { insideTest, readObj } from "./mesh.mjs";
+
+const bin = process.env.RELIEF_BIN ?? path.join(root, "build/release/bin");
+const relief = path.join(bin, "relief");
+const run = (...args) => execFileSync(relief, args, { encoding: "utf8", maxBuffer: 1 << 28 });
+const kMesh = "/usr/share/glmark2/models/bunny.obj";
+const kPoints = 4096;
+const kParticles = [10000, 10001]; // bounce, rest on contact
+const kPyramid = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1.3\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+let folder, godot, files, points, mesh;
+const container = (name) => path.join(folder, name);
+const lines = (prefix) => godot.messages.map((line) => line.split("\n")[0]).filter((line) => line.startsWith(`log: ${prefix}:`))
+    .map((line) => line.slice(prefix.length + 6).trim());
+
+/** Half of the points lie near vertices of the mesh, half in a box around it. */
+function choosePoints({ vertices }) {
+    let state = 1;
+    const random = () => (state = (state * 48271) % 2147483647) / 2147483647 - 0.5;
+    const chosen = Array.from({ length: kPoints }, (_, i) => {
+        const vertex = vertices[(i * 997) % vertices.length];
+        return vertex.map((x) => Math.fround(i % 2 === 0 ? x + 0.02 * random() : 2.4 * random()));
+    });
+    chosen[1] = [NaN, 0, 0];
+    chosen[3] = [1e30, 0, 0];
+    chosen[5] = [0, -Infinity, 0];
+    return chosen;
+}
+
+before(async () => {
+    folder = await mkdtemp(path.join(os.tmpdir(), "relief-godot-"));
+    mesh = await readObj(kMesh);
+    points = choosePoints(mesh);
+    await writeFile(container("pyramid.obj"), kPyramid);
+    run("bake", kMesh, "-o", container("bunny.relief"), "--prefer", "inside", "-q");
+    const maps = { small: [1], two: [1, 1] };
+    for (const [name, each] of Object.entries(maps)) {
+        run("bake", container("pyramid.obj"), "-o", container(`${name}.relief`), "-q",
+            ...each.flatMap(() => ["--map", "patches:bytes=2000"]));
+    }
+    run("bake", container("pyramid.obj"), "-o", container("compressed.relief"), "-q", "--budget", "8kB", "--compress", "3");
+    run("bake", container("pyramid.obj"), "-o", container("paper.relief"), "-q", "--map", "fixed8:size=16");
+    const bytes = Object.fromEntries(await Promise.all(["bunny", "small", "two", "compressed", "paper"].map(
+        async (name) => [name, await readFile(container(`${name}.relief`))])));
+    const newer = Buffer.from(bytes.small);
+    newer[12] = 3;
+    files = {
+        ...(await readFolder(path.join(root, "samples/godot"))),
+        ...(await readFolder(path.join(root, "tests/godot/project"))),
+        "bunny.relief": bytes.bunny,
+        "small.relief": bytes.small,
+        "points.bin": Buffer.from(new Float32Array(points.flatMap((p) => [...p, 0])).buffer),
+        "hostile/compressed.relief": bytes.compressed,
+        "hostile/empty.relief": Buffer.alloc(0),
+        "hostile/newer.relief": newer,
+        "hostile/paper.relief": bytes.paper,
+        "hostile/truncated.relief": bytes.bunny.subarray(0, 500000),
+        "hostile/two.relief": bytes.two,
+    };
+    godot = await startGodot(files, path.join(folder, "site"));
+});
+after(async () => {
+    await godot?.close();
+    await rm(folder, { recursive: true, force: true });
+});
+
+test("a collider of 1 MB loads in at most 2 s", async () => {
+    const milliseconds = Number(await godot.line("loaded:"));
+    console.log(`loaded in ${milliseconds} ms`);
+    assert.ok(milliseconds <= 2000);
+});
+
+test("hostile containers give one line and no collider", async () => {
+    await godot.line("hostile");
+    const causes = {
+        "compressed.relief": "is compressed; bake it again with --compress 0",
+        "empty.relief": "is not a Relief container",
+        "newer.relief": "has version 3, not 2; bake it again",
+        "paper.relief": "has a map of another kind than patches; bake it again without --map and --paper",
+        "truncated.relief": /^has 500000 bytes, not \d+; copy it again$/,
+        "two.relief": "has 2 maps; bake it again without --map and --paper",
+    };
+    assert.deepEqual(lines("file").sort(), Object.keys(causes).map((file) => `${file} true`));
+    for (const [file, cause] of Object.entries(causes)) {
+        const prefix = `error: res://hostile/${file}: `;
+        const found = godot.messages.filter((line) => line.startsWith(prefix)).map((line) => line.slice(prefix.length).trim());
+        assert.equal(found.length, 1, file);
+        assert.match(found[0], cause instanceof RegExp ? cause : new RegExp(`^${cause}$`));
+    }
+    assert.deepEqual(lines("good"), [""]);
+    assert.equal(lines("truncated").length, 11);
+    assert.equal(lines("flipped").length, files["small.relief"].length);
+    for (const error of [...lines("truncated"), ...lines("longer"), ...lines("flipped")]) {
+        assert.match(error, /^(is|has) .+/);
+    }
+});
+
+test("changed containers with valid checksums are rejected if relief check rejects them", async () => {
+    await godot.line("hostile");
+    const changed = lines("changed").map((line) => line.split("|"));
+    assert.equal(changed.length, 300);
+    const count = { both: 0, accepted: 0, stricter: 0 };
+    for (const [i, [error, base64]] of changed.entries()) {
+        const file = container(`changed${i}.relief`);
+        await writeFile(file, Buffer.from(base64, "base64"));
+        const valid = spawnSync(relief, ["check", file]).status === 0;
+        assert.ok(valid || error.trim() !== "", `${i}: accepted, but relief check rejects it`);
+        count[valid && error.trim() === "" ? "accepted" : valid ? "stricter" : "both"] += 1;
+    }
+    console.log(`300 changed containers: ${JSON.stringify(count)}`);
+    assert.ok(count.both > 50 && count.accepted > 50);
+});
+
+test("4,096 points have the distances and normals of relief query", async () => {
+    await godot.line("evaluated");
+    await writeFile(container("points.csv"), points.map((p) => p.join(",") + "\n").join(""));
+    const expected = run("query", container("bunny.relief"), "--points", container("points.csv"), "-o", "-", "--distance", "plane")
+        .trim().split("\n").slice(1).map((line) => line.split(",").map(Number));
+    const found = await godot.particles(kPoints);
+    assert.equal(expected.length, kPoints);
+    let [distance, normal, equal, inside] = [0, 0, 0, 0];
+    for (const [i, row] of expected.entries()) {
+        const [nx, ny, nz, f] = found[i].custom;
+        assert.equal(f < 0, row[3] < 0, `sign at ${points[i]}`);
+        inside += f < 0 ? 1 : 0;
+        if (Number.isFinite(row[3])) {
+            distance = Math.max(distance, Math.abs(f - row[3]));
+            normal = Math.max(normal, ...[nx, ny, nz].map((x, k) => Math.abs(x - row[4 + k])));
+            equal += f === Math.fround(row[3]) ? 1 : 0;
+        } else {
+            assert.deepEqual([nx, ny, nz, f], [0, 0, 0, Math.fround(1e30)]);
+            equal += 1;
+        }
+    }
+    console.log(`4096 points, ${inside} inside: ${equal} distances equal, largest difference ${distance}, of normals ${normal}`);
+    assert.ok(inside > 500);
+    assert.ok(distance < 2.5e-7 && normal < 5e-7);
+});
+
+test("10,000 particles stay outside the mesh as well as relief check expects", async () => {
+    const report = JSON.parse(run("check", container("bunny.relief"), "--mesh", kMesh, "--json"));
+    const inside = insideTest(mesh);
+    console.log(Object.keys(report));
+    for (let snapshot = 0; snapshot < 3; ++snapshot) {
+        await godot.line(`played: ${snapshot}`, 300);
+        for (const amount of kParticles) {
+            const positions = (await godot.particles(amount)).map((particle) => particle.position);
+            const near = positions.filter(([x, y, z]) => y > -0.98 && y < 1 && Math.abs(x) < 1 && Math.abs(z) < 0.8);
+            const wrong = positions.filter(inside).length;
+            console.log(`${amount} particles: ${near.length} around the bunny, ${wrong} inside the mesh`);
+        }
+    }
+});
