@@ -57,9 +57,10 @@ export function packFiles(files) {
     return Buffer.concat([...contents, ...directory]);
 }
 
-// Keeps the newest buffer of each size that a particle shader wrote by transform feedback.
-function keepParticles() {
-    const written = new Map();
+// Runs in the page, before the engine. The project calls keepParticles(name, amount), which copies the particles that the
+// particle shader of the system with this amount wrote last, by transform feedback.
+function hookParticles() {
+    const written = new Map(); // by size in bytes
     const gl = WebGL2RenderingContext.prototype;
     const bind = gl.bindBufferBase;
     gl.bindBufferBase = function (target, index, buffer) {
@@ -68,16 +69,15 @@ function keepParticles() {
             written.set(this.getBufferParameter(target, this.BUFFER_SIZE), [this, buffer]);
         }
     };
-    globalThis.readParticles = (amount) => {
-        const kFloats = 24; // color, velocity and flags, custom, three rows of the transform
-        const values = new Float32Array(kFloats * amount);
+    globalThis.kept = {};
+    globalThis.keepParticles = (name, amount) => {
+        const values = new Float32Array(24 * amount); // color, velocity and flags, custom, three rows of the transform
         const [context, buffer] = written.get(values.byteLength);
         context.bindBuffer(context.COPY_READ_BUFFER, buffer);
         context.getBufferSubData(context.COPY_READ_BUFFER, 0, values);
         context.bindBuffer(context.COPY_READ_BUFFER, null);
-        return btoa(Array.from(new Uint8Array(values.buffer), (byte) => String.fromCharCode(byte)).join(""));
+        globalThis.kept[name] = Array.from(values);
     };
-    globalThis.writtenSizes = () => [...written.keys()];
 }
 
 /** Starts a project: { path: bytes }. `folder` is for the files to serve. The canvas has width times height pixels. */
@@ -86,7 +86,7 @@ export async function startGodot(files, folder, { width = 640, height = 480 } = 
     await writeFile(path.join(folder, "game.pck"), packFiles(files));
     await writeFile(path.join(folder, "index.html"), `<!DOCTYPE html>
 <body style="margin: 0"><canvas id="canvas" width="${width}" height="${height}"></canvas>
-<script>(${keepParticles})()</script>
+<script>(${hookParticles})()</script>
 <script src="/godot/index.js"></script>
 <script>
 new Engine({ executable: "/godot/index", mainPack: "/game.pck", canvasResizePolicy: 0, canvas: document.getElementById("canvas") })
@@ -110,13 +110,12 @@ new Engine({ executable: "/godot/index", mainPack: "/game.pck", canvasResizePoli
             }
             throw new Error(`no line '${prefix}' from Godot in ${seconds} s:\n${messages.join("\n").slice(0, 5000)}`);
         },
-        /** The particles that the GPU wrote last, of the system with this amount: { position, velocity, custom, flags }. */
-        async particles(amount) {
-            const bytes = Buffer.from(await page.evaluate((n) => globalThis.readParticles(n), amount), "base64");
-            const floats = new Float32Array(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length));
-            return Array.from({ length: amount }, (_, i) => {
-                const at = floats.subarray(24 * i, 24 * i + 24);
-                return { raw: at, custom: at.subarray(8, 12), position: [at[15], at[19], at[23]] };
+        /** The particles that the project kept with this name: { position, velocity, custom }. */
+        async particles(name) {
+            const values = await page.evaluate((kept) => globalThis.kept[kept], name);
+            return Array.from({ length: values.length / 24 }, (_, i) => {
+                const at = values.slice(24 * i, 24 * i + 24);
+                return { velocity: at.slice(4, 7), custom: at.slice(8, 12), position: [at[15], at[19], at[23]] };
             });
         },
         async close() {

@@ -3,7 +3,7 @@
 extends Node3D
 
 const POINTS := 4096
-const PLAYED := {10000: {"restitution": 0.3, "friction": 0.1}, 10001: {"rest_on_contact": true}}
+const PLAYED := {"bounce": {"restitution": 0.4, "friction": 0.1}, "rest": {"rest_on_contact": true}}
 
 
 func _ready() -> void:
@@ -17,21 +17,34 @@ func _ready() -> void:
 	_evaluate(collider)
 	for frame in 4:
 		await get_tree().process_frame
+	_keep("points", POINTS)
 	print("evaluated")
-	for amount: int in PLAYED:
-		_play(collider, amount)
+	for system: String in PLAYED:
+		_play(collider, system)
 	for snapshot in 3:
-		for frame in 10:
+		for frame in 6:
 			await get_tree().process_frame
-		print("played: ", snapshot)
+		for system: String in PLAYED:
+			_keep("%s %d" % [system, snapshot], _amount(system))
 	print("end")
+
+
+# Copies the particles of the system with this amount from the GPU, for the test.
+func _keep(name_: String, amount: int) -> void:
+	JavaScriptBridge.eval("keepParticles('%s', %d)" % [name_, amount], true)
+
+
+func _amount(system: String) -> int:
+	return 10000 + PLAYED.keys().find(system)
 
 
 func _read_hostile() -> void:
 	for file in DirAccess.get_files_at("res://hostile"):
 		print("file: ", file, " ", load("res://hostile/" + file) == null)
 	var good := FileAccess.get_file_as_bytes("res://small.relief")
-	_report("good", good)
+	var original := ReliefCollider.new()
+	print("good: ", original.parse(good))
+	print("constants: ", _constants(original))
 	for length in [0, 1, 11, 12, 63, 64, 65, 200, good.size() / 2, good.size() - 64, good.size() - 1]:
 		_report("truncated", good.slice(0, length))
 	_report("longer", good + PackedByteArray([0]))
@@ -49,8 +62,14 @@ func _read_hostile() -> void:
 			var end := changed.decode_u64(40) + 64 if i % 3 == 0 else changed.size()
 			changed[random.randi_range(begin, end - 1)] ^= 1 << random.randi_range(0, 7)
 		_sign(changed)
-		print("changed: ", ReliefCollider.new().parse(changed), "|", Marshalls.raw_to_base64(changed))
+		var collider := ReliefCollider.new()
+		var error := collider.parse(changed)
+		print("changed: ", error, "|", _constants(collider), "|", Marshalls.raw_to_base64(changed))
 	print("hostile")
+
+
+func _constants(collider: ReliefCollider) -> String:
+	return str(collider.rows, collider.size, collider.place, collider.bounds)
 
 
 func _report(kind: String, data: PackedByteArray) -> void:
@@ -76,14 +95,14 @@ func _evaluate(collider: ReliefCollider) -> void:
 	system.process_material.set_shader_parameter("points", ImageTexture.create_from_image(points))
 
 
-# Particles fall from a box above the bunny. Four seconds have passed in the first frame.
-func _play(collider: ReliefCollider, amount: int) -> void:
-	var system := _system(collider, amount, load("res://addons/relief/relief_particles.gdshader"))
+# Particles fall from a box above the bunny. In the first frame, a second has passed.
+func _play(collider: ReliefCollider, name_: String) -> void:
+	var system := _system(collider, _amount(name_), load("res://addons/relief/relief_particles.gdshader"))
 	system.position.y = 2.4
 	system.lifetime = 60.0
 	system.fixed_fps = 60
-	system.preprocess = 1.5
-	var options: Dictionary = PLAYED[amount].merged({"emission_box": Vector3(0.9, 1.2, 0.6), "floor_height": -1.0,
+	system.preprocess = 1.0
+	var options: Dictionary = PLAYED[name_].merged({"emission_box": Vector3(0.9, 1.2, 0.6), "floor_height": -1.0,
 			"gravity": Vector3(0, -2, 0)})
 	for option: String in options:
 		system.process_material.set_shader_parameter(option, options[option])
