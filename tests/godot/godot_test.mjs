@@ -171,7 +171,7 @@ test("no more of 10,000 particles are inside the mesh than relief check predicts
                         `${resting} at rest, ${wrong} inside the mesh`);
             assert.ok(particles.length >= 10000 && near.length > 1000);
             assert.ok(wrong / particles.length <= report.accuracy.near.false_outside_percent / 100);
-            assert.equal(resting > 1000, system === "rest" && snapshot > 0);
+            assert.equal(resting > 1000, system === "rest");
         }
     }
 });
