@@ -135,6 +135,19 @@ job_web() {
     return $status
 }
 
+job nightly 8 godot
+job_godot() {
+    release relief relief-import
+    scripts/setup.sh web
+    scripts/web_modules.sh
+    scripts/web_modules.sh godot
+    local status=0
+    RELIEF_BIN=$bin node --test tests/godot | tee "$work/node.log" || status=$?
+    say "$(sed -n 's/^# \(.* inside the mesh\)$/\1/p' "$work/node.log" | paste -sd';')"
+    say "$(sed -n 's/^# pass \([0-9]*\)$/\1/p' "$work/node.log") tests pass"
+    return $status
+}
+
 # sanitized OPTION…: runs tests in a build with all sanitizers, and -O1, because -O0 is too slow.
 sanitized() {
     built sanitize --preset sanitize -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG='-O1 -g1'

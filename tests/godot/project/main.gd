@@ -3,7 +3,11 @@
 extends Node3D
 
 const POINTS := 4096
-const PLAYED := {"bounce": {"restitution": 0.4, "friction": 0.1}, "rest": {"rest_on_contact": true}}
+const PLAYED := {
+	"bounce": {"restitution": 0.4, "friction": 0.1},
+	"rest": {"rest_on_contact": true},
+	"turned": {"restitution": 0.4, "friction": 0.1},  # the body is turned by 90 degrees, scaled and moved
+}
 
 
 func _ready() -> void:
@@ -69,7 +73,7 @@ func _read_hostile() -> void:
 
 
 func _constants(collider: ReliefCollider) -> String:
-	return str(collider.rows, collider.size, collider.place, collider.bounds)
+	return str(collider.rows, collider.size, collider.place)
 
 
 func _report(kind: String, data: PackedByteArray) -> void:
@@ -98,6 +102,10 @@ func _evaluate(collider: ReliefCollider) -> void:
 # Particles fall from a box above the bunny. In the first frame, a second has passed.
 func _play(collider: ReliefCollider, name_: String) -> void:
 	var system := _system(collider, _amount(name_), load("res://addons/relief/relief_particles.gdshader"))
+	if name_ == "turned":
+		system.body = Node3D.new()
+		system.body.transform = Transform3D(Basis(Vector3.UP, PI / 2).scaled(Vector3.ONE * 0.8), Vector3(0.1, 0, 0))
+		add_child(system.body)
 	system.position.y = 2.4
 	system.lifetime = 60.0
 	system.fixed_fps = 60

@@ -26,7 +26,7 @@ class BakeMenu extends EditorContextMenuPlugin:
 		for path: String in paths:
 			var output := path.get_basename() + ".relief"
 			var lines := []
-			var files := [ProjectSettings.globalize_path(path), "-o", ProjectSettings.globalize_path(output)]
-			if OS.execute("relief", PackedStringArray(["bake"] + files), lines, true) != 0:
+			var words := ["bake", ProjectSettings.globalize_path(path), "-o", ProjectSettings.globalize_path(output)]
+			if OS.execute("relief", PackedStringArray(words), lines, true) != 0:
 				push_error("%s: relief bake failed: %s" % [path, "".join(lines).strip_edges()])
 			EditorInterface.get_resource_filesystem().update_file(output)

@@ -17,9 +17,8 @@ static func shift(value: int, bits: int) -> int:
 
 ## The two halves of the 128-bit product, combined by XOR.
 static func fold(a: int, b: int) -> int:
-	var low := (a & WORD) * (b & WORD)
 	var middle := shift(a, 32) * (b & WORD)
-	var cross := shift(low, 32) + (middle & WORD) + (a & WORD) * shift(b, 32)
+	var cross := shift((a & WORD) * (b & WORD), 32) + (middle & WORD) + (a & WORD) * shift(b, 32)
 	return (shift(middle, 32) + shift(cross, 32) + shift(a, 32) * shift(b, 32)) ^ (a * b)
 
 

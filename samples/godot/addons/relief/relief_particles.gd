@@ -17,6 +17,5 @@ func _process(_delta: float) -> void:
 	var pose := body.global_transform if body != null else Transform3D.IDENTITY
 	pose = global_transform.affine_inverse() * pose if local_coords else pose
 	shader.set_shader_parameter("relief_pose", pose)
-	shader.set_shader_parameter("relief_pose_inverse", pose.affine_inverse())
 	if shader.get_shader_parameter("relief_texels") != collider.texels:
 		collider.apply(shader)
