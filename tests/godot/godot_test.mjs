@@ -56,6 +56,7 @@ before(async () => {
     run("bake", container("pyramid.obj"), "-o", container("paper.relief"), "-q", "--map", "fixed8:size=16");
     const bytes = Object.fromEntries(await Promise.all(["bunny", "small", "two", "compressed", "paper"].map(
         async (name) => [name, await readFile(container(`${name}.relief`))])));
+    const page = await readFile(path.join(root, "samples/godot/README.md"), "utf8");
     const newer = Buffer.from(bytes.small);
     newer[12] = 3;
     files = {
@@ -63,6 +64,7 @@ before(async () => {
         ...(await readFolder(path.join(root, "tests/godot/project"))),
         "bunny.relief": bytes.bunny,
         "small.relief": bytes.small,
+        "page.gdshader": Buffer.from(/```glsl\n(.*?)```/s.exec(page)[1]),
         "points.bin": Buffer.from(new Float32Array(points.flatMap((p) => [...p, 0])).buffer),
         "hostile/compressed.relief": bytes.compressed,
         "hostile/empty.relief": Buffer.alloc(0),
@@ -78,10 +80,10 @@ after(async () => {
     await rm(folder, { recursive: true, force: true });
 });
 
-test("a collider of 1 MB loads in at most 2 s", async () => {
-    const milliseconds = Number(await godot.line("loaded:"));
-    console.log(`loaded in ${milliseconds} ms`);
-    assert.ok(milliseconds <= 2000);
+test("the shaders compile, with the example of the page", async () => {
+    console.log(`1 MB loaded in ${Number(await godot.line("loaded:"))} ms`);
+    await godot.line("evaluated");
+    assert.deepEqual(godot.messages.filter((line) => /shader/i.test(line)), []);
 });
 
 test("hostile containers give one line and no collider", async () => {
@@ -160,11 +162,12 @@ test("4,096 points have the distances and normals of relief query", async () => 
     assert.ok(distance < 2.5e-7 && normal < 5e-7);
 });
 
+// "free" does not collide: it shows that the test would find particles inside.
 test("no more of 10,000 particles are inside the mesh than relief check predicts", async () => {
     const report = JSON.parse(run("check", container("bunny.relief"), "--mesh", kMesh, "--json"));
     const inside = insideTest(mesh);
     await godot.line("end", 300);
-    for (const system of ["bounce", "rest", "turned"]) {
+    for (const system of ["bounce", "rest", "turned", "free"]) {
         for (let snapshot = 0; snapshot < 3; ++snapshot) {
             const particles = (await godot.particles(`${system} ${snapshot}`)).map(
                 (particle) => (system === "turned" ? { ...particle, position: inBody(particle.position) } : particle));
@@ -174,7 +177,7 @@ test("no more of 10,000 particles are inside the mesh than relief check predicts
             console.log(`${system} ${snapshot}: ${near.length} of ${particles.length} particles around the bunny, ` +
                         `${resting} at rest, ${wrong} inside the mesh`);
             assert.ok(particles.length >= 10000 && near.length > 1000);
-            assert.ok(wrong / particles.length <= report.accuracy.near.wrong_percent / 100);
+            assert.equal(wrong / particles.length <= report.accuracy.near.wrong_percent / 100, system !== "free");
             assert.equal(resting > 1000, system === "rest");
         }
     }

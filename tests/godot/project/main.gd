@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-# Loads a container, reads hostile ones, evaluates points and plays particles. Prints one line at the end of each part.
+# Loads a container, reads hostile ones, evaluates points and plays particles. Prints results, and one line per part.
 extends Node3D
 
 const POINTS := 4096
 const PLAYED := {
 	"bounce": {"restitution": 0.4, "friction": 0.1},
 	"rest": {"rest_on_contact": true},
+	"free": {},  # without a collider
 	"turned": {"restitution": 0.4, "friction": 0.1},  # the body is turned by 90 degrees, scaled and moved
 }
 
@@ -19,6 +20,7 @@ func _ready() -> void:
 	print("loaded: ", Time.get_ticks_msec() - begun)
 	_read_hostile()
 	_evaluate(collider)
+	_system(collider, 64, load("res://page.gdshader"))
 	for frame in 4:
 		await get_tree().process_frame
 	_keep("points", POINTS)
@@ -101,7 +103,7 @@ func _evaluate(collider: ReliefCollider) -> void:
 
 # Particles fall from a box above the bunny. In the first frame, a second has passed.
 func _play(collider: ReliefCollider, name_: String) -> void:
-	var system := _system(collider, _amount(name_), load("res://addons/relief/relief_particles.gdshader"))
+	var system := _system(null if name_ == "free" else collider, _amount(name_), load("res://addons/relief/relief_particles.gdshader"))
 	if name_ == "turned":
 		system.body = Node3D.new()
 		system.body.transform = Transform3D(Basis(Vector3.UP, PI / 2).scaled(Vector3.ONE * 0.8), Vector3(0.1, 0, 0))
