@@ -18,10 +18,10 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 
 namespace {
 
-std::mt19937 random;
+std::mt19937 numbers;
 
 std::size_t below(std::size_t end) {
-    return random() % end;
+    return numbers() % end;
 }
 
 void runMutants(const std::string& bytes) {
@@ -29,7 +29,7 @@ void runMutants(const std::string& bytes) {
     for (int i = 0; i < RELIEF_MUTANTS; ++i) {
         std::copy(bytes.begin(), bytes.end(), mutant.begin());
         const std::size_t size = LLVMFuzzerCustomMutator(mutant.data(), bytes.size(), mutant.size(),
-                                                         static_cast<unsigned>(random()));
+                                                         static_cast<unsigned>(numbers()));
         LLVMFuzzerTestOneInput(mutant.data(), size);
     }
 }
@@ -57,7 +57,7 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
         constexpr std::uint8_t kCommon[] = {0, 1, 2, 4, 127, 128, 254, 255};
         const std::size_t count = below(4) == 0 ? std::min<std::size_t>(4, size - at) : 1;
         for (std::size_t i = 0; i < count; ++i) {
-            data[at + i] = below(2) == 0 ? kCommon[below(8)] : static_cast<std::uint8_t>(random());
+            data[at + i] = below(2) == 0 ? kCommon[below(8)] : static_cast<std::uint8_t>(numbers());
         }
     }
     return size;
