@@ -26,9 +26,9 @@ test=(
     pybind11-dev python3-dev python3-jsonschema python3-numpy python3-pytest
 )
 everything=(
-    bsdextrautils doxygen glslang-tools groff-base libglew-dev libglfw3-dev libjansson-dev libopenvdb-dev libopenvdb-tools
-    libsdl2-dev libvulkan-dev man-db mandoc mesa-vulkan-drivers python3-matplotlib python3-pip python3-venv
-    qemu-user-static strace vulkan-validationlayers xauth xvfb
+    bsdextrautils doxygen gcc-mingw-w64-x86-64 glslang-tools groff-base libglew-dev libglfw3-dev libopenvdb-dev
+    libopenvdb-tools libsdl2-dev libvulkan-dev man-db mandoc mesa-vulkan-drivers python3-matplotlib python3-pip
+    python3-venv qemu-user-static strace vulkan-validationlayers wine64 xauth xvfb
 )
 case ${1-} in
     tools)

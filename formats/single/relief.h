@@ -303,9 +303,12 @@ static uint64_t rlf_xxh3(const unsigned char* p, size_t size) {
         }
         return rlf_avalanche(h);
     }
-    for (i = 0; i < size / 16; ++i) {
-        h = i == 8 ? rlf_avalanche(h) : h;
-        h += rlf_mix(p + 16 * i, i < 8 ? 16 * i : 16 * (i - 8) + 3);
+    for (i = 0; i < 8; ++i) {
+        h += rlf_mix(p + 16 * i, 16 * i);
+    }
+    h = rlf_avalanche(h);
+    for (i = 8; i < size / 16; ++i) {
+        h += rlf_mix(p + 16 * i, 16 * (i - 8) + 3);
     }
     return rlf_avalanche(h + rlf_mix(p + size - 16, 119));
 }
