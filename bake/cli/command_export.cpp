@@ -139,7 +139,7 @@ Result<void> exportForEngine(const Source& source, Engine engine, const ExportCo
         RELIEF_TRY(withPrefix(shownInput(command.file), engineFiles(source, name, engine)));
     const std::filesystem::path folder = command.engine.back();
     for (const EngineFile& file : exported) {
-        RELIEF_TRY(files.writes(folder / file.name, "--engine", folder));
+        RELIEF_TRY(files.writes(folder / file.name, "--engine", (folder / file.name).parent_path()));
     }
     for (const EngineFile& file : exported) {
         RELIEF_TRY(files.makes((folder / file.name).parent_path(), "--engine"));

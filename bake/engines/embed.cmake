@@ -1,14 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 # relief_embed_engines(OUTPUT): generates OUTPUT, a C++ file with the texts that `relief export --engine` copies
-# (engine_texts.h). Links of pages to other files of the project become plain text.
-set(texts
-    formats/single/relief.h
-    samples/own_engine/README.md
-    samples/own_engine/bounce.c
-    shaders/engines/relief.glsl
-    shaders/engines/relief.hlsl
-    shaders/engines/relief.metal
-    shaders/engines/relief.wgsl)
+# (engine_texts.h): those of the tables in engine_export.cpp. Links of pages to other files of the project become plain text.
+file(READ ${CMAKE_CURRENT_LIST_DIR}/engine_export.cpp table)
+string(REGEX MATCHALL "\"(formats|runtime|samples|shaders)/[A-Za-z0-9_/.]+\"," texts "${table}")
+list(TRANSFORM texts REPLACE "[\",]" "")
+list(REMOVE_DUPLICATES texts)
 if(NOT CMAKE_SCRIPT_MODE_FILE)
     function(relief_embed_engines output)
         list(TRANSFORM texts PREPEND ${PROJECT_SOURCE_DIR}/ OUTPUT_VARIABLE files)
@@ -18,6 +14,7 @@ if(NOT CMAKE_SCRIPT_MODE_FILE)
             COMMAND ${CMAKE_COMMAND} -DOUTPUT=${output} -DROOT=${PROJECT_SOURCE_DIR} -P ${script}
             DEPENDS ${files} ${script}
             VERBATIM)
+        set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/engine_export.cpp)
     endfunction()
     return()
 endif()

@@ -16,28 +16,65 @@ namespace {
 
 /// A text of the project, and its name in the export.
 struct CopiedText {
+    Engine engine;
     std::string_view path;
     std::string_view name;
 };
 
-std::vector<CopiedText> textsOf(Engine engine) {
-    switch (engine) {
-        case Engine::kC:
-            return {{"formats/single/relief.h", "relief.h"},
-                    {"samples/own_engine/bounce.c", "bounce.c"},
-                    {"samples/own_engine/README.md", "README.md"},
-                    {"shaders/engines/relief.glsl", "relief.glsl"},
-                    {"shaders/engines/relief.hlsl", "relief.hlsl"},
-                    {"shaders/engines/relief.metal", "relief.metal"},
-                    {"shaders/engines/relief.wgsl", "relief.wgsl"}};
-        case Engine::kGodot:
-        case Engine::kUnity:
-        case Engine::kUnreal:
-        case Engine::kThree:
-        case Engine::kPlaycanvas:
-            break;
+// embed.cmake reads the paths from here.
+constexpr CopiedText kTexts[] = {
+    {Engine::kC, "formats/single/relief.h", "relief.h"},
+    {Engine::kC, "samples/own_engine/bounce.c", "bounce.c"},
+    {Engine::kC, "samples/own_engine/README.md", "README.md"},
+    {Engine::kC, "shaders/engines/relief.glsl", "relief.glsl"},
+    {Engine::kC, "shaders/engines/relief.hlsl", "relief.hlsl"},
+    {Engine::kC, "shaders/engines/relief.metal", "relief.metal"},
+    {Engine::kC, "shaders/engines/relief.wgsl", "relief.wgsl"},
+    {Engine::kGodot, "samples/godot/README.md", "README.md"},
+    {Engine::kGodot, "samples/godot/addons/relief/plugin.cfg", "addons/relief/plugin.cfg"},
+    {Engine::kGodot, "samples/godot/addons/relief/plugin.gd", "addons/relief/plugin.gd"},
+    {Engine::kGodot, "samples/godot/addons/relief/relief_body.gdshaderinc",
+     "addons/relief/relief_body.gdshaderinc"},
+    {Engine::kGodot, "samples/godot/addons/relief/relief_checksum.gd", "addons/relief/relief_checksum.gd"},
+    {Engine::kGodot, "samples/godot/addons/relief/relief_collider.gd", "addons/relief/relief_collider.gd"},
+    {Engine::kGodot, "samples/godot/addons/relief/relief_loader.gd", "addons/relief/relief_loader.gd"},
+    {Engine::kGodot, "samples/godot/addons/relief/relief_particles.gd", "addons/relief/relief_particles.gd"},
+    {Engine::kGodot, "samples/godot/addons/relief/relief_particles.gdshader",
+     "addons/relief/relief_particles.gdshader"},
+    {Engine::kGodot, "shaders/engines/relief.gdshaderinc", "addons/relief/relief.gdshaderinc"},
+    {Engine::kUnity, "samples/unity/README.md", "README.md"},
+    {Engine::kUnity, "shaders/engines/relief.hlsl", "relief.hlsl"},
+    {Engine::kUnreal, "samples/unreal/README.md", "README.md"},
+    {Engine::kUnreal, "shaders/engines/relief.hlsl", "relief.hlsl"},
+    {Engine::kThree, "samples/web/engines/three.md", "README.md"},
+    {Engine::kThree, "samples/web/engines/three_webgl.js", "three_webgl.js"},
+    {Engine::kThree, "samples/web/engines/three_webgpu.js", "three_webgpu.js"},
+    {Engine::kThree, "samples/web/engines/snow.js", "snow.js"},
+    {Engine::kPlaycanvas, "samples/web/engines/playcanvas.md", "README.md"},
+    {Engine::kPlaycanvas, "samples/web/engines/playcanvas.js", "playcanvas.js"},
+    {Engine::kPlaycanvas, "samples/web/engines/snow.js", "snow.js"},
+};
+
+/// The collider without WebAssembly, of both engines of the web.
+constexpr CopiedText kModules[] = {
+    {Engine::kThree, "runtime/web/engines/bytes.js", "relief/bytes.js"},
+    {Engine::kThree, "runtime/web/engines/index.d.ts", "relief/index.d.ts"},
+    {Engine::kThree, "runtime/web/engines/materials.js", "relief/materials.js"},
+    {Engine::kThree, "runtime/web/engines/metadata.js", "relief/metadata.js"},
+    {Engine::kThree, "runtime/web/engines/open.js", "relief/open.js"},
+    {Engine::kThree, "runtime/web/engines/patches.js", "relief/patches.js"},
+    {Engine::kThree, "runtime/web/engines/xxh3.js", "relief/xxh3.js"},
+    {Engine::kThree, "runtime/web/engines/zstd.js", "relief/zstd.js"},
+};
+
+/// Returns a text as a template literal of JavaScript.
+std::string literal(std::string_view text) {
+    std::string result = "`";
+    for (const char c : text) {
+        result += c == '`' || c == '\\' || c == '$' ? "\\" : "";
+        result += c;
     }
-    return {};
+    return result + "`";
 }
 
 std::vector<std::byte> bytesOf(std::string_view text) {
@@ -52,9 +89,24 @@ std::vector<std::byte> bytesOf(const std::vector<T>& values) {
 }
 
 void appendTexts(std::vector<EngineFile>& files, Engine engine) {
-    for (const CopiedText& text : textsOf(engine)) {
-        files.push_back({std::string(text.name), bytesOf(engineText(text.path))});
+    for (const CopiedText& text : kTexts) {
+        if (text.engine == engine) {
+            files.push_back({std::string(text.name), bytesOf(engineText(text.path))});
+        }
     }
+    if (engine != Engine::kThree && engine != Engine::kPlaycanvas) {
+        return;
+    }
+    for (const CopiedText& module : kModules) {
+        files.push_back({std::string(module.name), bytesOf(engineText(module.path))});
+    }
+    // The npm package bundles the texts of the shaders instead.
+    files.push_back(
+        {"relief/index.js",
+         bytesOf("// SPDX-License-Identifier: Apache-2.0\nexport { openCollider } from \"./open.js\";\n"
+                 "export { collide, distance } from \"./patches.js\";\nexport const glsl = " +
+                 literal(engineText("shaders/engines/relief.glsl")) +
+                 ";\nexport const wgsl = " + literal(engineText("shaders/engines/relief.wgsl")) + ";\n")});
 }
 
 }  // namespace
