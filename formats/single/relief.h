@@ -47,7 +47,7 @@
 extern "C" {
 #endif
 
-/* What a shader needs besides the texels. The 80 bytes can be copied into a uniform block (std140) as they are. */
+/* The constants that a shader needs besides the texels. The 80 bytes can be copied into a uniform block (std140) as they are. */
 typedef struct relief_constants {
     float row_x
         [4]; /* rows of the transform from object space to map space, whose unit is the edge of a root cell: */

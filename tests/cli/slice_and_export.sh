@@ -53,7 +53,7 @@ cmp engine.relief engine_c/deep/engine.relief || die "the exported collider diff
 for engine in c godot unity unreal three playcanvas; do
     "$relief" export engine.relief --engine $engine engine_$engine -q
     find engine_$engine -name '*.h' -o -name '*.glsl' -o -name '*.hlsl' -o -name '*.wgsl' -o -name '*.gd*' | while read -r file; do
-        head -1 "$file" | grep -q 'SPDX-License-Identifier: Apache-2.0' || die "$file has no licence"
+        head -2 "$file" | grep -q 'SPDX-License-Identifier: Apache-2.0' || die "$file has no licence"
     done
     [ -s engine_$engine/README.md ] && ! grep -q '](\.' engine_$engine/README.md || die "$engine has no page, or dead links"
 done

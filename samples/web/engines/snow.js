@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the pages share.
+// Code that the pages share.
 export const kParticles = 100_000;
 
 /** Places above the bunny, four or three numbers each. */
