@@ -150,9 +150,10 @@ std::vector<Query> makeQueries(const Collider& collider, std::size_t count, Rand
     const float edge = map.object_per_map.x;
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    // No denormals: a GPU may flush them to zero.
     const glm::vec3 special[] = {{kNan, 0, 0},      {0, kNan, 0},          {0, 0, kNan},
                                  {kInfinity, 0, 0}, {0, -kInfinity, 0},    {1e30F, 1e30F, 1e30F},
-                                 {0, 0, -3e38F},    {1e-40F, -1e-40F, 0},  {-0.0F, 0.0F, -0.0F},
+                                 {0, 0, -3e38F},    {2e-38F, -2e-38F, 0},  {-0.0F, 0.0F, -0.0F},
                                  {0, 0, 0},         {3e38F, 3e38F, 3e38F}, {kNan, kInfinity, -kInfinity}};
     std::vector<Query> queries;
     queries.reserve(count);
