@@ -38,7 +38,7 @@ struct Real {
 struct Real2 {
     Real x, y;
     Real2() = default;
-    Real2(Real x, Real y) : x(x), y(y) {}
+    Real2(Real a, Real b) : x(a), y(b) {}
     friend Real2 operator-(const Real2& a, const Real2& b) { return {a.x - b.x, a.y - b.y}; }
     friend Real2 operator*(const Real2& a, Real b) { return {a.x * b, a.y * b}; }
 };
@@ -47,7 +47,7 @@ struct Real2 {
 struct Real3 {
     Real x, y, z;
     Real3() = default;
-    Real3(Real x, Real y, Real z) : x(x), y(y), z(z) {}
+    Real3(Real a, Real b, Real c) : x(a), y(b), z(c) {}
     [[nodiscard]] Real2 componentsXy() const { return {x, y}; }
     [[nodiscard]] Real3 componentsYzx() const { return {y, z, x}; }
     [[nodiscard]] Real3 componentsZxy() const { return {z, x, y}; }
@@ -60,19 +60,19 @@ struct Real3 {
 struct Real4 {
     Real x, y, z, w;
     Real4() = default;
-    Real4(Real x, Real y, Real z, Real w) : x(x), y(y), z(z), w(w) {}
-    Real4(const Real3& a, Real w) : Real4(a.x, a.y, a.z, w) {}
+    Real4(Real a, Real b, Real c, Real d) : x(a), y(b), z(c), w(d) {}
+    Real4(const Real3& a, Real b) : Real4(a.x, a.y, a.z, b) {}
     [[nodiscard]] Real3 componentsXyz() const { return {x, y, z}; }
     [[nodiscard]] Real3 componentsYzw() const { return {y, z, w}; }
 };
 
 struct int2 {
     int x, y;
-    int2(int x, int y) : x(x), y(y) {}
+    int2(int a, int b) : x(a), y(b) {}
 };
 struct int3 {
     int x, y, z;
-    int3(int x, int y, int z) : x(x), y(y), z(z) {}
+    int3(int a, int b, int c) : x(a), y(b), z(c) {}
 };
 struct int4 {
     int x, y, z, w;
@@ -80,12 +80,12 @@ struct int4 {
 struct uint2 {
     uint x, y;
     uint2() = default;
-    uint2(uint x, uint y) : x(x), y(y) {}
-    uint2(int x, int y) : uint2(static_cast<uint>(x), static_cast<uint>(y)) {}
+    uint2(uint a, uint b) : x(a), y(b) {}
+    uint2(int a, int b) : uint2(static_cast<uint>(a), static_cast<uint>(b)) {}
 };
 struct uint4 {
     uint x, y, z, w;
-    uint4(uint x, uint y, uint z, uint w) : x(x), y(y), z(z), w(w) {}
+    uint4(uint a, uint b, uint c, uint d) : x(a), y(b), z(c), w(d) {}
     uint4(const uint2& a, const uint2& b) : uint4(a.x, a.y, b.x, b.y) {}
 };
 
