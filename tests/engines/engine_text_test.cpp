@@ -5,7 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include <span>
+#include <map>
+#include <vector>
 
 #include "tests/engines/engine_agreement.h"
 #include "tests/engines/stand_in/shader_types.h"
@@ -53,10 +54,20 @@ glm::vec4 vec4(const Real3& a, stand_in::Real w) {
     return {a.x.value, a.y.value, a.z.value, w.value};
 }
 
+/// The cases of all texts.
+const std::vector<Case>& casesOf(std::size_t points) {
+    static std::map<std::size_t, std::vector<Case>> all;
+    std::vector<Case>& cases = all[points];
+    if (cases.empty()) {
+        cases = makeCases(points);
+    }
+    return cases;
+}
+
 /// \param distance, collide  reliefDistance() and reliefCollide() of a text.
 template <class Collider, class Texture>
 void expectTheCpuField(std::size_t points, auto distance, auto collide) {
-    for (const Case& one : makeCases(points)) {
+    for (const Case& one : casesOf(points)) {
         SCOPED_TRACE(one.name);
         const Constants& own = one.constants;
         const Collider collider{real4(own.rows[0]),
