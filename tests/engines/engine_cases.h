@@ -73,7 +73,7 @@ struct Difference {
 
     std::size_t signs = 0;    ///< queries with different signs, or outside the roots for only one
     std::size_t rounded = 0;  ///< the same, but within kRounding of the surface
-    std::size_t borders = 0;  ///< queries that rounding moves into another cell or square of heights
+    std::size_t borders = 0;  ///< queries that rounding moves into another cell, or across the surface
     double patches = 0.0;     ///< largest difference of distances to patches, in root cells
     double flat = 0.0;    ///< the same in cells without a patch; relative to the distance if that is longer
     double normal = 0.0;  ///< largest difference of normals
