@@ -43,7 +43,8 @@ def main():
         lines = run.stdout.splitlines()
         ulps = [float(ulp) for line in lines for ulp in re.findall(r"([\d.e+-]+) ulp at patches", line)]
         signs = sum(int(count) for line in lines for count in re.findall(r"(\d+) signs differ", line))
-        rounded = sum(int(count) for line in lines for count in re.findall(r"(\d+) (?:within rounding|at borders)", line))
+        words = r"(\d+) (?:within rounding|at borders)"
+        rounded = sum(int(count) for line in lines for count in re.findall(words, line))
         print(f"{name} on {device}: {len(lines)} colliders of {QUERIES} queries, {signs} signs differ, "
               f"{rounded} by rounding of the point; distances to patches within {max(ulps):.3g} ulp"
               f"{'; FAILED' if run.returncode != 0 else ''}")
