@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Relief colliders in one file, for C99 and C++11. It depends only on the C standard library.
- *
- *     #define RELIEF_IMPLEMENTATION   in one source file, before the include
- *     #include "relief.h"
+/* Relief colliders in one file, for C99 and C++11. It depends only on the C standard library. Define
+ * RELIEF_IMPLEMENTATION in one source file before the include; other files only include it.
  *
  *     relief_collider bunny;
  *     relief_status status = relief_load(&bunny, "bunny.relief", NULL);
@@ -16,8 +14,8 @@
  * `relief bake --compress` also need a decompressor: pass ZSTD_decompress of <zstd.h>. Containers of `--map` and
  * `--paper` are RELIEF_UNSUPPORTED.
  *
- * Files may be hostile. A container is validated completely before it is used, as formats/README.md specifies, so the
- * other functions never read outside the texels. Do not change an open collider, except for its `constants.place[0]`.
+ * Files may be hostile. relief_open() validates a container completely, as formats/README.md specifies. The other
+ * functions therefore never read outside the texels.
  *
  * Points, distances and bounds are in the units and axes of the mesh. Distances are positive outside. Normals have unit
  * length and point outwards.
@@ -47,24 +45,28 @@
 extern "C" {
 #endif
 
-/* The constants that a shader needs besides the texels. The 80 bytes can be copied into a uniform block (std140) as they are. */
+/* The numbers that a shader needs besides the texels. The 80 bytes are laid out as a uniform block (std140).
+ *
+ * The rows transform a point to map space, whose unit is the edge of a root cell: x' = row_x[0]*x + (row_x[1]*y +
+ * (row_x[2]*z + row_x[3])), likewise y' and z'.
+ *
+ * size: edge of a root cell in object units; number of root cells along x', y' and z'.
+ * place: index of the collider's first texel in the texture, 0; steps from root cell to root cell along y' and z';
+ * levels below the root cells. To pack colliders into one texture, set place[0] in your copies of the constants. */
 typedef struct relief_constants {
-    float row_x
-        [4]; /* rows of the transform from object space to map space, whose unit is the edge of a root cell: */
-    float row_y[4]; /* x' = row_x[0]*x + (row_x[1]*y + (row_x[2]*z + row_x[3])) */
+    float row_x[4];
+    float row_y[4];
     float row_z[4];
-    float size[4]; /* edge of a root cell in object units; number of root cells along x', y' and z' */
-    int32_t
-        place[4]; /* texel of the tree in the texture, 0; root cells along x'; along x' times along y'; levels
-                         below the root cells */
+    float size[4];
+    int32_t place[4];
 } relief_constants;
 
-/* An open collider. Create it with relief_open() or relief_load() and free it with relief_close(). */
+/* An open collider, which is read-only. Create it with relief_open() or relief_load(); free it with relief_close().
+ * Upload the texels as a texture of four unsigned 16-bit integers (RGBA16UI) with nearest filtering and one level. */
 typedef struct relief_collider {
     relief_constants constants;
-    uint16_t*
-        texels; /* width * height texels of four numbers, to upload as RGBA16UI: nearest filtering, one level */
-    int32_t width; /* RELIEF_WIDTH */
+    uint16_t* texels; /* 4 * width * height numbers, row by row */
+    int32_t width;    /* RELIEF_WIDTH */
     int32_t height;
     float bounds_min[3]; /* box of the mesh */
     float bounds_max[3];
@@ -1005,7 +1007,7 @@ static void rlf_decode_coarse_normal(float out[3], uint32_t s_code, uint32_t t_c
 static rlf_vote rlf_vote_tree(const relief_collider* collider, const float p[3]) {
     RLF_EXACT
     const int32_t* place = collider->constants.place;
-    const uint16_t* texels = collider->texels + 4 * (size_t)place[0];
+    const uint16_t* texels = collider->texels;
     float q[3], root[3], centred[3], cell = 1.0F, along;
     rlf_record record;
     rlf_vote vote, other;
