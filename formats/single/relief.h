@@ -134,6 +134,7 @@ int relief_collide(const relief_collider* collider, float position[3], float vel
 #define RELIEF_IMPLEMENTED
 
 #include <float.h>
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 #ifndef RELIEF_NO_STDIO
@@ -1322,8 +1323,8 @@ relief_status relief_load(relief_collider* collider, const char* path, relief_de
         } else if (fread(bytes, 1, (size_t)size, file) == (size_t)size) {
             status = relief_open(collider, bytes, (size_t)size, decompress);
         }
-    } else if (size > longest) {
-        status = RELIEF_NOT_A_CONTAINER;
+    } else if (size > longest && size < LONG_MAX) { /* LONG_MAX: a folder */
+        status = RELIEF_TOO_LARGE;
     }
     if (bytes != NULL) {
         RELIEF_FREE(bytes);
