@@ -86,7 +86,7 @@ typedef enum relief_status {
     RELIEF_INVALID,         /* violates the format, or has values of a later version */
     RELIEF_UNSUPPORTED,     /* a valid format, but not one map of patches */
     RELIEF_COMPRESSED,      /* needs a decompressor */
-    RELIEF_TOO_LARGE,       /* exceeds RELIEF_UNPACKED_MAX */
+    RELIEF_TOO_LARGE,       /* exceeds RELIEF_UNPACKED_MAX, or the largest file (144 MiB) */
     RELIEF_OUT_OF_MEMORY
 } relief_status;
 
@@ -1354,8 +1354,7 @@ const char* relief_message(relief_status status) {
         case RELIEF_COMPRESSED:
             return "it is compressed; bake the mesh again without --compress, or pass ZSTD_decompress";
         case RELIEF_TOO_LARGE:
-            return "it unpacks to more than RELIEF_UNPACKED_MAX bytes; bake the mesh again without "
-                   "--compress";
+            return "it has or unpacks to too many bytes; bake the mesh again without --compress and --map";
         case RELIEF_OUT_OF_MEMORY:
             return "there is not enough memory";
     }

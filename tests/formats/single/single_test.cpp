@@ -362,6 +362,11 @@ TEST(Single, LoadsFiles) {
     EXPECT_EQ(status(folder.write("empty.relief", "")), RELIEF_NOT_A_CONTAINER);
     EXPECT_EQ(status(folder.path() / "missing.relief"), RELIEF_CANNOT_READ);
     EXPECT_NE(status(folder.path()), RELIEF_OK);
+    const std::filesystem::path huge = folder.write("huge.relief", "");
+    std::filesystem::resize_file(huge, std::uintmax_t{1} << 30U);  // sparse
+    largest = 0;
+    EXPECT_EQ(status(huge), RELIEF_TOO_LARGE);
+    EXPECT_EQ(largest, 0U);
     EXPECT_TRUE(live.empty());
 }
 
