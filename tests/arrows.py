@@ -108,7 +108,7 @@ def table_faults(source, uses):
     return faults + [f'CONTRIBUTING.md: {folder} does not exist' for folder in rows if not (source / folder).is_dir()]
 
 
-SOURCES = set('.c .cmake .comp .cpp .css .fbs .frag .glsl .h .hpp .html .js .mjs .py .sh .ts .vert'.split())
+SOURCES = set('.c .cmake .comp .cpp .css .fbs .frag .gd .gdshader .gdshaderinc .glsl .h .hpp .html .js .mjs .py .sh .ts .vert'.split())
 LICENCE = re.compile(r'(?://|#|/\*|<!--) SPDX-License-Identifier: Apache-2\.0(?: \*/| -->)?')
 
 

