@@ -86,6 +86,13 @@ test("the shaders compile, with the example of the page", async () => {
     assert.deepEqual(godot.messages.filter((line) => /shader/i.test(line)), []);
 });
 
+// A stand-in for the editor's classes: the script compiles, and handles a failed bake.
+test("the plugin's menu bakes meshes", async () => {
+    assert.equal(await godot.line("updated:"), "res://rock.relief");
+    assert.deepEqual(lines("menu"), ["[]", '["Bake Relief collider"]']);
+    assert.ok(godot.messages.some((line) => line.includes("res://rock.glb: relief bake failed")));
+});
+
 test("hostile containers give one line and no collider", async () => {
     await godot.line("hostile");
     const causes = {

@@ -18,6 +18,7 @@ func _ready() -> void:
 	var begun := Time.get_ticks_msec()
 	var collider: ReliefCollider = load("res://bunny.relief")
 	print("loaded: ", Time.get_ticks_msec() - begun)
+	_use_menu()
 	_read_hostile()
 	_evaluate(collider)
 	_system(collider, 64, load("res://page.gdshader"))
@@ -42,6 +43,19 @@ func _keep(name_: String, amount: int) -> void:
 
 func _amount(system: String) -> int:
 	return 10000 + PLAYED.keys().find(system)
+
+
+# Chooses the plugin's menu item for a mesh. The template starts no programs, so that the bake fails.
+func _use_menu() -> void:
+	var plugin: EditorPlugin = load("res://addons/relief/plugin.gd").new()
+	add_child(plugin)
+	var menu: EditorContextMenuPlugin = plugin.menus[0]
+	menu.call("_popup_menu", ["res://main.tscn"])
+	print("menu: ", menu.items.keys())
+	menu.call("_popup_menu", ["res://main.tscn", "res://rock.glb"])
+	print("menu: ", menu.items.keys())
+	menu.items["Bake Relief collider"].call(["res://rock.glb"])
+	plugin.free()
 
 
 func _read_hostile() -> void:
