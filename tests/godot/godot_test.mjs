@@ -174,7 +174,7 @@ test("4,096 points have the distances and normals of relief query", async () => 
     assert.ok(distance < 2.5e-7 && normal < 5e-7);
 });
 
-// "free" does not collide: it shows that the test would find particles inside.
+// "free" has an empty collider: it shows that the test would find particles inside.
 test("no more of 10,000 particles are inside the mesh than relief check predicts", async () => {
     const report = JSON.parse(run("check", container("bunny.relief"), "--mesh", kMesh, "--json"));
     const inside = insideTest(mesh);

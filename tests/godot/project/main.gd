@@ -6,7 +6,7 @@ const POINTS := 4096
 const PLAYED := {
 	"bounce": {"restitution": 0.4, "friction": 0.1},
 	"rest": {"rest_on_contact": true},
-	"free": {},  # without a collider
+	"free": {},  # with an empty collider
 	"turned": {"restitution": 0.4, "friction": 0.1},  # the body is turned by 90 degrees, scaled and moved
 }
 
@@ -118,7 +118,11 @@ func _evaluate(collider: ReliefCollider) -> void:
 # Particles fall from a box above the bunny. In the first frame, a second has passed.
 func _play(collider: ReliefCollider, name_: String) -> void:
 	var shader: Shader = load("res://addons/relief/relief_particles.gdshader")
-	var system := _system(null if name_ == "free" else collider, _amount(name_), shader)
+	if name_ == "free":
+		var empty := ReliefCollider.new()
+		empty.texels = collider.texels
+		collider = empty
+	var system := _system(collider, _amount(name_), shader)
 	if name_ == "turned":
 		system.body = Node3D.new()
 		system.body.transform = Transform3D(Basis(Vector3.UP, PI / 2).scaled(Vector3.ONE * 0.8), Vector3(0.1, 0, 0))
