@@ -32,8 +32,8 @@ export async function start() {
     const app = new pc.Application(canvas, { graphicsDeviceOptions: { preserveDrawingBuffer: true } });
     app.setCanvasFillMode(pc.FILLMODE_FILL_WINDOW);
     app.setCanvasResolution(pc.RESOLUTION_AUTO);
-    app.autoRender = false;
     app.start();
+    cancelAnimationFrame(app.frameRequestId); // index.html calls step() and draw()
     setCollider(app.graphicsDevice, collider);
 
     // A particle system has at most as many particles as a texture has columns.
