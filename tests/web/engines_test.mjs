@@ -142,13 +142,20 @@ for (const [language, runs] of [["WGSL", "onWebGpu"], ["GLSL", "onWebGl"]]) {
     });
 }
 
-/** Verdicts of the C++ library: whether it accepts each container. */
+/**
+ * Verdicts of the C++ library: whether it accepts each container. `relief check` also reads the animation, which is not
+ * part of the validation of a container.
+ */
 function acceptedByLibrary(folder, names) {
-    const { stdout } = spawnSync(path.join(bin, "relief"), ["check", "--json", ...names],
+    const { stdout, stderr } = spawnSync(path.join(bin, "relief"), ["check", "--json", ...names],
                                  { cwd: folder, encoding: "utf8", maxBuffer: 1 << 28 });
     const reports = stdout.trim().split(/(?<=^\})\n/m).map(JSON.parse);
-    assert.equal(reports.length, names.length);
-    return reports.map(({ fatal, errors }) => fatal + errors === 0);
+    const valid = new Set(reports.filter(({ fatal, errors }) => fatal + errors === 0).map(({ file }) => file));
+    for (const [, file] of stderr.matchAll(/'([^']*)': its animation is not/g)) {
+        valid.add(file);
+    }
+    assert.ok(reports.length > 0.9 * names.length); // files that are no containers at all have no report
+    return names.map((name) => valid.has(name));
 }
 
 /** Compares the verdicts on containers. @returns how many both accept */
@@ -239,6 +246,14 @@ test("pinned containers of every format, and compressed ones", { timeout: 60_000
     assert.equal(compareVerdicts(t, [...files, packed, ...changed]), 1);
     assert.throws(() => openCollider(packed), /compressed with zstd; pass \{ decompress \}, or bake again with --compress 0/);
     assert.throws(() => openCollider(readFileSync(path.join(pinned, "2.0-none-formats.relief"))), /^Error: unsupported: .*; bake again without --map/);
+});
+
+test("the corpus of the fuzzers gets the verdict of the C++ library", { timeout: 60_000 }, (t) => {
+    const corpus = path.join(root, "tests/fuzz/corpus/container");
+    const inputs = readdirSync(corpus).map((name) => Uint8Array.from(readFileSync(path.join(corpus, name))));
+    assert.ok(inputs.length > 100);
+    const sealed = inputs.filter(({ length }) => length >= 64).map((bytes) => seal(bytes.slice()));
+    assert.ok(compareVerdicts(t, [...inputs, ...sealed]) >= 1);
 });
 
 test("other input is rejected in one line", () => {

@@ -17,7 +17,7 @@ const kMapSizeMax = 16384;
 const kZstdRatioMax = 32768;
 const kCosineMax = 1e-4; // between rows of the transform
 const kLengthTolerance = 1e-3; // of objectPerMap
-const kTextMax = { unit: 16, meshName: 255, toolVersion: 64, options: 1 << 20 };
+const kTextMax = { unit: 16, mesh_name: 255, tool_version: 64, options: 1 << 20 };
 
 const floatsOf = (view) => Array.from({ length: view.byteLength / 4 }, (_, i) => view.getFloat32(4 * i, true));
 
@@ -50,12 +50,12 @@ function checkDescription({ boundsMin, boundsMax, unit, provenance, materials },
     check([...low, ...high].every(Number.isFinite) && low.every((from, i) => from <= high[i]),
           "bounds are not finite, or their minimum exceeds their maximum");
     checkText("unit", unit);
-    checkText("meshName", provenance.meshName);
-    check(!bytesOf(provenance.meshName).includes(0x2f), "meshName contains '/': it must be a name without a folder");
+    checkText("mesh_name", provenance.meshName);
+    check(!bytesOf(provenance.meshName).includes(0x2f), "mesh_name contains '/': it must be a name without a folder");
     const hash = bytesOf(provenance.meshHash);
     check([0, 32].includes(hash.length) && hash.every((byte) => "0123456789abcdef".includes(String.fromCharCode(byte))),
-          "meshHash is neither empty nor 32 lower-case hexadecimal digits");
-    checkText("toolVersion", provenance.toolVersion);
+          "mesh_hash is neither empty nor 32 lower-case hexadecimal digits");
+    checkText("tool_version", provenance.toolVersion);
     const texts = (provenance.options ?? []).flatMap(({ name, value }) => [name, value]);
     const size = texts.reduce((sum, text) => sum + text.byteLength, 0);
     check(size <= kTextMax.options, `the options take ${size} bytes, ${kTextMax.options} are allowed`);
