@@ -6,7 +6,10 @@
 export type WritableVec3 = [number, number, number] | number[] | Float32Array;
 export type Vec3 = readonly [number, number, number] | readonly number[] | Float32Array;
 
-/** A collider with one map of patches, the default of `relief bake`. Its buffers are for upload; do not change them. */
+/**
+ * A collider with one map of patches, the default of `relief bake`; an animated one in its rest pose, without materials.
+ * Its buffers are for upload; do not change them.
+ */
 export interface Collider {
     /** The uniform block ReliefCollider in the layout std140: 80 bytes. `floats` and `integers` are views of it. */
     readonly constants: ArrayBuffer;
