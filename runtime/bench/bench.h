@@ -22,6 +22,7 @@ struct Bench {
     StepPath path = StepPath::kFragment;
     std::string only;                 ///< name of a variant; empty: all
     std::vector<std::string> bricks;  ///< files of relief-accuracy --atlas, for the step case
+    std::string exact;                ///< mesh of the exact rival, for the step case; empty: none
     std::uint64_t stream_bytes = std::uint64_t{128} << 20;  ///< GPU budget of the stream case
     int rounds = 0;                                         ///< 0: the default of the case
     bool large = false;                                     ///< use sizes for a GPU

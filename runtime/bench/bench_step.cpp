@@ -9,10 +9,13 @@
 #include <nlohmann/json.hpp>
 
 #include "formats/base/file_io.h"
+#include "formats/base/stopwatch.h"
 #include "formats/container.h"
 #include "runtime/bench/bench.h"
 #include "runtime/bench/bench_scene.h"
-#include "runtime/bench/brick_step.h"
+#include "runtime/bench/brick_rival.h"
+#include "runtime/bench/mesh_rival.h"
+#include "runtime/files/mesh_file.h"
 #include "runtime/gl/compute_units.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/particles/random.h"
@@ -78,25 +81,55 @@ class Copy {
     GlProgram program_;
 };
 
-/// A distance volume to compare with the collider.
+/// A rival of the collider.
 struct Baseline {
-    std::string name;  // of the file
-    BrickStep step;
+    std::string name;
+    RivalStep step;
+    Json facts;  // reported with its size
 };
+
+/// Checks that a file was made of the mesh of the collider.
+Result<void> checkBox(const std::string& file, const Bounds& box, const BenchScene& scene) {
+    const glm::vec3 apart = glm::abs(box.center() - scene.collider.bounds.center());
+    if (glm::any(glm::greaterThan(apart, glm::vec3(0.05F * scene.side)))) {
+        return fail(ErrorCode::kUsage,
+                    quotedPath(file) +
+                        " was made from a different mesh than the collider; make both from the same mesh");
+    }
+    return {};
+}
+
+Result<Baseline> brickBaseline(const std::string& file, const Bench& bench, const BenchScene& scene) {
+    const BrickAtlas atlas = RELIEF_TRY(loadBrickAtlas(file));
+    RELIEF_TRY(checkBox(file, atlas.box, scene));
+    Rival rival = RELIEF_TRY(makeBrickRival(atlas));
+    return Baseline{std::filesystem::path(file).stem().string(),
+                    RELIEF_TRY(RivalStep::create(std::move(rival), scene, bench.path)), Json::object()};
+}
+
+Result<Baseline> exactBaseline(const std::string& file, const Bench& bench, const BenchScene& scene) {
+    const PictureMesh mesh = RELIEF_TRY(loadPictureMesh(file));
+    const Stopwatch watch;
+    const MeshTree tree =
+        RELIEF_TRY(withPrefix(quotedPath(file), buildMeshTree(mesh.positions, trianglesOf(mesh))));
+    const double build_ms = watch.ms();
+    RELIEF_TRY(checkBox(file, tree.box, scene));
+    Rival rival = RELIEF_TRY(makeMeshRival(tree));
+    return Baseline{"exact",
+                    RELIEF_TRY(RivalStep::create(std::move(rival), scene, bench.path)),
+                    {{"triangles", tree.triangles.size() / MeshTree::kTexels},
+                     {"nodes", tree.nodes.size() / MeshTree::kTexels},
+                     {"open_edges", tree.open_edges},
+                     {"build_ms", build_ms}}};
+}
 
 Result<std::vector<Baseline>> baselinesFor(const Bench& bench, const BenchScene& scene) {
     std::vector<Baseline> baselines;
     for (const std::string& file : bench.bricks) {
-        const BrickAtlas atlas = RELIEF_TRY(loadBrickAtlas(file));
-        const glm::vec3 apart = glm::abs(atlas.box.center() - scene.collider.bounds.center());
-        if (glm::any(glm::greaterThan(apart, glm::vec3(0.05F * scene.side)))) {
-            return fail(
-                ErrorCode::kUsage,
-                quotedPath(file) +
-                    " was baked from a different mesh than the collider; bake both from the same mesh");
-        }
-        baselines.push_back({std::filesystem::path(file).stem().string(),
-                             RELIEF_TRY(BrickStep::create(atlas, scene, bench.path))});
+        baselines.push_back(RELIEF_TRY(brickBaseline(file, bench, scene)));
+    }
+    if (!bench.exact.empty()) {
+        baselines.push_back(RELIEF_TRY(exactBaseline(bench.exact, bench, scene)));
     }
     return baselines;
 }
@@ -114,12 +147,13 @@ Work workOf(Baseline& baseline, const BenchScene& scene, const std::function<voi
             }};
 }
 
-Json bytesOf(const std::vector<Baseline>& baselines) {
-    Json bytes = Json::object();
+Json factsOf(const std::vector<Baseline>& baselines) {
+    Json all = Json::object();
     for (const Baseline& baseline : baselines) {
-        bytes[baseline.name] = baseline.step.bytes();
+        Json& facts = all[baseline.name] = {{"bytes", baseline.step.bytes()}};
+        facts.update(baseline.facts);
     }
-    return bytes;
+    return all;
 }
 
 /// Returns the requested variant and those that it is compared with.
@@ -190,7 +224,7 @@ Result<Json> benchStep(const Bench& bench) {
     return Json{{{"particles", count},
                  {"maps", scene.collider.maps.size()},
                  {"steps", steps},
-                 {"brick_bytes", bytesOf(baselines)},
+                 {"rivals", factsOf(baselines)},
                  {"rows", RELIEF_TRY(timeInTurns(bench, works, {.rounds = rounds, .calls = steps}))}}};
 }
 

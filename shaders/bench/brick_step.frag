@@ -70,7 +70,7 @@ Solid solid(vec3 p, float radius) {
     return Solid(distance < 0.0 ? distance : RELIEF_FAR_OUTSIDE, normal, 0, 0, vec3(0.0));
 }
 
-bool insideBefore(vec3 p, float radius, Solid s) {
+bool insideBefore(vec3 p, float radius, Solid s, bool free) {
     float distance;
     vec3 place;
     brickAt(p, distance, place);

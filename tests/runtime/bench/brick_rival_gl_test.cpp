@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares the baseline of relief-bench on the GPU with its volume on the CPU: a comparison with a wrong baseline would
 // be worthless.
-#include "runtime/bench/brick_step.h"
+#include "runtime/bench/brick_rival.h"
 
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ struct State {
     std::vector<float> position;
     std::vector<float> velocity;
 
-    explicit State(const BrickStep& step) {
+    explicit State(const RivalStep& step) {
         const PassState restored;
         constexpr auto kWidth = static_cast<GLsizei>(ParticleSystem::kStateWidth);
         position = readTextureFloats(step.positions(), kWidth, kParticles / kWidth).value();
@@ -52,7 +52,7 @@ struct State {
     }
 };
 
-class BrickStepGlTest : public testing::TestWithParam<StepPath> {
+class BrickRivalGlTest : public testing::TestWithParam<StepPath> {
   protected:
     void SetUp() override {
         context_ = required(GlContext::create(GlApi::kGl33Core));
@@ -80,7 +80,9 @@ class BrickStepGlTest : public testing::TestWithParam<StepPath> {
 
     /// One step from birth, then fifteen more.
     void expectCpuSides(const Baseline& baseline) {
-        auto step = BrickStep::create(baseline.atlas, scene_, GetParam());
+        auto rival = makeBrickRival(baseline.atlas);
+        ASSERT_TRUE(rival) << rival.error().message;
+        auto step = RivalStep::create(std::move(*rival), scene_, GetParam());
         ASSERT_TRUE(step) << step.error().message;
         EXPECT_GE(step->bytes(), baseline.atlas.bytes);
         // Except for atlas slots without a brick.
@@ -157,12 +159,12 @@ class BrickStepGlTest : public testing::TestWithParam<StepPath> {
 };
 
 // Bricks as in Unreal Engine, and a dense volume.
-TEST_P(BrickStepGlTest, ParticlesEndOnTheCpuSide) {
+TEST_P(BrickRivalGlTest, ParticlesEndOnTheCpuSide) {
     expectCpuSides(bricks(8));
     expectCpuSides(dense());
 }
 
-TEST_P(BrickStepGlTest, ParticlesAmongTightBricksEndOnTheCpuSide) {
+TEST_P(BrickRivalGlTest, ParticlesAmongTightBricksEndOnTheCpuSide) {
     Baseline baseline = bricks(3);
     expectCpuSides(baseline);
     // More bricks than 16 bits can index.
@@ -177,7 +179,7 @@ TEST_P(BrickStepGlTest, ParticlesAmongTightBricksEndOnTheCpuSide) {
     expectCpuSides(baseline);
 }
 
-INSTANTIATE_TEST_SUITE_P(Paths, BrickStepGlTest, testing::Values(StepPath::kFragment, StepPath::kCompute),
+INSTANTIATE_TEST_SUITE_P(Paths, BrickRivalGlTest, testing::Values(StepPath::kFragment, StepPath::kCompute),
                          [](const testing::TestParamInfo<StepPath>& path) {
                              return path.param == StepPath::kCompute ? "Compute" : "Fragment";
                          });

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// A brick distance volume as collider.
+#pragma once
+
+#include "formats/bricks/brick_atlas.h"
+#include "runtime/bench/rival_step.h"
+
+namespace relief {
+
+/// Uploads a volume. Errors: kLimit (GL limits for bricks or texels), kFailure.
+[[nodiscard]] Result<Rival> makeBrickRival(const BrickAtlas& atlas);
+
+}  // namespace relief

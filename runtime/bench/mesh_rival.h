@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// A triangle mesh as collider, with exact distances.
+#pragma once
+
+#include "runtime/bench/mesh_tree.h"
+#include "runtime/bench/rival_step.h"
+
+namespace relief {
+
+/// Uploads a tree. The textures and defines of the rival also fit bench/mesh_query.frag.
+/// Errors: kLimit (GL limits), kFailure.
+[[nodiscard]] Result<Rival> makeMeshRival(const MeshTree& tree);
+
+}  // namespace relief

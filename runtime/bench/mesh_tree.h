@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// A bounding volume hierarchy over a triangle mesh, packed for closest-point queries on the GPU
+// (shaders/bench/mesh_tree.glsl): a rival of depth maps that makes no errors.
+//
+// Nodes have up to four children, with boxes in 8 bits per face, rounded outwards. Splits minimise the surface area
+// heuristic over bins of centroids. Triangles are stored in leaf order. The side of a point is that of the pseudonormal
+// of the closest face, edge or vertex, which is exact for closed meshes: Bærentzen and Aanæs, "Signed distance
+// computation using the angle weighted pseudonormal", IEEE TVCG 11 (2005).
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <span>
+#include <vector>
+
+#include "formats/base/result.h"
+#include "formats/collider.h"
+
+namespace relief {
+
+struct MeshTree {
+    /// Children per node.
+    static constexpr std::size_t kWidth = 4;
+    /// Maximum triangles per leaf.
+    static constexpr std::uint32_t kLeafMax = 4;
+    /// Four-bit code of a child that is a node. A leaf has its number of triangles, and an unused child has 0.
+    static constexpr std::uint32_t kNodeCode = 15;
+    /// Texels per node and per triangle.
+    static constexpr std::size_t kTexels = 3;
+
+    Bounds box;
+    /// Three texels per node, the root first. Bytes and codes of a word start with child 0 in the lowest bits:
+    ///     0: lowest corner as float bits; exponents of the box unit along x, y, z in 8 bits each, plus 127
+    ///     1: first child node (24 bits) and codes of children 0, 1; first triangle (24 bits) and codes of children 2, 3;
+    ///        lower faces x; lower faces y
+    ///     2: lower faces z; upper faces x, y, z; in box units from the lowest corner
+    /// Child nodes are consecutive, and so are the triangles of the leaves of a node.
+    std::vector<glm::uvec4> nodes;
+    /// Three texels per triangle: the corners as float bits, each with the triangle across the edge to the next corner,
+    /// or the triangle itself.
+    std::vector<glm::uvec4> triangles;
+    /// Three per triangle: the vertices of its corners.
+    std::vector<std::uint32_t> vertices;
+    /// Per vertex: the angle-weighted pseudonormal, of unit length or zero; w is unused.
+    std::vector<glm::vec4> normals;
+    std::uint32_t stack = 0;  ///< entries that a depth-first traversal needs
+    std::size_t open_edges =
+        0;  ///< sides of triangles without exactly one opposite side; 0 for a closed manifold
+    std::size_t dropped = 0;  ///< triangles without area
+
+    [[nodiscard]] std::uint64_t bytes() const {
+        return (nodes.size() + triangles.size() + normals.size()) * sizeof(glm::uvec4) +
+               vertices.size() * sizeof(std::uint32_t);
+    }
+};
+
+/// Builds a tree. Equal positions are merged. The result depends only on the mesh.
+/// \param positions  finite, object units.
+/// \param triangles  valid indices; anticlockwise from outside.
+/// Errors: kInvalidInput (no triangle with an area), kLimit (2^24 triangles; a tree deeper than a shader's stack).
+[[nodiscard]] Result<MeshTree> buildMeshTree(std::span<const glm::vec3> positions,
+                                             std::span<const glm::uvec3> triangles);
+
+}  // namespace relief

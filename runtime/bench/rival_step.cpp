@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/bench/rival_step.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "runtime/gl/compute_units.h"
+#include "runtime/gl/gl_functions.h"
+#include "runtime/gl/pass_state.h"
+
+namespace relief {
+namespace {
+
+constexpr auto kWidth = ParticleSystem::kStateWidth;
+constexpr int kFirstUnit = 3;  // texture units after those of the state
+
+}  // namespace
+
+Result<RivalStep> RivalStep::create(Rival rival, const BenchScene& scene, StepPath path) {
+    const auto old = [](const Birth& birth) { return birth.age != 0.0F; };
+    if (scene.births.size() % kWidth != 0 || std::ranges::any_of(scene.births, old)) {
+        return fail(ErrorCode::kUsage, "a rival's step needs complete rows of births with age 0");
+    }
+    const PassState state;
+    RivalStep made;
+    made.rival_ = std::move(rival);
+    made.path_ = RELIEF_TRY(chosenPath(path));
+    made.forces_ = scene.forces;
+    made.types_ = {benchParticleType()};
+    made.makeState(scene);
+    for (std::size_t i = 0; i < 2; ++i) {
+        made.target_[i] = RELIEF_TRY(makeFramebuffer({made.state_[i][0].name(), made.state_[i][1].name()}));
+    }
+    RELIEF_TRY(made.compile());
+    return made;
+}
+
+void RivalStep::makeState(const BenchScene& scene) {
+    rows_ = static_cast<std::uint32_t>(scene.births.size() / kWidth);
+    const auto texture = [&] {
+        const auto rows = static_cast<GLsizei>(rows_);
+        return path_ == StepPath::kCompute ? makeImageTexture2D(GL_RGBA32F, kWidth, rows)
+                                           : makeTexture2D(GL_RGBA32F, kWidth, rows, GL_RGBA, GL_FLOAT);
+    };
+    birth_ = texture();
+    for (auto& buffer : state_) {
+        buffer = {texture(), texture()};
+    }
+}
+
+Result<void> RivalStep::compile() {
+    pass_ = RELIEF_TRY(StepPass::create({.compute = path_ == StepPath::kCompute}, rival_.shader));
+    const GlProgram& program = pass_.program();
+    program.use();
+    int unit = kFirstUnit;
+    for (const Rival::Texture& texture : rival_.textures) {
+        program.set(texture.sampler, unit++);
+    }
+    rival_.set(program);
+    return {};
+}
+
+void RivalStep::begin(const BenchScene& scene) {
+    std::vector<glm::vec4> position, velocity, birth;
+    for (const Birth& one : scene.births) {
+        position.emplace_back(one.position, 0.0F);
+        velocity.emplace_back(one.velocity, 0.0F);
+        birth.emplace_back(0.0F, one.lifetime, static_cast<float>(one.type), 0.0F);
+    }
+    const PassState state;
+    const auto upload = [&](const GlTexture& texture, const std::vector<glm::vec4>& texels) {
+        useTexture(0, texture);
+        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, kWidth, static_cast<GLsizei>(rows_), GL_RGBA, GL_FLOAT,
+                        texels.data());
+    };
+    upload(state_[current_][0], position);
+    upload(state_[current_][1], velocity);
+    upload(birth_, birth);
+    clock_ = 0.0F;
+    step();
+}
+
+void RivalStep::step() {
+    const PassState state;
+    const std::size_t next = 1 - current_;
+    clock_ += kBenchDt;
+    useTexture(StepPass::kPositionUnit, state_[current_][0]);
+    useTexture(StepPass::kVelocityUnit, state_[current_][1]);
+    useTexture(StepPass::kBirthUnit, birth_);
+    int unit = kFirstUnit;
+    for (const Rival::Texture& texture : rival_.textures) {
+        texture.volume ? useTexture3D(unit++, texture.texture) : useTexture(unit++, texture.texture);
+    }
+    pass_.use({.now = clock_, .dt = kBenchDt, .ground = -1e30F, .forces = forces_, .types = types_});
+    if (path_ == StepPath::kCompute) {
+        const ImageUnits units;
+        ImageUnits::write(0, state_[next][0]);
+        ImageUnits::write(1, state_[next][1]);
+        pass_.dispatch(kWidth, rows_);
+        ImageUnits::finish();
+    } else {
+        pass_.draw(target_[next].name(), kWidth, rows_);
+    }
+    current_ = next;
+}
+
+}  // namespace relief
