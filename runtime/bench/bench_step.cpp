@@ -107,20 +107,23 @@ Result<Baseline> brickBaseline(const std::string& file, const Bench& bench, cons
                     RELIEF_TRY(RivalStep::create(std::move(rival), scene, bench.path)), Json::object()};
 }
 
-Result<Baseline> exactBaseline(const std::string& file, const Bench& bench, const BenchScene& scene) {
-    const PictureMesh mesh = RELIEF_TRY(loadPictureMesh(file));
+/// Appends "exact", which queries the mesh in every step, and "exact_kept", which keeps distances between steps.
+Result<void> addExact(std::vector<Baseline>& baselines, const Bench& bench, const BenchScene& scene) {
+    const PictureMesh mesh = RELIEF_TRY(loadPictureMesh(bench.exact));
     const Stopwatch watch;
     const MeshTree tree =
-        RELIEF_TRY(withPrefix(quotedPath(file), buildMeshTree(mesh.positions, trianglesOf(mesh))));
-    const double build_ms = watch.ms();
-    RELIEF_TRY(checkBox(file, tree.box, scene));
-    Rival rival = RELIEF_TRY(makeMeshRival(tree));
-    return Baseline{"exact",
-                    RELIEF_TRY(RivalStep::create(std::move(rival), scene, bench.path)),
-                    {{"triangles", tree.triangles.size() / MeshTree::kTexels},
-                     {"nodes", tree.nodes.size() / MeshTree::kTexels},
-                     {"open_edges", tree.open_edges},
-                     {"build_ms", build_ms}}};
+        RELIEF_TRY(withPrefix(quotedPath(bench.exact), buildMeshTree(mesh.positions, trianglesOf(mesh))));
+    const Json facts = {{"triangles", tree.triangles.size() / MeshTree::kTexels},
+                        {"nodes", tree.nodes.size() / MeshTree::kTexels},
+                        {"open_edges", tree.open_edges},
+                        {"build_ms", watch.ms()}};
+    RELIEF_TRY(checkBox(bench.exact, tree.box, scene));
+    for (const bool keeps : {false, true}) {
+        Rival rival = RELIEF_TRY(makeMeshRival(tree, keeps));
+        baselines.push_back({keeps ? "exact_kept" : "exact",
+                             RELIEF_TRY(RivalStep::create(std::move(rival), scene, bench.path)), facts});
+    }
+    return {};
 }
 
 Result<std::vector<Baseline>> baselinesFor(const Bench& bench, const BenchScene& scene) {
@@ -129,7 +132,7 @@ Result<std::vector<Baseline>> baselinesFor(const Bench& bench, const BenchScene&
         baselines.push_back(RELIEF_TRY(brickBaseline(file, bench, scene)));
     }
     if (!bench.exact.empty()) {
-        baselines.push_back(RELIEF_TRY(exactBaseline(bench.exact, bench, scene)));
+        RELIEF_TRY(addExact(baselines, bench, scene));
     }
     return baselines;
 }

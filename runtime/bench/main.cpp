@@ -48,10 +48,9 @@ Result<void> run(int argc, char** argv) {
            "Files of relief-accuracy --atlas for the same mesh, as further variants of step, named by "
            "file")
         ->option_text("FILE...");
-    app.add_option(
-           "--exact", bench.exact,
-           "The collider's mesh (.obj or .ply): adds the variant exact of step, which computes the exact "
-           "signed distance by a tree of its triangles")
+    app.add_option("--exact", bench.exact,
+                   "The mesh of the collider (.obj or .ply), for two further variants of step with the exact "
+                   "signed distance: exact, and exact_kept, which keeps distances between steps")
         ->option_text("FILE");
     app.add_option("--stream-bytes", bench.stream_bytes, "GPU budget of stream in bytes (default: 134217728)")
         ->option_text("N")

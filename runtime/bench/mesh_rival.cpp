@@ -34,12 +34,14 @@ Result<void> upload(Rival& rival, const char* sampler, const Layout& layout, std
 
 }  // namespace
 
-Result<Rival> makeMeshRival(const MeshTree& tree) {
+Result<Rival> makeMeshRival(const MeshTree& tree, bool keeps) {
     const PassState state;
     Rival rival;
     rival.shader = {"bench/mesh_step.frag", "#define RELIEF_TREE_WIDTH " + std::to_string(kTextureWidth) +
                                                 "\n#define RELIEF_TREE_STACK " +
-                                                std::to_string(std::max(tree.stack, 1U)) + "\n"};
+                                                std::to_string(std::max(tree.stack, 1U)) + "\n" +
+                                                (keeps ? "#define RELIEF_KEPT\n" : "")};
+    rival.keeps = keeps;
     rival.bytes = tree.bytes();
     forgetGlErrors();
     RELIEF_TRY(upload(rival, "u_nodes", kWords4, tree.nodes));

@@ -29,7 +29,11 @@ Result<RivalStep> RivalStep::create(Rival rival, const BenchScene& scene, StepPa
     made.types_ = {benchParticleType()};
     made.makeState(scene);
     for (std::size_t i = 0; i < 2; ++i) {
-        made.target_[i] = RELIEF_TRY(makeFramebuffer({made.state_[i][0].name(), made.state_[i][1].name()}));
+        std::vector<GLuint> names;
+        for (const GlTexture& texture : made.state_[i]) {
+            names.push_back(texture.name());
+        }
+        made.target_[i] = RELIEF_TRY(makeFramebuffer(names));
     }
     RELIEF_TRY(made.compile());
     return made;
@@ -37,14 +41,18 @@ Result<RivalStep> RivalStep::create(Rival rival, const BenchScene& scene, StepPa
 
 void RivalStep::makeState(const BenchScene& scene) {
     rows_ = static_cast<std::uint32_t>(scene.births.size() / kWidth);
-    const auto texture = [&] {
+    const auto texture = [&](GLenum internal_format, GLenum format) {
         const auto rows = static_cast<GLsizei>(rows_);
-        return path_ == StepPath::kCompute ? makeImageTexture2D(GL_RGBA32F, kWidth, rows)
-                                           : makeTexture2D(GL_RGBA32F, kWidth, rows, GL_RGBA, GL_FLOAT);
+        return path_ == StepPath::kCompute ? makeImageTexture2D(internal_format, kWidth, rows)
+                                           : makeTexture2D(internal_format, kWidth, rows, format, GL_FLOAT);
     };
-    birth_ = texture();
+    birth_ = texture(GL_RGBA32F, GL_RGBA);
     for (auto& buffer : state_) {
-        buffer = {texture(), texture()};
+        buffer.push_back(texture(GL_RGBA32F, GL_RGBA));
+        buffer.push_back(texture(GL_RGBA32F, GL_RGBA));
+        if (rival_.keeps) {
+            buffer.push_back(texture(GL_R32F, GL_RED));
+        }
     }
 }
 
@@ -56,6 +64,7 @@ Result<void> RivalStep::compile() {
     for (const Rival::Texture& texture : rival_.textures) {
         program.set(texture.sampler, unit++);
     }
+    program.set("u_kept", unit);
     rival_.set(program);
     return {};
 }
@@ -68,13 +77,16 @@ void RivalStep::begin(const BenchScene& scene) {
         birth.emplace_back(0.0F, one.lifetime, static_cast<float>(one.type), 0.0F);
     }
     const PassState state;
-    const auto upload = [&](const GlTexture& texture, const std::vector<glm::vec4>& texels) {
+    const auto upload = [&](const GlTexture& texture, const auto& texels, GLenum format = GL_RGBA) {
         useTexture(0, texture);
-        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, kWidth, static_cast<GLsizei>(rows_), GL_RGBA, GL_FLOAT,
+        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, kWidth, static_cast<GLsizei>(rows_), format, GL_FLOAT,
                         texels.data());
     };
     upload(state_[current_][0], position);
     upload(state_[current_][1], velocity);
+    if (rival_.keeps) {
+        upload(state_[current_][2], std::vector<float>(position.size()), GL_RED);
+    }
     upload(birth_, birth);
     clock_ = 0.0F;
     step();
@@ -91,11 +103,17 @@ void RivalStep::step() {
     for (const Rival::Texture& texture : rival_.textures) {
         texture.volume ? useTexture3D(unit++, texture.texture) : useTexture(unit++, texture.texture);
     }
+    if (rival_.keeps) {
+        useTexture(unit, state_[current_][2]);
+    }
     pass_.use({.now = clock_, .dt = kBenchDt, .ground = -1e30F, .forces = forces_, .types = types_});
     if (path_ == StepPath::kCompute) {
         const ImageUnits units;
         ImageUnits::write(0, state_[next][0]);
         ImageUnits::write(1, state_[next][1]);
+        if (rival_.keeps) {
+            ImageUnits::write(2, state_[next][2], GL_R32F);
+        }
         pass_.dispatch(kWidth, rows_);
         ImageUnits::finish();
     } else {

@@ -23,6 +23,8 @@ struct Rival {
     std::vector<Texture> textures;
     std::function<void(const GlProgram&)> set;  ///< sets the other uniforms of the current program
     std::uint64_t bytes = 0;                    ///< size of the textures
+    /// Adds a float to the state of each particle: the sampler u_kept, and the output or image unit 2. Initially 0.
+    bool keeps = false;
 };
 
 class RivalStep {
@@ -49,7 +51,7 @@ class RivalStep {
     float clock_ = 0.0F;
     Forces forces_;
     std::array<ParticleType, 1> types_;
-    std::array<std::array<GlTexture, 2>, 2> state_;  // position and velocity
+    std::array<std::vector<GlTexture>, 2> state_;  // position, velocity, and a float if the rival keeps one
     std::array<GlFramebuffer, 2> target_;
     GlTexture birth_;
     StepPass pass_;

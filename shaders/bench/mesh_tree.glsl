@@ -60,6 +60,7 @@ void visitTriangle(vec3 p, uint triangle, inout MeshPoint best) {
     float d6 = dot(ac, cp);
     float v = 0.0;
     float w = 0.0;
+    vec3 from = vec3(0.0);
     uint feature = RELIEF_FACE;
     if (d1 <= 0.0 && d2 <= 0.0) {
         feature = RELIEF_CORNER;
@@ -84,12 +85,14 @@ void visitTriangle(vec3 p, uint triangle, inout MeshPoint best) {
             w = d2 / (d2 - d6);
             feature = RELIEF_EDGE + 2u;
         } else {
-            float scale = 1.0 / (va + vb + vc);
-            v = vb * scale;
-            w = vc * scale;
+            // Barycentric coordinates would be less accurate.
+            vec3 n = cross(ab, ac);
+            from = (dot(n, ap) / dot(n, n)) * n;
         }
     }
-    vec3 from = ap - v * ab - w * ac;
+    if (feature != RELIEF_FACE) {
+        from = ap - v * ab - w * ac;
+    }
     float distance2 = dot(from, from);
     if (distance2 < best.distance2) {
         best = MeshPoint(from, distance2, triangle, feature);
