@@ -21,7 +21,7 @@ constexpr std::size_t kTrianglesMax = (1U << 24U) - 1;  // 24 bits in a node
 constexpr std::uint32_t kStackMax = 128;
 constexpr std::size_t kBins = 16;
 // Cost of a binary split in units of a triangle test. A wide node replaces up to three splits.
-constexpr float kSplitCost = 0.5F;
+constexpr float kSplitCost = 2.0F;
 
 float areaOf(const Bounds& box) {
     const glm::vec3 size = box.size();

@@ -85,7 +85,7 @@ void RivalStep::begin(const BenchScene& scene) {
     upload(state_[current_][0], position);
     upload(state_[current_][1], velocity);
     if (rival_.keeps) {
-        upload(state_[current_][2], std::vector<float>(position.size()), GL_RED);
+        upload(state_[current_][2], std::vector<float>(position.size(), -1.0F), GL_RED);
     }
     upload(birth_, birth);
     clock_ = 0.0F;

@@ -23,7 +23,7 @@ struct Rival {
     std::vector<Texture> textures;
     std::function<void(const GlProgram&)> set;  ///< sets the other uniforms of the current program
     std::uint64_t bytes = 0;                    ///< size of the textures
-    /// Adds a float to the state of each particle: the sampler u_kept, and the output or image unit 2. Initially 0.
+    /// Adds a float to the state of each particle: the sampler u_kept, and the output or image unit 2. Initially -1.
     bool keeps = false;
 };
 

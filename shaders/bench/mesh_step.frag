@@ -2,8 +2,9 @@
 // A step with the exact signed distance of a triangle mesh in place of depth maps: the rival of
 // `relief-bench step --exact`. Everything except the solid is shared with particles/step.frag.
 //
-// With RELIEF_KEPT, a step stores its distance from the surface if the particle is outside. Until the particle has
-// moved that far it is still outside, and needs no query.
+// With RELIEF_KEPT, a step stores a lower bound of the distance from the surface if the particle is outside. Until the
+// particle has moved that far it is still outside, and needs no query. Then a query only searches a few steps' length: if
+// nothing is that close, the particle is still outside. The results equal those without RELIEF_KEPT.
 //!include particles/step.glsl
 //!include bench/mesh_tree.glsl
 
@@ -12,7 +13,9 @@ uniform vec3 u_box_max;
 
 #if defined(RELIEF_KEPT)
 
-uniform highp sampler2D u_kept;  // lower bound of the distance of a particle outside; 0: unknown
+#define RELIEF_SEARCHED_STEPS 4.0
+
+uniform highp sampler2D u_kept;  // lower bound of the distance of a particle outside; negative: side unknown
 
 #if defined(RELIEF_COMPUTE)
 layout(r32f, binding = 2) writeonly uniform highp image2D u_kept_out;
@@ -28,16 +31,17 @@ ivec2 particleTexel() {
 #endif
 }
 
-// Returns the bound at p, a point of this step.
-float keptAt(vec3 p) {
+// Returns the bound at p, a point of this step, and the distance to search if it is not positive.
+float keptAt(vec3 p, out float within) {
     ivec2 texel = particleTexel();
-    float moved = length(p - texelFetch(u_position, texel, 0).xyz);
-    float rounding = 1e-6 * length(u_box_max - u_box_min);
-    return texelFetch(u_kept, texel, 0).r - 1.0001 * moved - rounding;
+    float kept = texelFetch(u_kept, texel, 0).r;
+    float moved = 1.0001 * length(p - texelFetch(u_position, texel, 0).xyz) + 1e-6 * length(u_box_max - u_box_min);
+    within = kept < 0.0 ? sqrt(RELIEF_UNBOUNDED) : RELIEF_SEARCHED_STEPS * moved;
+    return kept - moved;
 }
 
 void keep(float distance) {
-    float kept = max(distance, 0.0);
+    float kept = distance < 0.0 ? -1.0 : distance;
 #if defined(RELIEF_COMPUTE)
     imageStore(u_kept_out, particleTexel(), vec4(kept));
 #else
@@ -47,7 +51,8 @@ void keep(float distance) {
 
 #else
 
-float keptAt(vec3 p) {
+float keptAt(vec3 p, out float within) {
+    within = sqrt(RELIEF_UNBOUNDED);
     return 0.0;
 }
 
@@ -57,22 +62,23 @@ void keep(float distance) {}
 
 vec3 g_to;  // the last point passed to solid()
 
-// Returns the signed distance, or a lower bound outside the box of the mesh. Callers only need it if its square is
-// below `within2`.
-float distanceAt(vec3 p, float within2, out vec3 normal) {
+// Returns the signed distance if it is less than `within` in magnitude, else `within`. Outside the box of the mesh,
+// returns a lower bound.
+float distanceAt(vec3 p, float within, out vec3 normal) {
     float distance = length(max(max(u_box_min - p, p - u_box_max), 0.0));
     normal = vec3(0.0);
     if (distance == 0.0) {
-        distance = meshDistance(closestPoint(p, within2), normal);
+        distance = meshDistance(closestPoint(p, within * within), normal);
     }
     return distance;
 }
 
 Solid solid(vec3 p, float radius) {
     vec3 normal = vec3(0.0);
-    float distance = keptAt(p);
+    float within;
+    float distance = keptAt(p, within);
     if (distance <= 0.0) {
-        distance = distanceAt(p, RELIEF_UNBOUNDED, normal);
+        distance = distanceAt(p, within, normal);
     }
     keep(distance);
     g_to = p;
@@ -80,10 +86,16 @@ Solid solid(vec3 p, float radius) {
 }
 
 bool insideBefore(vec3 p, float radius, Solid s, bool free) {
-    // The surface close to the end of the step bounds the search, with a margin for rounding.
-    float within = (length(p - g_to) - s.distance) * 1.001;
-    vec3 normal;
-    return distanceAt(p, within * within, normal) < 0.0;
+    float moved = 1.0001 * length(p - g_to);
+    float depth = -s.distance;
+    // A path shorter than the depth of its end is inside.
+    bool inside = moved < depth;
+    if (!inside) {
+        // The surface close to the end of the step bounds the search, with a margin for rounding.
+        vec3 normal;
+        inside = distanceAt(p, 1.001 * (moved + depth), normal) < 0.0;
+    }
+    return inside;
 }
 
 vec3 pointBefore(Solid s, vec3 p) {

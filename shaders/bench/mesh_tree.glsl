@@ -99,7 +99,8 @@ void visitTriangle(vec3 p, uint triangle, inout MeshPoint best) {
     }
 }
 
-// Returns the closest point, if its squared distance is below `within2`. The search visits near children first.
+// Returns the closest point if its squared distance is below `within2`; otherwise distance2 is `within2`, and from is
+// zero. The search visits near children first.
 MeshPoint closestPoint(vec3 p, float within2) {
     MeshPoint best = MeshPoint(vec3(0.0), within2, 0u, RELIEF_FACE);
     // A key is a lower bound of a squared distance as bits, whose order is that of the numbers. References: a node, or
@@ -184,7 +185,8 @@ vec3 pseudonormal(MeshPoint at) {
     return normal;
 }
 
-// Returns the signed distance, and the normal, which has unit length and points outwards.
+// Returns the signed distance, and the normal, which has unit length and points outwards. Returns the positive bound of
+// the search if it found nothing.
 float meshDistance(MeshPoint at, out vec3 normal) {
     normal = pseudonormal(at);
     float distance = sqrt(at.distance2);
