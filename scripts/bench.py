@@ -180,6 +180,7 @@ def compare(old_path, new_path):
 def print_tables(report):
     """A report of relief-bench."""
     for table in report["tables"]:
+        rivals = table.pop("rivals", {})
         of = ", ".join(f"{name} {'x'.join(map(str, value)) if isinstance(value, list) else value}"
                        for name, value in table.items() if name != "rows")
         print(f"\n{report['case']}{', ' if of else ''}{of}; ms per call, on {report['renderer']}")
@@ -189,6 +190,8 @@ def print_tables(report):
             if "over" in row:
                 over = row["over"]
                 line += f"  {over['median']:6.2f} of {over['of']} ({over['least']:.2f} to {over['most']:.2f})"
+            for name, value in rivals.get(row["name"], {}).items():
+                line += f", {name} {value:.0f}" if name != "build_ms" else f", built in {value:.0f} ms"
             note = PROMISES.get((report["case"], row["name"]))
             print(line + (f": {note}" if note else ""))
 
@@ -210,9 +213,10 @@ def print_report(tools):
     print(f"step with patches / with the paper's maps          {taken / paper:.2f}   ({taken:.2f} / {paper:.2f} ms)")
 
     collider = f"{tools.folder}/patches.relief"
-    print_tables(tools.bench("step", collider))
+    plain = tools.mesh.endswith((".obj", ".ply"))  # formats that relief-bench reads
+    print_tables(tools.bench("step", collider, *(["--exact", tools.mesh] if plain else [])))
     print_tables(tools.bench("picture", collider))
-    if tools.mesh.endswith((".obj", ".ply")):
+    if plain:
         print_tables(tools.bench("mesh", tools.mesh))
 
 
