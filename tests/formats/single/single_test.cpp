@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <zstd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <glm/geometric.hpp>
@@ -13,6 +15,7 @@
 #include <optional>
 #include <random>
 
+#include "formats/base/file_io.h"
 #include "formats/base/hash.h"
 #include "formats/collider.h"
 #include "formats/container.h"
@@ -268,6 +271,121 @@ TEST(Single, RejectsEveryChangedByte) {
         ASSERT_NE(Single(bytes).status, RELIEF_OK);
         one ^= std::byte{0x10};
     }
+}
+
+/// Replaces every occurrence of a text and corrects the checksums.
+std::vector<std::byte> replaced(std::vector<std::byte> bytes, std::string_view from, std::string_view to) {
+    const auto old = std::as_bytes(std::span(from));
+    const auto with = std::as_bytes(std::span(to));
+    EXPECT_EQ(old.size(), with.size());
+    int count = 0;
+    for (auto at = bytes.begin(); (at = std::search(at, bytes.end(), old.begin(), old.end())) != bytes.end();
+         ++count) {
+        at = std::copy(with.begin(), with.end(), at);
+    }
+    EXPECT_GT(count, 0) << from;
+    test::fixChecksums(bytes);
+    return bytes;
+}
+
+/// Expects that relief.h accepts a container of one map of patches if and only if the library does.
+bool isAccepted(const std::vector<std::byte>& bytes) {
+    const bool accepted = readContainer(bytes).has_value();
+    EXPECT_EQ(Single(bytes, ZSTD_decompress).status == RELIEF_OK, accepted);
+    return accepted;
+}
+
+TEST(Single, JudgesEveryByteAsTheLibraryDoes) {
+    int accepted = 0;
+    int rejected = 0;
+    for (const char* name : {"plain", "materials", "zstd"}) {
+        const auto file = required(readFile(
+            std::string(RELIEF_SOURCE_DIR "/tests/fuzz/corpus/container/patches_") + name + ".relief"));
+        std::uint64_t metadata_size = 0;
+        std::memcpy(&metadata_size, file.data() + 40, sizeof(metadata_size));
+        const std::size_t payload = (64 + metadata_size + 63) / 64 * 64;
+        const auto hashOf = [&](const std::vector<std::byte>& bytes) {
+            const std::uint64_t hash = xxh3_64(std::span(bytes).subspan(payload));
+            return std::string(reinterpret_cast<const char*>(&hash), sizeof(hash));
+        };
+        const std::string hash = hashOf(file);
+        ASSERT_TRUE(isAccepted(file));
+        for (std::size_t i = 0; i < file.size(); ++i) {
+            const auto old = static_cast<unsigned>(file[i]);
+            for (const unsigned value : {0U, 1U, 9U, 0x2fU, 0x80U, 0xffU, old + 1U, old ^ 0x40U}) {
+                std::vector<std::byte> bytes = file;
+                bytes[i] = static_cast<std::byte>(value & 0xffU);
+                if (bytes[i] == file[i]) {
+                    continue;
+                }
+                if (i < 56) {  // the size of the metadata may be wrong
+                    const std::uint64_t header_hash = xxh3_64(std::span(bytes).first(56));
+                    std::memcpy(bytes.data() + 56, &header_hash, sizeof(header_hash));
+                } else if (i < payload) {
+                    test::fixChecksums(bytes);
+                } else {
+                    bytes = replaced(bytes, hash, hashOf(bytes));
+                }
+                ++(isAccepted(bytes) ? accepted : rejected);
+                ASSERT_FALSE(HasFailure()) << name << ": byte " << i << " is " << value;
+            }
+        }
+    }
+    EXPECT_GT(accepted, 2000);
+    EXPECT_GT(rejected, 2000);
+}
+
+TEST(Single, JudgesTextsAndMaterialsAsTheLibraryDoes) {
+    std::mt19937 random(test::seedFrom(12));
+    Collider collider = placedPatches(random);
+    collider.unit = "metre";
+    collider.provenance.options = {{"name", "value"}, {"split\xc3", "\xbc"}};
+    collider.materials = test::someMaterials();
+    collider.materials.list.resize(2);
+    collider.materials.list[0].name = "first";
+    collider.materials.list[1].name = "other";
+    collider.materials.sides.clear();
+    // Three levels, of 1, 8 and 12 nodes.
+    collider.materials.nodes.assign(21, {});
+    collider.materials.nodes[0].head = 0xffU | 1U << 8U;
+    collider.materials.nodes[1].head = 0xffU | 9U << 8U;
+    collider.materials.nodes[2].head = 0x0fU | 17U << 8U;
+    const std::vector<std::byte> good = test::written(collider);
+    ASSERT_TRUE(isAccepted(good));
+    EXPECT_TRUE(isAccepted(replaced(good, "metre",
+                                    "m\xc3\xa8"
+                                    "tr")));
+    EXPECT_TRUE(isAccepted(replaced(good, "metre", "\xf4\x8f\xbf\xbfm")));
+    EXPECT_TRUE(isAccepted(replaced(good, "metre",
+                                    "\xe2\x80\xae"
+                                    "re")));  // only names of materials must not
+    for (const char* bad :
+         {"metr\x1f", "metr\x7f", "met\xc2\x9f", "met\xc0\xaf", "me\xe0\x9f\xbf", "me\xed\xa0\x80",
+          "m\xf0\x8f\xbf\xbf", "m\xf4\x90\x80\x80", "m\xf5\x80\x80\x80", "metr\xc3", "met\xe2\x80"}) {
+        EXPECT_FALSE(isAccepted(replaced(good, "metre", bad)));
+    }
+    EXPECT_FALSE(isAccepted(replaced(good, "split\xc3", "split_")));
+    EXPECT_FALSE(isAccepted(replaced(good, "value", "valu\xc3")));
+    EXPECT_FALSE(isAccepted(replaced(good, "other", "first")));
+    for (const char* bad : {"\xe2\x80\xaa..", "..\xe2\x80\xae", "\xe2\x81\xa6..", ".\xe2\x81\xa9."}) {
+        EXPECT_FALSE(isAccepted(replaced(good, "other", bad)));
+    }
+    EXPECT_TRUE(isAccepted(replaced(good, "other", "..\xe2\x81\xaa")));
+
+    // A chain of nodes is one level too deep.
+    const auto textOf = [](const std::vector<MaterialNode>& nodes) {
+        return std::string(reinterpret_cast<const char*>(nodes.data()), nodes.size() * sizeof(MaterialNode));
+    };
+    std::vector<MaterialNode> chain(21);
+    for (std::uint32_t i = 0; i < 20; ++i) {
+        chain[i].head = 1U | (i + 1) << 8U;
+    }
+    EXPECT_FALSE(isAccepted(replaced(good, textOf(collider.materials.nodes), textOf(chain))));
+    chain[18].head = 3U | 19U << 8U;
+    chain[19].head = 0;
+    EXPECT_TRUE(isAccepted(replaced(good, textOf(collider.materials.nodes), textOf(chain))));
+    chain[18].head = 7U | 19U << 8U;  // a node that does not exist
+    EXPECT_FALSE(isAccepted(replaced(good, textOf(collider.materials.nodes), textOf(chain))));
 }
 
 TEST(Single, StatesWhyItRejectsAContainer) {
