@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The pages of samples/web/engines: 100,000 particles of each engine fall on the bunny, and none is deep inside.
-// Tolerance: kDepth of the bunny's longest side, as far as a particle moves in a step. A page without collisions leaves
-// thousands of particles inside. RELIEF_PICTURES=FOLDER keeps a picture of each page.
+// Tolerance: kDepth of the bunny's longest side, as far as a particle moves in a step, and kInside particles, which the
+// next step moves out. Without collisions, 11,000 are inside. RELIEF_PICTURES=FOLDER keeps a picture of each page.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";
@@ -12,7 +12,8 @@ import { distance, openCollider } from "../../out/npm/engines.js";
 import { launch, openPage, root, serve } from "./lib/browser.mjs";
 import { bin, scratch } from "./lib/native.mjs";
 
-const kDepth = 0.02;
+const kDepth = 0.03;
+const kInside = 200;
 const kSteps = 40;
 const kStep = 1 / 30; // seconds
 const kFlags = ["--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader", "--enable-features=Vulkan", "--use-vulkan=swiftshader",
@@ -49,6 +50,7 @@ for (const engine of ["three_webgpu", "three_webgl", "playcanvas"]) {
         const lowest = depths.reduce((low, depth) => Math.min(low, depth), 1);
         t.diagnostic(`${engine}: ${count(-1, 0)} inside, the deepest by ${-lowest} of the side; ${count(-0.005, 0.005)} on the surface`);
         assert.ok(lowest > -kDepth, `a particle is inside by ${-lowest} of the side`);
+        assert.ok(count(-1, 0) <= kInside, `${count(-1, 0)} particles are inside`);
         assert.ok(count(-0.005, 0.005) > 1000, `only ${count(-0.005, 0.005)} particles reach the bunny`);
         if (process.env.RELIEF_PICTURES) {
             await page.evaluate(() => window.sample.draw());
