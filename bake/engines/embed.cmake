@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # relief_embed_engines(OUTPUT): generates OUTPUT, a C++ file with the texts that `relief export --engine` copies
-# (engine_texts.h): those of the tables in engine_export.cpp. Links of pages to other files of the project become plain text.
+# (engine_texts.h): those of the tables in engine_export.cpp. Links of pages to other files of the project become plain text, and pictures
+# are left out.
 file(READ ${CMAKE_CURRENT_LIST_DIR}/engine_export.cpp table)
 string(REGEX MATCHALL "\"(formats|runtime|samples|shaders)/[A-Za-z0-9_/.]+\"," texts "${table}")
 list(TRANSFORM texts REPLACE "[\",]" "")
@@ -24,6 +25,7 @@ string(APPEND code "std::string_view engineText(std::string_view path) {\n")
 foreach(path IN LISTS texts)
     file(READ ${ROOT}/${path} text)
     if(path MATCHES "[.]md$")
+        string(REGEX REPLACE "!\\[[^]]*\\]\\([^)]*\\)\n*" "" text "${text}")  # pictures
         string(REGEX REPLACE "\\[([^]]*)\\]\\([^)h#][^)]*\\)" "\\1" text "${text}")
     endif()
     # Compilers limit the length of one literal; adjacent ones are joined.

@@ -79,10 +79,10 @@ vec3 reliefPatchAcross(uvec2 record, vec3 q) {
     float a = (record.x & 0x200u) != 0u ? 1.0 - abc.x : abc.x;
     float b = (record.x & 0x400u) != 0u ? 1.0 - abc.y : abc.y;
     RELIEF_PRECISE vec3 at = vec3(b, abc.z, a);
-    if (diagonal == 1u) {
-        at = vec3(0.5 * (a - b + 1.0), abc.z, a + b);
-    } else if (diagonal == 2u) {
-        at = vec3(0.5 * (a - b + 1.0), 0.25 * (a + b - 2.0 * abc.z + 2.0), a + b + abc.z);
+    if (diagonal != 0u) {
+        float v = diagonal == 1u ? abc.z : 0.25 * (a + b - 2.0 * abc.z + 2.0);
+        float w = diagonal == 1u ? a + b : a + b + abc.z;
+        at = vec3(0.5 * (a - b + 1.0), v, w);
     }
     return at;
 }
@@ -140,10 +140,10 @@ vec4 reliefPatch(highp usampler2D texels, int first, uvec2 record, vec3 q) {
     float by_u = (unit * squares) * ((c.y - c.x) + t.y * ((c.w - c.z) - (c.y - c.x)));
     float by_v = (unit * squares) * (upper - lower);
     vec3 g = vec3(1.0, -by_u, -by_v);
-    if (diagonal == 1u) {
-        g = vec3(1.0 - 0.5 * by_u, 1.0 + 0.5 * by_u, -by_v);
-    } else if (diagonal == 2u) {
-        g = vec3(1.0 - 0.5 * by_u - 0.25 * by_v, 1.0 + 0.5 * by_u - 0.25 * by_v, 1.0 + 0.5 * by_v);
+    if (diagonal != 0u) {
+        float v = diagonal == 1u ? 0.0 : 0.25 * by_v;
+        float w = diagonal == 1u ? -by_v : 1.0 + 0.5 * by_v;
+        g = vec3(1.0 - 0.5 * by_u - v, 1.0 + 0.5 * by_u - v, w);
     }
     g = vec3((record.x & 0x200u) != 0u ? -g.x : g.x, (record.x & 0x400u) != 0u ? -g.y : g.y, g.z);
     g = axis == 0u ? g : axis == 1u ? g.zxy : g.yzx;

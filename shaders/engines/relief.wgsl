@@ -73,10 +73,10 @@ fn reliefPatchAcross(record: vec2u, q: vec3f) -> vec3f {
     let a = select(abc.x, 1.0 - abc.x, (record.x & 0x200u) != 0u);
     let b = select(abc.y, 1.0 - abc.y, (record.x & 0x400u) != 0u);
     var at = vec3f(b, abc.z, a);
-    if (diagonal == 1u) {
-        at = vec3f(0.5 * (a - b + 1.0), abc.z, a + b);
-    } else if (diagonal == 2u) {
-        at = vec3f(0.5 * (a - b + 1.0), 0.25 * (a + b - 2.0 * abc.z + 2.0), a + b + abc.z);
+    if (diagonal != 0u) {
+        let v = select(0.25 * (a + b - 2.0 * abc.z + 2.0), abc.z, diagonal == 1u);
+        let w = select(a + b + abc.z, a + b, diagonal == 1u);
+        at = vec3f(0.5 * (a - b + 1.0), v, w);
     }
     return at;
 }
@@ -134,10 +134,10 @@ fn reliefPatch(texels: texture_2d<u32>, first: i32, record: vec2u, q: vec3f) -> 
     let by_u = (unit * squares) * ((c.y - c.x) + t.y * ((c.w - c.z) - (c.y - c.x)));
     let by_v = (unit * squares) * (upper - lower);
     var g = vec3f(1.0, -by_u, -by_v);
-    if (diagonal == 1u) {
-        g = vec3f(1.0 - 0.5 * by_u, 1.0 + 0.5 * by_u, -by_v);
-    } else if (diagonal == 2u) {
-        g = vec3f(1.0 - 0.5 * by_u - 0.25 * by_v, 1.0 + 0.5 * by_u - 0.25 * by_v, 1.0 + 0.5 * by_v);
+    if (diagonal != 0u) {
+        let v = select(0.25 * by_v, 0.0, diagonal == 1u);
+        let w = select(1.0 + 0.5 * by_v, -by_v, diagonal == 1u);
+        g = vec3f(1.0 - 0.5 * by_u - v, 1.0 + 0.5 * by_u - v, w);
     }
     g = vec3f(select(g.x, -g.x, (record.x & 0x200u) != 0u), select(g.y, -g.y, (record.x & 0x400u) != 0u), g.z);
     g = select(select(g.yzx, g.zxy, axis == 1u), g, axis == 0u);
