@@ -65,7 +65,7 @@ export async function start() {
             void main() {
                 vec3 p = texelFetch(places, ivec2(gl_VertexID % ${kWidth}, gl_VertexID / ${kWidth}), 0).xyz;
                 gl_Position = projectionMatrix * viewMatrix * vec4(p, 1.0);
-                gl_PointSize = 2.0;
+                gl_PointSize = 1.0;
             }`,
         fragmentShader: "void main() { gl_FragColor = vec4(0.75, 0.84, 0.92, 1.0); }",
     });
