@@ -49,8 +49,13 @@ constexpr double kFaceTurnMost = 0.03;
 constexpr double kFaceFlat = 1e-3;
 /// Weight of that angle (radians times the volume of the cell), relative to misclassified volume.
 constexpr double kFaceWorth = 0.01;
+/// Factor of upper bounds of errors, because queries round points to floats.
+constexpr double kAboveRounding = 1.01;
+/// The search in a leaf ends if its errors are this many times too small, so that searches for planes worth a little
+/// less need not repeat it.
+constexpr double kClearly = 1.6;
 /// Bytes of one plane in its own record; bytes of the records of a second plane, or of two.
-constexpr double kOneBytes = kPatchTexelBytes;
+constexpr double kOneBytes = DepthGain::kBytesMin;
 constexpr double kPairBytes = 2.0 * kPatchTexelBytes;
 
 /// Bit k of `corner` is the coordinate on axis k.
@@ -66,10 +71,34 @@ glm::dvec3 octantMiddle(unsigned octant) {
 /// A point inside and the nearest surface.
 struct Sample {
     glm::dvec3 at{0.0};      // unit cube
+    PatchVote without{};     // the vote without depth planes
     double distance = 0.0;   // cells
     glm::dvec3 normal{0.0};  // from the point to the surface
 
     [[nodiscard]] CellPlane plane() const { return {normal, dot(normal, glm::dvec3(0.5) - at) - distance}; }
+    [[nodiscard]] double errorOf(const PatchVote& vote) const {
+        return std::abs(double{vote.distance} + distance) + kTurn * length(glm::dvec3(vote.normal) - normal);
+    }
+};
+
+/// A sample before the search for the nearest surface, with bounds of its distance by those of other samples.
+struct Candidate {
+    Sample sample;
+    double least = 0.0;
+    double most = std::numeric_limits<double>::infinity();
+    std::optional<std::uint32_t> hint{};  // the triangle at `most`
+
+    void limitBy(const Sample& other, const glm::dvec3& point, std::uint32_t triangle) {
+        least = std::max(least, other.distance - length(sample.at - other.at));
+        if (const double there = length(point - sample.at); there < most) {
+            most = there;
+            hint = triangle;
+        }
+    }
+    [[nodiscard]] double errorMost() const {
+        const double vote = sample.without.distance;
+        return std::max(std::abs(vote + least), std::abs(vote + most)) + 2.0 * kTurn;
+    }
 };
 
 /// A tree of a single root: its record, and up to six more texels.
@@ -79,8 +108,6 @@ class SmallTree {
     explicit SmallTree(const PatchRecord& root) { add(root); }
 
     void add(const PatchRecord& texel) { texels_[count_++] = texel; }
-    [[nodiscard]] const PatchRecord& operator[](std::size_t index) const { return texels_[index]; }
-    [[nodiscard]] std::size_t size() const { return count_; }
     [[nodiscard]] PatchTexels texels() const { return std::as_bytes(std::span(texels_).first(count_)); }
 
   private:
@@ -100,15 +127,6 @@ class Cell {
         PatchVote vote = *votePatches(tree.texels(), glm::vec3(p));
         vote.distance /= static_cast<float>(size_);
         return vote;
-    }
-    [[nodiscard]] double meanError(const SmallTree& tree, std::span<const Sample> samples) const {
-        double sum = 0.0;
-        for (const Sample& sample : samples) {
-            const PatchVote found = vote(tree, sample.at);
-            sum += std::abs(double{found.distance} + sample.distance) +
-                   kTurn * length(glm::dvec3(found.normal) - sample.normal);
-        }
-        return sum / static_cast<double>(kSamples);
     }
 
   private:
@@ -146,6 +164,9 @@ std::optional<PatchRecord> patchOf(CellPlane plane) {
     return patch;
 }
 
+/// The votes of a record at the samples of a leaf.
+using Votes = std::array<PatchVote, kSamples>;
+
 /// The record with the lowest mean error.
 struct Best {
     PatchRecord record;
@@ -171,46 +192,87 @@ class LeafChooser {
     /// \param roots_per_cell  the size of the cell, in roots.
     LeafChooser(const MeshQuery& query, PatchNode& node, const std::optional<Baseline>& baseline,
                 double roots_per_cell)
-        : query_(query), node_(node), baseline_(baseline), roots_per_cell_(roots_per_cell) {
-        takeSamples();
-        if (worthwhile()) {
-            dropSamplesWithin();
-        }
-    }
+        : query_(query), node_(node), baseline_(baseline), roots_per_cell_(roots_per_cell) {}
 
-    void addTo(std::vector<DepthGain>& gains) const {
-        if (worthwhile()) {
-            node_.surface() ? addSurface(gains) : addEmpty(gains);
+    /// Adds the planes of the leaf unless none can be worth more than `byte`.
+    void addTo(FamilyGains& found, double byte) {
+        const double bytes = node_.surface() ? kPairBytes : kOneBytes;
+        const auto worthMost = [&](double error) { return error > kGain ? volume(error) / bytes : 0.0; };
+        double error = takeSamples([&](double most) { return worthMost(kClearly * most) <= byte; });
+        if (worthMost(error) > byte) {
+            dropSamplesWithin();
+            error = errorWithout();
+        }
+        if (worthMost(error) > byte) {
+            node_.surface() ? addSurface(found.gains) : addEmpty(found.gains);
+        } else {
+            found.rest = std::max(found.rest, worthMost(error));
         }
     }
 
   private:
-    [[nodiscard]] double errorWithout() const {
-        return baseline_ ? baseline_->cell.meanError(baseline_->tree, samples_) : kErrorMost;
+    [[nodiscard]] double errorOf(const Votes& votes) const {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < samples_.size(); ++i) {
+            sum += samples_[i].errorOf(votes[i]);
+        }
+        return sum / static_cast<double>(kSamples);
     }
-    [[nodiscard]] bool worthwhile() const { return errorWithout() > kGain; }
+    [[nodiscard]] Votes votesWithout() const {
+        Votes votes;
+        std::ranges::transform(samples_, votes.begin(), &Sample::without);
+        return votes;
+    }
+    [[nodiscard]] double errorWithout() const { return baseline_ ? errorOf(votesWithout()) : kErrorMost; }
 
-    void takeSamples() {
+    /// \param hopeless  whether planes do not pay if the mean error is at most its argument: ends the search.
+    /// \return an upper bound of the mean error; exact after a complete search.
+    template <class Hopeless>
+    double takeSamples(const Hopeless& hopeless) {
         const MeshCell& cell = node_.cell;
-        std::optional<std::uint32_t> hint;
+        std::vector<Candidate> candidates = candidatesOf();
+        double sum = 0.0;
+        for (std::size_t i = 0; i < candidates.size(); ++i) {
+            double most = sum;
+            for (std::size_t k = i; k < candidates.size(); ++k) {
+                most += candidates[k].errorMost();
+            }
+            most *= kAboveRounding / static_cast<double>(kSamples);
+            if (baseline_ && hopeless(most)) {
+                return most;
+            }
+            Sample& sample = candidates[i].sample;
+            const glm::dvec3 p = cell.low + cell.size * sample.at;
+            const ClosestPoint closest = query_.closest(glm::vec3(p), candidates[i].hint);
+            const glm::dvec3 way = closest.point - p;
+            sample.distance = length(way) / cell.size;
+            if (sample.distance > kNoDirection) {
+                sample.normal = unit(way);
+                sum += sample.errorOf(sample.without);
+                samples_.push_back(sample);
+            }
+            for (std::size_t k = i + 1; k < candidates.size(); ++k) {
+                candidates[k].limitBy(sample, sample.at + way / cell.size, closest.triangle);
+            }
+        }
+        return errorWithout();
+    }
+    /// The points of the leaf that are inside.
+    [[nodiscard]] std::vector<Candidate> candidatesOf() const {
+        std::vector<Candidate> candidates;
+        candidates.reserve(kSamples);
         for (unsigned i = 0; i < kSamples; ++i) {
             const glm::dvec3 at =
                 i < 8 ? glm::mix(glm::dvec3(kBesideCorner), glm::dvec3(1.0 - kBesideCorner), cornerOfCube(i))
                       : glm::dvec3(0.5);
-            const glm::dvec3 p = cell.low + cell.size * at;
-            const bool inside = node_.surface() ? baseline_->cell.vote(baseline_->tree, at).distance < 0.0F
-                                                : node_.empty() || query_.inside(glm::vec3(p));
-            if (!inside) {
-                continue;
-            }
-            const ClosestPoint closest = query_.closest(glm::vec3(p), hint);
-            hint = closest.triangle;
-            const glm::dvec3 way = closest.point - p;
-            const double distance = length(way) / cell.size;
-            if (distance > kNoDirection) {
-                samples_.push_back({at, distance, unit(way)});
+            const PatchVote vote = baseline_ ? baseline_->cell.vote(baseline_->tree, at) : PatchVote{};
+            if (node_.surface()
+                    ? vote.distance < 0.0F
+                    : node_.empty() || query_.inside(glm::vec3(node_.cell.low + node_.cell.size * at))) {
+                candidates.push_back({.sample = {.at = at, .without = vote}});
             }
         }
+        return candidates;
     }
     /// Drops samples whose nearest surface is not a boundary of the solid: it lies within another body or in a filled
     /// void.
@@ -229,8 +291,8 @@ class LeafChooser {
         };
         Best one;
         for (const Sample& sample : samples_) {
-            const PatchRecord in_cell = flatOf(sample.plane(), 1.0);
-            one.consider(flatOf(sample.plane(), roots_per_cell_), errorOf(SmallTree(in_cell)));
+            one.consider(flatOf(sample.plane(), roots_per_cell_),
+                         errorOf(votesOf(flatOf(sample.plane(), 1.0))));
         }
         const double before = baseline_ ? errorWithout() : one.error;
         DepthGain first{.node = &node_};
@@ -243,13 +305,11 @@ class LeafChooser {
             first.volume = volume(before - one.error);
         }
         DepthGain second{.node = &node_};
-        if (left > kGain) {
-            const std::vector<PatchRecord> patches = patchesOf();
-            Best nearest;
-            for (const PatchRecord& patch : patches) {
-                nearest.consider(patch, errorOf(SmallTree(patch)));
-            }
-            const Best other = bestWith(SmallTree(nearest.record), patches);
+        const std::vector<Patch> patches = left > kGain ? patchesOf() : std::vector<Patch>();
+        if (!patches.empty()) {
+            const Patch& nearest = *std::ranges::min_element(
+                patches, {}, [&](const Patch& patch) { return errorOf(patch.votes); });
+            const Best other = bestWith(nearest.votes, patches);
             if (pays(left, other.error)) {
                 second.to = DepthPlanes::kTwo;
                 second.records = {nearest.record, other.record};
@@ -272,7 +332,8 @@ class LeafChooser {
 
     /// For a leaf with a single surface: adds a face outside the cell that is nearer for some points.
     void addSurface(std::vector<DepthGain>& gains) const {
-        const Best best = bestWith(baseline_->tree, patchesOf());
+        const std::vector<Patch> patches = patchesOf();
+        const Best best = bestWith(votesWithout(), patches);
         const double gain = errorWithout() - best.error;
         if (gain > kGain) {
             gains.push_back(
@@ -286,35 +347,40 @@ class LeafChooser {
     [[nodiscard]] double volume(double error) const {
         return kWorth * error * node_.cell.size * node_.cell.size * node_.cell.size;
     }
-    [[nodiscard]] double errorOf(const SmallTree& tree) const { return Cell().meanError(tree, samples_); }
-    /// The planes of the samples whose nearest surface lies outside the cell.
-    [[nodiscard]] std::vector<PatchRecord> patchesOf() const {
-        std::vector<PatchRecord> patches;
+    [[nodiscard]] Votes votesOf(const PatchRecord& record) const {
+        const SmallTree tree(record);
+        Votes votes;
+        std::ranges::transform(samples_, votes.begin(),
+                               [&](const Sample& sample) { return Cell().vote(tree, sample.at); });
+        return votes;
+    }
+    /// A plane of a sample whose nearest surface lies outside the cell.
+    struct Patch {
+        PatchRecord record;
+        Votes votes;
+    };
+    [[nodiscard]] std::vector<Patch> patchesOf() const {
+        std::vector<Patch> patches;
         for (const Sample& sample : samples_) {
-            const std::optional<PatchRecord> patch = patchOf(sample.plane());
-            const auto same = [&](const PatchRecord& other) {
-                return other.low == patch->low && other.high == patch->high;
+            const std::optional<PatchRecord> record = patchOf(sample.plane());
+            const auto same = [&](const Patch& other) {
+                return other.record.low == record->low && other.record.high == record->high;
             };
-            if (patch && std::ranges::none_of(patches, same)) {
-                patches.push_back(*patch);
+            if (record && std::ranges::none_of(patches, same)) {
+                patches.push_back({*record, votesOf(*record)});
             }
         }
         return patches;
     }
-    /// The best of several patches, combined in a pair with the patch of `other`.
-    [[nodiscard]] Best bestWith(const SmallTree& other, std::span<const PatchRecord> patches) const {
-        constexpr std::uint32_t kMoved = 2;
-        PatchRecord moved = other[1];
-        moved.high += moved.side() > 2 ? kMoved : 0;
+    /// The best of several patches, combined in a pair with another patch.
+    [[nodiscard]] Best bestWith(const Votes& other, std::span<const Patch> patches) const {
         Best best;
-        for (const PatchRecord& patch : patches) {
-            SmallTree pair(PatchRecord::pair(true, kMoved));
-            pair.add(moved);
-            pair.add(patch);
-            for (std::size_t i = 2; i < other.size(); ++i) {
-                pair.add(other[i]);
+        for (const Patch& patch : patches) {
+            Votes pair = other;
+            for (std::size_t i = 0; i < samples_.size(); ++i) {
+                pair[i] = patch.votes[i].distance > pair[i].distance ? patch.votes[i] : pair[i];
             }
-            best.consider(patch, errorOf(pair));
+            best.consider(patch.record, errorOf(pair));
         }
         return best;
     }
@@ -406,13 +472,13 @@ std::uint64_t stateOf(PatchNode& family) {
     return state;
 }
 
-/// \param byte  as in DepthPlaneChoice::find().
+/// \param byte, least_byte  as in DepthPlaneChoice::find().
 /// \param root_size  object units.
-std::vector<DepthGain> gainsOf(const MeshQuery& query, std::span<const FlatFace> faces, PatchNode& family,
-                               double root_size, double byte) {
-    std::vector<DepthGain> gains;
+FamilyGains gainsOf(const MeshQuery& query, std::span<const FlatFace> faces, PatchNode& family,
+                    double root_size, double byte, double least_byte) {
+    FamilyGains found;
     const auto mayPay = [&](const PatchNode& leaf, double bytes) {
-        return kWorth * kErrorMost * leaf.cell.size * leaf.cell.size * leaf.cell.size > byte * bytes;
+        return kWorth * kErrorMost * leaf.cell.size * leaf.cell.size * leaf.cell.size > least_byte * bytes;
     };
     const bool flat = family.split && std::ranges::any_of(family.cell.triangles, [&](std::uint32_t triangle) {
                           return faces[triangle].length >= 0.5 * kFaceLength * family.cell.size;
@@ -428,7 +494,7 @@ std::vector<DepthGain> gainsOf(const MeshQuery& query, std::span<const FlatFace>
         if (leaf.surface()) {
             if (!leaf.shape().pair && mayPay(leaf, kPairBytes)) {
                 const std::optional<Baseline> own = Baseline{{}, treeOf(leaf)};
-                LeafChooser(query, leaf, own, roots_per_cell).addTo(gains);
+                LeafChooser(query, leaf, own, roots_per_cell).addTo(found, byte);
             }
             continue;
         }
@@ -438,15 +504,15 @@ std::vector<DepthGain> gainsOf(const MeshQuery& query, std::span<const FlatFace>
         }
         if (flat) {
             if (const std::optional<DepthGain> face = facePlane(query, faces, leaf, *above, roots_per_cell)) {
-                gains.push_back(*face);
+                found.gains.push_back(*face);
                 continue;
             }
         }
         if (deep) {
-            LeafChooser(query, leaf, above, roots_per_cell).addTo(gains);
+            LeafChooser(query, leaf, above, roots_per_cell).addTo(found, byte);
         }
     }
-    return gains;
+    return found;
 }
 
 }  // namespace
@@ -466,7 +532,8 @@ CellPlane planeOfSplit(const MeshQuery& query, const PatchNode& node) {
     return plane;
 }
 
-void DepthPlaneChoice::find(std::span<PatchNode> roots, double byte, const std::function<void()>& progress) {
+void DepthPlaneChoice::find(std::span<PatchNode> roots, double byte, double least_byte,
+                            const std::function<void()>& progress) {
     std::vector<PatchNode*> families;
     for (PatchNode& root : roots) {
         addFamilies(root, families);
@@ -476,15 +543,17 @@ void DepthPlaneChoice::find(std::span<PatchNode> roots, double byte, const std::
     }
     forEachIndex(0, families.size(), 4, [&](std::size_t i) {
         Known& known = known_.find(families[i])->second;
-        const std::uint64_t state = stateOf(*families[i]);
-        if (known.state != state) {
-            known = {state, gainsOf(query_, faces_, *families[i], roots[0].cell.size, byte)};
+        if (const std::uint64_t state = stateOf(*families[i]); known.state != state) {
+            known = {.state = state, .least_byte = least_byte};
+        }
+        if (known.found.rest > byte) {
+            known.found = gainsOf(query_, faces_, *families[i], roots[0].cell.size, byte, known.least_byte);
         }
         progress();
     });
     gains_.clear();
     for (PatchNode* const family : families) {
-        std::ranges::copy_if(known_.find(family)->second.gains, std::back_inserter(gains_),
+        std::ranges::copy_if(known_.find(family)->second.found.gains, std::back_inserter(gains_),
                              [&](const DepthGain& gain) { return gain.worth() > byte; });
     }
     std::ranges::stable_sort(gains_, std::greater(), &DepthGain::worth);
@@ -498,7 +567,7 @@ double DepthPlaneChoice::bytesWorth(double byte) const {
     return bytes;
 }
 
-void DepthPlaneChoice::take(double bytes) const {
+double DepthPlaneChoice::take(double bytes) const {
     for (const DepthGain& gain : gains_) {
         if (gain.bytes <= bytes && gain.node->planes == gain.from) {
             gain.node->planes = gain.to;
@@ -506,6 +575,7 @@ void DepthPlaneChoice::take(double bytes) const {
             bytes -= gain.bytes;
         }
     }
+    return bytes;
 }
 
 }  // namespace relief

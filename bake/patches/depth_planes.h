@@ -7,8 +7,9 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <map>
+#include <limits>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "bake/mesh/flat_faces.h"
@@ -23,6 +24,8 @@ namespace relief {
 
 /// Depth planes that replace the present ones of a leaf, with their cost and gain.
 struct DepthGain {
+    static constexpr double kBytesMin = kPatchTexelBytes;
+
     PatchNode* node = nullptr;
     DepthPlanes from = DepthPlanes::kNone;
     DepthPlanes to = DepthPlanes::kNone;
@@ -33,6 +36,12 @@ struct DepthGain {
     [[nodiscard]] double worth() const { return volume / bytes; }
 };
 
+/// The depth planes of the leaves of one split cell, or of a root.
+struct FamilyGains {
+    std::vector<DepthGain> gains;
+    double rest = 0.0;  ///< upper bound of DepthGain::worth() of all planes not in `gains`
+};
+
 /// Chooses depth planes for the leaves of a planned tree. The result does not depend on the number of threads.
 class DepthPlaneChoice {
   public:
@@ -40,29 +49,33 @@ class DepthPlaneChoice {
     DepthPlaneChoice(const MeshQuery& query, std::span<const FlatFace> faces)
         : query_(query), faces_(faces) {}
 
-    /// Finds the planes of a tree. Later calls reuse the planes of unchanged leaves.
-    /// \param roots  borrowed for the lifetime of this object; their leaves have no depth planes yet.
-    /// \param byte  misclassified volume, object units cubed: planes that gain less per byte are not chosen.
+    /// Finds the planes of a tree. Later calls reuse the planes of unchanged leaves. Ignores planes already taken.
+    /// \param roots  borrowed for the lifetime of this object.
+    /// \param byte  misclassified volume, object units cubed: planes that gain less per byte are not found.
+    /// \param least_byte  the lowest `byte` of later calls for the same tree.
     /// \param progress  called often, from any thread; its exceptions end the search and propagate.
-    void find(std::span<PatchNode> roots, double byte, const std::function<void()>& progress);
+    void find(std::span<PatchNode> roots, double byte, double least_byte,
+              const std::function<void()>& progress);
 
     /// Returns the total bytes of the planes that gain more than `byte` per byte.
     /// \param byte  misclassified volume, object units cubed.
     [[nodiscard]] double bytesWorth(double byte) const;
     /// Sets PatchNode::planes and PatchNode::depth for the planes with the largest gain per byte, up to `bytes` bytes
-    /// in total.
-    void take(double bytes) const;
+    /// in total. Skips planes of earlier calls for the same tree.
+    /// \return the bytes left.
+    double take(double bytes) const;
 
   private:
     struct Known {
         std::uint64_t state = 0;  // hash of the leaves that the gains belong to
-        std::vector<DepthGain> gains;
+        double least_byte = 0.0;
+        FamilyGains found{.gains = {}, .rest = std::numeric_limits<double>::infinity()};
     };
 
     const MeshQuery& query_;
     std::span<const FlatFace> faces_;
-    std::map<const PatchNode*, Known> known_;  // by the split cell, or the root
-    std::vector<DepthGain> gains_;             // sorted by gain per byte
+    std::unordered_map<const PatchNode*, Known> known_;  // by the split cell, or the root
+    std::vector<DepthGain> gains_;                       // sorted by gain per byte
 };
 
 }  // namespace relief

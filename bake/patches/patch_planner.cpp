@@ -28,6 +28,8 @@ constexpr double kDepthShareMost = 0.45;
 constexpr double kSpareForDepth = 3e-3;
 /// The worth of a byte that is unused once the tree is chosen, relative to other bytes.
 constexpr double kSpareByte = 0.25;
+/// Factor of the worth of a byte from one search for depth planes to the next.
+constexpr double kNextPlanes = 0.7;
 /// Minimum bytes per root.
 constexpr double kBytesPerRoot = 168.4;
 /// PatchOptions::trial_bytes is multiplied by the ratio of the errors with 3² heights to those with 5², clamped to this
@@ -97,11 +99,12 @@ class Planner {
             if (most > static_cast<double>(options_.tile_bytes) && !splitRoots()) {
                 planTexel(texel_);
             }
-            takeDepthPlanes(byteOfTexel());
+            takeDepthPlanes(byteOfTexel(), byteOfTexel());
         } else {
             roots_.size = rootSizeByBytes();
             makeRoots();
-            takeDepthPlanes(kSpareByte * reserveForDepthPlanes(narrow(descend(), kSpare)));
+            const double byte = reserveForDepthPlanes(narrow(descend(), kSpare));
+            takeDepthPlanes(byte, kSpareByte * byte);
         }
         std::vector<const PatchNode*> roots;
         for (const PatchNode& node : nodes_) {
@@ -320,12 +323,19 @@ class Planner {
         return range;
     }
 
-    void findDepthPlanes(double byte) {
-        depth_planes_.find(nodes_, byte, [this] { report(kSearchShare); });
+    void findDepthPlanes(double byte, double least_byte) {
+        depth_planes_.find(nodes_, byte, least_byte, [this] { report(kSearchShare); });
     }
-    void takeDepthPlanes(double byte) {
-        findDepthPlanes(byte);
-        depth_planes_.take(spareBytes());
+    /// Fills the unused bytes with depth planes: first those worth a byte of the tree, then others while bytes are left.
+    /// \param least_byte  as in DepthPlaneChoice::find().
+    void takeDepthPlanes(double byte, double least_byte) {
+        for (double spare = spareBytes(); spare >= DepthGain::kBytesMin; byte *= kNextPlanes) {
+            findDepthPlanes(std::max(byte, least_byte), least_byte);
+            spare = depth_planes_.take(spare);
+            if (byte <= least_byte) {
+                break;
+            }
+        }
     }
 
     /// Unused bytes of the tree, less one row of texels for the padding of the map.
@@ -339,7 +349,7 @@ class Planner {
     /// \param byte  the worth of a byte for which the tree was chosen.
     /// \return the worth of a byte for the remaining tree.
     double reserveForDepthPlanes(double byte) {
-        findDepthPlanes(kSpareByte * byte);  // takeDepthPlanes() also needs these
+        findDepthPlanes(byte, kSpareByte * byte);
         const double wanted = depth_planes_.bytesWorth(byte);
         if (takenBytes(wanted) <= bytes_) {
             return byte;
