@@ -326,7 +326,7 @@ class Planner {
     void findDepthPlanes(double byte, double least_byte) {
         depth_planes_.find(nodes_, byte, least_byte, [this] { report(kSearchShare); });
     }
-    /// Fills the unused bytes with depth planes: first those worth a byte of the tree, then others while bytes are left.
+    /// Fills the unused bytes with depth planes: first those worth a byte of the tree, then cheaper ones.
     /// \param least_byte  as in DepthPlaneChoice::find().
     void takeDepthPlanes(double byte, double least_byte) {
         for (double spare = spareBytes(); spare >= DepthGain::kBytesMin; byte *= kNextPlanes) {
