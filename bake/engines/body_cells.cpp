@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "formats/base/portable_math.h"
+
 namespace relief {
 namespace {
 
@@ -75,7 +77,8 @@ Grid gridOf(std::span<const EngineBody> bodies) {
     for (std::size_t i = 0; i < 3; ++i) {
         volume *= std::max(high[i] - low[i], longest / kCellsMax);
     }
-    double edge = std::max(std::cbrt(volume / static_cast<double>(bodies.size())), longest / kCellsMax);
+    double edge =
+        std::max(portable::pow(volume / static_cast<double>(bodies.size()), 1.0 / 3.0), longest / kCellsMax);
     for (;; edge *= 2.0) {
         grid.edge = double{static_cast<float>(edge)};
         for (std::size_t i = 0; i < 3; ++i) {

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "bake/mesh/flat_faces.h"
@@ -74,8 +74,8 @@ class DepthPlaneChoice {
 
     const MeshQuery& query_;
     std::span<const FlatFace> faces_;
-    std::unordered_map<const PatchNode*, Known> known_;  // by the split cell, or the root
-    std::vector<DepthGain> gains_;                       // sorted by gain per byte
+    std::map<const PatchNode*, Known> known_;  // by the split cell, or the root
+    std::vector<DepthGain> gains_;             // sorted by gain per byte
 };
 
 }  // namespace relief

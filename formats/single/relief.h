@@ -22,7 +22,7 @@
  *
  * Results equal those of the library bit for bit unless the compiler fuses a*b + c into one operation. Pragmas below
  * prevent this for clang. GCC fuses on processors such as ARM64, except with -std=c99 or -ffp-contract=off. Do not use
- * -ffast-math.
+ * the fast-math option.
  *
  * Optional macros for the implementation:
  *     RELIEF_MALLOC(bytes), RELIEF_FREE(pointer)   replace malloc and free; define both
