@@ -133,7 +133,9 @@ Result<void> exportForEngine(const Source& source, Engine engine, const ExportCo
     const std::filesystem::path input = command.file;
     // All worlds have the same file name.
     std::string name =
-        (namesWorld(command.file) ? std::filesystem::absolute(input).parent_path() : input).stem().string();
+        namesWorld(command.file)
+            ? std::filesystem::absolute(input).lexically_normal().parent_path().filename().string()
+            : input.stem().string();
     name = cleanUtf8(name).empty() || command.file == "-" ? "collider" : cleanUtf8(name);
     const std::vector<EngineFile> exported =
         RELIEF_TRY(withPrefix(shownInput(command.file), engineFiles(source, name, engine)));
@@ -145,7 +147,7 @@ Result<void> exportForEngine(const Source& source, Engine engine, const ExportCo
         RELIEF_TRY(files.makes((folder / file.name).parent_path(), "--engine"));
         RELIEF_TRY(writeFile(folder / file.name, file.bytes));
     }
-    spdlog::info("wrote {} files into {}; README.md there lists the next steps", exported.size(),
+    spdlog::info("wrote {} files into {}; RELIEF.md there lists the next steps", exported.size(),
                  quotedPath(folder));
     return {};
 }
@@ -232,7 +234,7 @@ void addExport(CLI::App& app, Action& action) {
             "near face of the bounds, in object units; normal.X, normal.Y and normal.Z are the normal of the "
             "first surface. Z and depth are +inf without a surface.\n"
             "--engine writes an uncompressed collider, its texels and constants, the collision function in "
-            "the engine's shading language, and README.md with the steps that remain. It needs a collider of "
+            "the engine's shading language, and RELIEF.md with the steps that remain. It needs a collider of "
             "patches, the default of relief bake. For the world.json of a level, it writes the texels of all "
             "colliders, a table of the bodies, and a grid to find them."),
         "relief export bunny.relief -o maps/ --resolution 1024\n"

@@ -24,14 +24,14 @@ struct Grid {
         const double cell = std::floor((x - corner[axis]) / edge);
         return static_cast<std::uint32_t>(std::clamp(cell, 0.0, static_cast<double>(cells[axis] - 1)));
     }
-    /// Calls visit(index of the cell) for each cell that a body's box may touch. A cell of margin covers the rounding of
-    /// shaders.
+    /// Calls visit(index of the cell) for each cell within half an edge of a body's box. The margin also covers the
+    /// rounding of shaders.
     template <class Visit>
     void cellsOf(const EngineBody& body, const Visit& visit) const {
         std::array<std::uint32_t, 3> first{};
         std::array<std::uint32_t, 3> last{};
         for (std::size_t i = 0; i < 3; ++i) {
-            const double margin = 1e-5 * edge + 4e-7 * std::abs(double{body.max_friction[i]});
+            const double margin = 0.50001 * edge + 4e-7 * std::abs(double{body.max_friction[i]});
             first[i] = at(double{body.min_restitution[i]} - margin, i);
             last[i] = at(double{body.max_friction[i]} + margin, i);
         }
@@ -45,7 +45,7 @@ struct Grid {
     }
 };
 
-/// Returns the number of cells that all boxes touch.
+/// Returns the number of entries of all cells.
 std::size_t entriesOf(const Grid& grid, std::span<const EngineBody> bodies) {
     std::size_t entries = 0;
     for (const EngineBody& body : bodies) {
@@ -70,22 +70,21 @@ Grid gridOf(std::span<const EngineBody> bodies) {
     if (bodies.empty()) {
         return grid;
     }
-    grid.corner = {double{static_cast<float>(low[0])}, double{static_cast<float>(low[1])},
-                   double{static_cast<float>(low[2])}};
     const double longest = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2], 1e-30});
     double volume = 1.0;
     for (std::size_t i = 0; i < 3; ++i) {
         volume *= std::max(high[i] - low[i], longest / kCellsMax);
     }
-    double edge =
-        std::max(portable::pow(volume / static_cast<double>(bodies.size()), 1.0 / 3.0), longest / kCellsMax);
+    double edge = std::max(portable::pow(volume / static_cast<double>(bodies.size()), 1.0 / 3.0),
+                           longest / (kCellsMax - 2));
     for (;; edge *= 2.0) {
         grid.edge = double{static_cast<float>(edge)};
         for (std::size_t i = 0; i < 3; ++i) {
             grid.cells[i] = static_cast<std::uint32_t>(
-                std::clamp(std::ceil((high[i] - low[i]) / grid.edge), 1.0, double{kCellsMax}));
+                std::clamp(std::ceil((high[i] - low[i]) / grid.edge + 1.0), 1.0, double{kCellsMax}));
+            grid.corner[i] = double{static_cast<float>(low[i] - 0.5 * grid.edge)};
         }
-        if (grid.count() == 1 || entriesOf(grid, bodies) <= kEntriesPerBodyMax * bodies.size()) {
+        if (grid.count() <= 8 || entriesOf(grid, bodies) <= kEntriesPerBodyMax * bodies.size()) {
             return grid;
         }
     }

@@ -3,8 +3,8 @@
 # (engine_texts.h): those of the tables in engine_export.cpp. Links of pages to other files of the project become plain text, and pictures
 # are left out.
 file(READ ${CMAKE_CURRENT_LIST_DIR}/engine_export.cpp table)
-string(REGEX MATCHALL "\"(formats|runtime|samples|shaders)/[A-Za-z0-9_/.]+\"," texts "${table}")
-list(TRANSFORM texts REPLACE "[\",]" "")
+string(REGEX MATCHALL "\"(bake|formats|runtime|samples|shaders)/[A-Za-z0-9_/.]+\"[,)]" texts "${table}")
+list(TRANSFORM texts REPLACE "[\",)]" "")
 list(REMOVE_DUPLICATES texts)
 if(NOT CMAKE_SCRIPT_MODE_FILE)
     function(relief_embed_engines output)
@@ -25,6 +25,8 @@ string(APPEND code "std::string_view engineText(std::string_view path) {\n")
 foreach(path IN LISTS texts)
     file(READ ${ROOT}/${path} text)
     if(path MATCHES "[.]md$")
+        # The last sections are about the project.
+        string(REGEX REPLACE "\n## (Try the pages?|What is tested|The function)\n.*" "" text "${text}")
         string(REGEX REPLACE "!\\[[^]]*\\]\\([^)]*\\)\n*" "" text "${text}")  # pictures
         string(REGEX REPLACE "\\[([^]]*)\\]\\([^)h#][^)]*\\)" "\\1" text "${text}")
     endif()

@@ -49,8 +49,7 @@ EngineConstants placedConstants(const EngineConstants& constants, const Pose& po
     return placed;
 }
 
-void fillRow(std::vector<std::byte>& texels) {
-    const std::size_t row = std::size_t{kEngineTextureWidth} * kEngineTexelBytes;
+void fillRow(std::vector<std::byte>& texels, std::size_t row) {
     texels.resize((texels.size() + row - 1) / row * row);
 }
 

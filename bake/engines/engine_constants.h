@@ -37,7 +37,8 @@ static_assert(sizeof(EngineConstants) == 80);
 /// Returns the constants of a collider in world space: the rows transform world space to map space.
 [[nodiscard]] EngineConstants placedConstants(const EngineConstants& constants, const Pose& pose);
 
-/// Appends zeros up to a whole row of the texture.
-void fillRow(std::vector<std::byte>& texels);
+/// Appends zeros up to a whole row of a texture.
+/// \param row  bytes.
+void fillRow(std::vector<std::byte>& texels, std::size_t row = kEngineTextureWidth * kEngineTexelBytes);
 
 }  // namespace relief

@@ -25,12 +25,12 @@ struct CopiedText {
 constexpr CopiedText kTexts[] = {
     {Engine::kC, "formats/single/relief.h", "relief.h"},
     {Engine::kC, "samples/own_engine/bounce.c", "bounce.c"},
-    {Engine::kC, "samples/own_engine/README.md", "README.md"},
+    {Engine::kC, "samples/own_engine/README.md", "RELIEF.md"},
     {Engine::kC, "shaders/engines/relief.glsl", "relief.glsl"},
     {Engine::kC, "shaders/engines/relief.hlsl", "relief.hlsl"},
     {Engine::kC, "shaders/engines/relief.metal", "relief.metal"},
     {Engine::kC, "shaders/engines/relief.wgsl", "relief.wgsl"},
-    {Engine::kGodot, "samples/godot/README.md", "README.md"},
+    {Engine::kGodot, "samples/godot/README.md", "RELIEF.md"},
     {Engine::kGodot, "samples/godot/addons/relief/plugin.cfg", "addons/relief/plugin.cfg"},
     {Engine::kGodot, "samples/godot/addons/relief/plugin.gd", "addons/relief/plugin.gd"},
     {Engine::kGodot, "samples/godot/addons/relief/relief_body.gdshaderinc",
@@ -42,29 +42,24 @@ constexpr CopiedText kTexts[] = {
     {Engine::kGodot, "samples/godot/addons/relief/relief_particles.gdshader",
      "addons/relief/relief_particles.gdshader"},
     {Engine::kGodot, "shaders/engines/relief.gdshaderinc", "addons/relief/relief.gdshaderinc"},
-    {Engine::kUnity, "samples/unity/README.md", "README.md"},
+    {Engine::kUnity, "samples/unity/README.md", "RELIEF.md"},
     {Engine::kUnity, "shaders/engines/relief.hlsl", "relief.hlsl"},
-    {Engine::kUnreal, "samples/unreal/README.md", "README.md"},
+    {Engine::kUnreal, "samples/unreal/README.md", "RELIEF.md"},
     {Engine::kUnreal, "shaders/engines/relief.hlsl", "relief.hlsl"},
-    {Engine::kThree, "samples/web/engines/three.md", "README.md"},
+    {Engine::kThree, "samples/web/engines/three.md", "RELIEF.md"},
     {Engine::kThree, "samples/web/engines/three_webgl.js", "three_webgl.js"},
     {Engine::kThree, "samples/web/engines/three_webgpu.js", "three_webgpu.js"},
     {Engine::kThree, "samples/web/engines/snow.js", "snow.js"},
-    {Engine::kPlaycanvas, "samples/web/engines/playcanvas.md", "README.md"},
+    {Engine::kPlaycanvas, "samples/web/engines/playcanvas.md", "RELIEF.md"},
     {Engine::kPlaycanvas, "samples/web/engines/playcanvas.js", "playcanvas.js"},
     {Engine::kPlaycanvas, "samples/web/engines/snow.js", "snow.js"},
 };
 
-/// The collider without WebAssembly, of both engines of the web.
-constexpr CopiedText kModules[] = {
-    {Engine::kThree, "runtime/web/engines/bytes.js", "relief/bytes.js"},
-    {Engine::kThree, "runtime/web/engines/index.d.ts", "relief/index.d.ts"},
-    {Engine::kThree, "runtime/web/engines/materials.js", "relief/materials.js"},
-    {Engine::kThree, "runtime/web/engines/metadata.js", "relief/metadata.js"},
-    {Engine::kThree, "runtime/web/engines/open.js", "relief/open.js"},
-    {Engine::kThree, "runtime/web/engines/patches.js", "relief/patches.js"},
-    {Engine::kThree, "runtime/web/engines/xxh3.js", "relief/xxh3.js"},
-    {Engine::kThree, "runtime/web/engines/zstd.js", "relief/zstd.js"},
+/// JavaScript modules for three.js and PlayCanvas.
+constexpr std::string_view kModules[] = {
+    "runtime/web/engines/bytes.js",    "runtime/web/engines/index.d.ts", "runtime/web/engines/materials.js",
+    "runtime/web/engines/metadata.js", "runtime/web/engines/open.js",    "runtime/web/engines/patches.js",
+    "runtime/web/engines/xxh3.js",     "runtime/web/engines/zstd.js",
 };
 
 /// Returns a text as a template literal of JavaScript.
@@ -88,17 +83,31 @@ std::vector<std::byte> bytesOf(const std::vector<T>& values) {
     return {bytes.begin(), bytes.end()};
 }
 
-void appendTexts(std::vector<EngineFile>& files, Engine engine) {
-    for (const CopiedText& text : kTexts) {
-        if (text.engine == engine) {
-            files.push_back({std::string(text.name), bytesOf(engineText(text.path))});
+void replaceAll(std::string& text, std::string_view from, std::string_view to) {
+    for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) {
+        text.replace(at, from.size(), to);
+    }
+}
+
+/// Appends the texts of an engine. A sample of the web then imports and loads the files of the export.
+/// \param name  of the collider; empty for a level, which has no samples.
+void appendTexts(std::vector<EngineFile>& files, Engine engine, std::string_view name) {
+    for (const CopiedText& copied : kTexts) {
+        if (copied.engine == engine && !(name.empty() && copied.path.starts_with("samples/"))) {
+            std::string text(engineText(copied.path));
+            if (copied.name.ends_with(".js")) {
+                replaceAll(text, "relief-particles/collider", "./relief/index.js");
+                replaceAll(text, "body.relief", std::string(name) + ".relief");
+            }
+            files.push_back({std::string(copied.name), bytesOf(text)});
         }
     }
     if (engine != Engine::kThree && engine != Engine::kPlaycanvas) {
         return;
     }
-    for (const CopiedText& module : kModules) {
-        files.push_back({std::string(module.name), bytesOf(engineText(module.path))});
+    for (const std::string_view module : kModules) {
+        files.push_back(
+            {"relief" + std::string(module.substr(module.rfind('/'))), bytesOf(engineText(module))});
     }
     // The npm package bundles the texts of the shaders instead.
     files.push_back(
@@ -114,12 +123,17 @@ void appendTexts(std::vector<EngineFile>& files, Engine engine) {
 Result<std::vector<EngineFile>> engineFiles(const Collider& collider, std::string_view name, Engine engine) {
     const DepthMap* map = RELIEF_TRY(engineMap(collider));
     std::vector<EngineFile> files;
-    files.push_back({std::string(name) + ".relief", RELIEF_TRY(writeContainer(collider))});
-    std::vector<std::byte> texels = map->texels;
-    fillRow(texels);
-    files.push_back({std::string(name) + ".texels", std::move(texels)});
-    files.push_back({std::string(name) + ".constants", bytesOf(std::vector{engineConstants(*map)})});
-    appendTexts(files, engine);
+    const bool raw = engine == Engine::kUnity || engine == Engine::kUnreal;
+    if (!raw) {
+        files.push_back({std::string(name) + ".relief", RELIEF_TRY(writeContainer(collider))});
+    }
+    if (raw || engine == Engine::kC) {
+        std::vector<std::byte> texels = map->texels;
+        fillRow(texels);
+        files.push_back({std::string(name) + ".texels", std::move(texels)});
+        files.push_back({std::string(name) + ".constants", bytesOf(std::vector{engineConstants(*map)})});
+    }
+    appendTexts(files, engine, name);
     return files;
 }
 
@@ -150,8 +164,11 @@ Result<std::vector<EngineFile>> engineFiles(const LoadedWorld& loaded, std::stri
     std::vector<EngineFile> files;
     files.push_back({std::string(name) + ".texels", std::move(texels)});
     files.push_back({std::string(name) + ".bodies", bytesOf(bodies)});
+    fillRow(files.back().bytes, kBodiesInRow * sizeof(EngineBody));
     files.push_back({std::string(name) + ".cells", bytesOf(bodyCells(bodies))});
-    appendTexts(files, engine);
+    fillRow(files.back().bytes, kEngineTextureWidth * sizeof(std::uint32_t));
+    files.push_back({"RELIEF.md", bytesOf(engineText("bake/engines/README.md"))});
+    appendTexts(files, engine, {});
     return files;
 }
 

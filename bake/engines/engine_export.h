@@ -27,14 +27,14 @@ struct EngineFile {
     std::vector<std::byte> bytes;
 };
 
-/// Returns NAME.relief without compression, NAME.texels and NAME.constants, the texts of the engine, and README.md.
+/// Returns the data, the texts of the engine, and its page, RELIEF.md. Data: NAME.relief without compression for engines
+/// with a loader; NAME.texels and NAME.constants for C, Unity and Unreal.
 /// \param name  of the collider, a file name without extension.
 /// Errors: those of engineMap() and writeContainer().
 [[nodiscard]] Result<std::vector<EngineFile>> engineFiles(const Collider& collider, std::string_view name,
                                                           Engine engine);
 
-/// Returns the same files for a level, with NAME.bodies and NAME.grid in place of NAME.relief and NAME.constants.
-/// README.md in this folder describes them.
+/// Returns NAME.texels, NAME.bodies and NAME.cells of a level, the collision function, and a page that describes them.
 /// Errors: those of engineMap(); kLimit (more texels than a texture holds).
 [[nodiscard]] Result<std::vector<EngineFile>> engineFiles(const LoadedWorld& world, std::string_view name,
                                                           Engine engine);

@@ -12,9 +12,9 @@ namespace relief {
 namespace {
 
 constexpr std::array<TexelFormat, kTexelKinds> kFormats = {{
-    {"u_relief_float", "GL_RGBA32F", 0x8814, 0x1908, 0x1406, 16},       // GL_RGBA, GL_FLOAT
-    {"u_relief_fixed", "GL_RGBA8", 0x8058, 0x1908, 0x1401, 4},          // GL_RGBA, GL_UNSIGNED_BYTE
-    {"u_relief_front_back", "GL_RGBA16UI", 0x8D76, 0x8D99, 0x1403, 8},  // GL_RGBA_INTEGER, GL_UNSIGNED_SHORT
+    {"u_relief_float", 0x8814, 0x1908, 0x1406, 16},      // GL_RGBA, GL_FLOAT
+    {"u_relief_fixed", 0x8058, 0x1908, 0x1401, 4},       // GL_RGBA, GL_UNSIGNED_BYTE
+    {"u_relief_front_back", 0x8D76, 0x8D99, 0x1403, 8},  // GL_RGBA_INTEGER, GL_UNSIGNED_SHORT
 }};
 
 constexpr std::byte kLastIndex{2 * kNormalHalfRange};

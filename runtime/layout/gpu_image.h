@@ -18,7 +18,6 @@ namespace relief {
 /// The texel format of a texture.
 struct TexelFormat {
     const char* sampler;            ///< uniform name in collider.glsl
-    const char* name;               ///< name of the internal format: "GL_RGBA32F"
     std::uint32_t internal_format;  ///< GL constant; likewise the next two
     std::uint32_t format;
     std::uint32_t type;

@@ -36,7 +36,6 @@ struct ReliefLeaf {  // the leaf of a tree that contains a point
     float cell;    // size of that cell, in roots
     bool inside;   // for leaves without a patch
 };
-
 float reliefDot(vec3 a, vec3 b) {
     return a.x * b.x + (a.y * b.y + a.z * b.z);
 }
@@ -219,10 +218,10 @@ ReliefSurface reliefDistance(highp usampler2D texels, ReliefCollider collider, v
     vec3 q = vec3(reliefRow(collider.row_x, p), reliefRow(collider.row_y, p), reliefRow(collider.row_z, p));
     vec3 roots = collider.size.yzw;
     if (q.x >= 0.0 && q.y >= 0.0 && q.z >= 0.0 && q.x < roots.x && q.y < roots.y && q.z < roots.z) {
-        vec4 vote = reliefPatches(texels, collider.place, q, true);
+        vec4 vote = collider.size.x * reliefPatches(texels, collider.place, q, true);
         vec3 yz = collider.row_y.xyz * vote.y + collider.row_z.xyz * vote.z;
-        surface.normal = collider.size.x * (collider.row_x.xyz * vote.x + yz);
-        surface.distance = collider.size.x * vote.w;
+        surface.normal = collider.row_x.xyz * vote.x + yz;
+        surface.distance = vote.w > -3.4e38 ? vote.w : RELIEF_FAR_OUTSIDE;  // an overflow is not inside
     }
     return surface;
 }

@@ -5,6 +5,7 @@
 //     ReliefMotion m = reliefCollide(texels, collider, p, v, radius, 0.4, 0.2);  // a particle after the contact
 // texels: RGBA16UI without filtering, 2048 texels wide. collider: 80 bytes, laid out as std140. relief.h returns both.
 // Lengths are in object units. formats/README.md specifies the arithmetic, formats/patch_tree.cpp is the C++ version.
+#pragma once
 #include <metal_stdlib>
 using namespace metal;
 #ifndef RELIEF_LOG2_WIDTH
@@ -36,7 +37,6 @@ struct ReliefLeaf {  // the leaf of a tree that contains a point
     float cell;    // size of that cell, in roots
     bool inside;   // for leaves without a patch
 };
-
 inline float reliefDot(float3 a, float3 b) {
     return a.x * b.x + (a.y * b.y + a.z * b.z);
 }
@@ -219,10 +219,10 @@ inline ReliefSurface reliefDistance(texture2d<uint> texels, ReliefCollider colli
     float3 q = float3(reliefRow(collider.row_x, p), reliefRow(collider.row_y, p), reliefRow(collider.row_z, p));
     float3 roots = collider.size.yzw;
     if (q.x >= 0.0 && q.y >= 0.0 && q.z >= 0.0 && q.x < roots.x && q.y < roots.y && q.z < roots.z) {
-        float4 vote = reliefPatches(texels, collider.place, q, true);
+        float4 vote = collider.size.x * reliefPatches(texels, collider.place, q, true);
         float3 yz = collider.row_y.xyz * vote.y + collider.row_z.xyz * vote.z;
-        surface.normal = collider.size.x * (collider.row_x.xyz * vote.x + yz);
-        surface.distance = collider.size.x * vote.w;
+        surface.normal = collider.row_x.xyz * vote.x + yz;
+        surface.distance = vote.w > -3.4e38 ? vote.w : RELIEF_FAR_OUTSIDE;  // an overflow is not inside
     }
     return surface;
 }

@@ -30,7 +30,6 @@ struct ReliefLeaf {  // the leaf of a tree that contains a point
     cell: f32,      // size of that cell, in roots
     inside: bool,   // for leaves without a patch
 }
-
 fn reliefDot(a: vec3f, b: vec3f) -> f32 {
     return a.x * b.x + (a.y * b.y + a.z * b.z);
 }
@@ -213,10 +212,10 @@ fn reliefDistance(texels: texture_2d<u32>, collider: ReliefCollider, p: vec3f) -
     let q = vec3f(reliefRow(collider.row_x, p), reliefRow(collider.row_y, p), reliefRow(collider.row_z, p));
     let roots = collider.size.yzw;
     if (q.x >= 0.0 && q.y >= 0.0 && q.z >= 0.0 && q.x < roots.x && q.y < roots.y && q.z < roots.z) {
-        let vote = reliefPatches(texels, collider.place, q, true);
+        let vote = collider.size.x * reliefPatches(texels, collider.place, q, true);
         let yz = collider.row_y.xyz * vote.y + collider.row_z.xyz * vote.z;
-        surface.normal = collider.size.x * (collider.row_x.xyz * vote.x + yz);
-        surface.distance = collider.size.x * vote.w;
+        surface.normal = collider.row_x.xyz * vote.x + yz;
+        surface.distance = select(RELIEF_FAR_OUTSIDE, vote.w, vote.w > -3.4e38);  // an overflow is not inside
     }
     return surface;
 }

@@ -43,6 +43,7 @@ def aligned(text):
 def hlsl(text):
     text = FETCH.sub(r"\1.Load(int3(\2, 0))", text)
     text = text.replace("highp usampler2D", "Texture2D<uint4>")
+    text = text.replace("#ifndef RELIEF_LOG2", "#pragma once\n#ifndef RELIEF_LOG2")
     return words(text, C_TYPES | {"inversesqrt": "rsqrt", "uintBitsToFloat": "asfloat"})
 
 
@@ -51,7 +52,7 @@ def metal(text):
     text = FETCH.sub(lambda match: f"{match[1]}.read(uint2({match[2]}))", text)
     text = text.replace("highp usampler2D", "texture2d<uint>")
     text = re.sub(r"^(\w+ \w+\()", r"inline \1", text, flags=re.M)
-    text = text.replace("#ifndef RELIEF_LOG2", "#include <metal_stdlib>\nusing namespace metal;\n#ifndef RELIEF_LOG2")
+    text = text.replace("#ifndef RELIEF_LOG2", "#pragma once\n#include <metal_stdlib>\nusing namespace metal;\n#ifndef RELIEF_LOG2")
     return words(text, C_TYPES | {"inversesqrt": "rsqrt", "uintBitsToFloat": "as_type<float>"})
 
 

@@ -189,7 +189,7 @@ def relief_case(arena, random):
         return name
 
     def engine_folder():
-        return folder_with(random.choice(["box.relief", "box.texels", "relief.glsl", "README.md"]))
+        return folder_with(random.choice(["box.relief", "box.texels", "relief.glsl", "RELIEF.md"]))
 
     def maps_folder():
         return folder_with(random.choice(["view_+x.exr", "view_-z.exr"]))

@@ -108,12 +108,10 @@ server=$(command -v wineserver || echo /usr/lib/wine/wineserver64)
 echo "windows: the same"
 
 # WebAssembly.
-if command -v emcc >/dev/null && command -v node >/dev/null; then
-    NODE_PATH=/usr/share/nodejs emcc -std=c99 -O2 "${warnings[@]}" single.c -o single.js -sNODERAWFS=1 \
-        -sALLOW_MEMORY_GROWTH=1 -sSINGLE_FILE=1 2>log || die "it does not compile to WebAssembly: $(tail -5 log)"
-    node single.js bunny.relief >web.out 2>log || die "single.js fails: $(tail -c 500 log web.out)"
-    cmp web.out c99.out || die "results differ in WebAssembly"
-    echo "wasm: the same"
-else
-    echo "not tested: WebAssembly; emcc or node is missing (scripts/setup.sh web)"
-fi
+needs emcc "emscripten (scripts/setup.sh web)"
+needs node nodejs
+NODE_PATH=/usr/share/nodejs emcc -std=c99 -O2 "${warnings[@]}" single.c -o single.js -sNODERAWFS=1 \
+    -sALLOW_MEMORY_GROWTH=1 -sSINGLE_FILE=1 2>log || die "it does not compile to WebAssembly: $(tail -5 log)"
+node single.js bunny.relief >web.out 2>log || die "single.js fails: $(tail -c 500 log web.out)"
+cmp web.out c99.out || die "results differ in WebAssembly"
+echo "wasm: the same"

@@ -48,6 +48,21 @@ expect_error 1 'output' "$relief" slice p.exr -o p.exr
 "$relief" bake "$bunny" -o engine.relief -q --budget 20kB
 "$relief" export engine.relief --engine c engine_c/deep
 cmp engine.relief engine_c/deep/engine.relief || die "the exported collider differs"
+cat >boxes.obj <<'O'
+o one
+v 0 0 0
+v 1 0 0
+v 0 1 0
+v 0 0 1
+f 1 3 2
+f 1 2 4
+f 1 4 3
+f 2 3 4
+O
+"$relief" bake boxes.obj --world city.1.0 -q --budget 20kB
+(cd city.1.0 && "$relief" export ./world.json --engine godot ../level -q)
+[ "$(find level -name 'city.1.0.*' | sort | tr '\n' ' ')" = 'level/city.1.0.bodies level/city.1.0.cells level/city.1.0.texels ' ] || die "$(ls level)"
+grep -q 'city\|NAME.bodies' level/RELIEF.md || die "the page of a level does not describe it"
 [ "$(stat -c %s engine_c/deep/engine.constants)" -eq 80 ] || die "80 bytes of constants"
 [ "$(($(stat -c %s engine_c/deep/engine.texels) % 16384))" -eq 0 ] || die "texels are not whole rows"
 for engine in c godot unity unreal three playcanvas; do
@@ -55,7 +70,11 @@ for engine in c godot unity unreal three playcanvas; do
     find engine_$engine -name '*.h' -o -name '*.glsl' -o -name '*.hlsl' -o -name '*.wgsl' -o -name '*.gd*' | while read -r file; do
         head -2 "$file" | grep -q 'SPDX-License-Identifier: Apache-2.0' || die "$file has no licence"
     done
-    [ -s engine_$engine/README.md ] && ! grep -q '](\.' engine_$engine/README.md || die "$engine has no page, or dead links"
+    page=engine_$engine/RELIEF.md
+    [ -s $page ] && ! grep -qE '\]\(\.|scripts/|tests/' $page || die "$engine has no page, or one that needs the project: $(cat $page)"
+    for file in $(find engine_$engine -name '*.js' -exec grep -ohE "[\"'][a-z./_]+\.(js|relief)[\"']" {} + | tr -d \"\'); do
+        [ -n "$(find engine_$engine -name "${file##*/}")" ] || die "$engine lacks $file"
+    done
 done
 expect_error 1 "engine is 'quake' but must be one of c|godot" "$relief" export engine.relief --engine quake none
 expect_error 1 'engine' "$relief" export engine.relief --engine c

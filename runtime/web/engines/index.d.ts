@@ -33,15 +33,16 @@ export interface Collider {
 
 export interface OpenOptions {
     /**
-     * Decompresses a zstd frame of known size, as fzstd does. Only for `relief bake --compress`. Its result is checked, but
-     * only this function can tell a malformed frame whose checksum is right.
+     * Decompresses a zstd frame of known size: (packed, size) => fzstd.decompress(packed, new Uint8Array(size)). Only for
+     * `relief bake --compress`. Its result is checked, but only this function detects a malformed frame whose checksum is
+     * correct.
      */
     decompress?: (packed: Uint8Array, size: number) => Uint8Array;
 }
 
 /**
  * Reads a `.relief` container. The result owns its memory.
- * @throws Error with one line if the bytes are damaged, or of another version, or have another map than one of patches
+ * @throws Error with one line if the bytes are damaged, or of another version, or are not one map of patches
  */
 export function openCollider(bytes: ArrayBuffer | ArrayBufferView, options?: OpenOptions): Collider;
 

@@ -14,6 +14,9 @@ const kTextureWidth = 2048;
 const kFormats = ["float32", "fixed8", "front-back of halfs", "cube", "front-back", "patches"];
 const kPatches = 5;
 const kMapSizeMax = 16384;
+const kPayloadMax = 8 * 2 ** 24;
+const kUnpackedMax = 64 * 2 ** 20; // bytes that any compressed container may unpack to
+const kUnpackedPerStored = 16; // a larger one: times its own size
 const kZstdRatioMax = 32768;
 const kCosineMax = 1e-4; // between rows of the transform
 const kLengthTolerance = 1e-3; // of objectPerMap
@@ -100,6 +103,8 @@ function readPayload(bytes, end, { width, height, compression, payload }, decomp
           `map 0: its raw_size is ${raw}, but its size and format require ${8 * width * height} bytes`);
     check(compression === 0 ? stored === raw : stored < raw && Math.floor(raw / kZstdRatioMax) <= stored,
           `map 0: its stored_size ${stored} does not match its raw_size ${raw} and its compression`);
+    check(raw <= kPayloadMax && (compression === 0 || raw <= Math.max(kUnpackedMax, kUnpackedPerStored * bytes.length)),
+          `map 0: its ${raw} bytes exceed the limit for a file of ${bytes.length} bytes; bake again without --compress`);
     check(raw >= 16, "map 0: texel 0 of its tree of patches has an invalid size");
     const place = Math.ceil(end / 64) * 64;
     check(offset === place, `map 0: its payload's offset is ${offset} instead of ${place}`);

@@ -236,11 +236,16 @@ export function distance(collider, point, normal) {
     }
     votePatches(collider.words, treeSize(collider.words), x, y, z);
     const root = constants[12];
+    const left = f(vote.distance * root);
+    if (left === -Infinity) { // an overflow is not inside
+        normal?.fill(0, 0, 3);
+        return kFarOutside;
+    }
     for (let i = 0; normal && i < 3; ++i) {
         const part = (at, component) => f(f(constants[at + i] * root) * component);
         normal[i] = f(part(0, vote.x) + f(part(4, vote.y) + part(8, vote.z)));
     }
-    return f(vote.distance * root);
+    return left;
 }
 
 export function collide(collider, position, velocity, { radius = 0, restitution = 0, friction = 0, normal } = {}) {

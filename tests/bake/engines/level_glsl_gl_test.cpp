@@ -29,7 +29,7 @@ std::string levelGlsl() {
     page << std::ifstream(std::string(RELIEF_SOURCE_DIR) + "/bake/engines/README.md").rdbuf();
     const std::string text = page.str();
     const std::string begin = "```glsl\n";
-    const std::size_t at = text.find(begin, text.find("<!-- glsl: union -->")) + begin.size();
+    const std::size_t at = text.find(begin, text.find("<!-- glsl: level -->")) + begin.size();
     return text.substr(at, text.find("```", at) - at);
 }
 
@@ -45,10 +45,9 @@ TEST_P(LevelGlslGlTest, GivesTheDistancesOfTheWorld) {
     const auto texels = bytes("level.texels");
     const GlTexture tree = makeTexture2D(GL_RGBA16UI, 2048, static_cast<GLsizei>(texels.size() / 16384),
                                          GL_RGBA_INTEGER, GL_UNSIGNED_SHORT, texels.data());
-    const GlTexture bodies = makeTexture2D(GL_RGBA32F, 7, static_cast<GLsizei>(level.world.bodies.size()),
-                                           GL_RGBA, GL_FLOAT, bytes("level.bodies").data());
-    auto words = bytes("level.cells");
-    words.resize((words.size() + 8191) / 8192 * 8192);
+    const GlTexture bodies =
+        makeTexture2D(GL_RGBA32UI, 1792, 2, GL_RGBA_INTEGER, GL_UNSIGNED_INT, bytes("level.bodies").data());
+    const auto words = bytes("level.cells");
     const GlTexture cells = makeTexture2D(GL_R32UI, 2048, static_cast<GLsizei>(words.size() / 8192),
                                           GL_RED_INTEGER, GL_UNSIGNED_INT, words.data());
     constexpr GLsizei kWidth = 256;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A level of 40 bodies of two balls, turned and scaled, and its exported files.
+// A level of 300 bodies of two balls, turned and scaled, and its exported files.
 #pragma once
 
 #include <algorithm>
@@ -26,9 +26,9 @@ inline LoadedWorld manyBalls() {
         level.world.colliders.push_back(listed);
     }
     std::mt19937 random(2);
-    std::uniform_real_distribution<float> place(-6.0F, 6.0F);
+    std::uniform_real_distribution<float> place(-12.0F, 12.0F);
     std::uniform_real_distribution<float> part(-1.0F, 1.0F);
-    for (std::uint32_t i = 0; i < 40; ++i) {
+    for (std::uint32_t i = 0; i < 300; ++i) {
         const glm::quat turn =
             glm::normalize(glm::quat(part(random), part(random), part(random), part(random)));
         level.world.bodies.push_back({.collider = i % 2,
@@ -41,7 +41,7 @@ inline LoadedWorld manyBalls() {
 
 inline std::vector<glm::vec3> pointsAmongBalls(std::size_t count) {
     std::mt19937 random(4);
-    std::uniform_real_distribution<float> place(-7.0F, 7.0F);
+    std::uniform_real_distribution<float> place(-13.0F, 13.0F);
     std::vector<glm::vec3> points(count);
     for (glm::vec3& p : points) {
         p = {place(random), place(random), 0.5F * place(random)};

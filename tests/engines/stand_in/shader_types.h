@@ -64,6 +64,7 @@ struct Real4 {
     Real4(const Real3& a, Real b) : Real4(a.x, a.y, a.z, b) {}
     [[nodiscard]] Real3 componentsXyz() const { return {x, y, z}; }
     [[nodiscard]] Real3 componentsYzw() const { return {y, z, w}; }
+    friend Real4 operator*(Real a, const Real4& b) { return {a * b.x, a * b.y, a * b.z, a * b.w}; }
 };
 
 struct int2 {

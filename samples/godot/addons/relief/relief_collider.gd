@@ -109,6 +109,7 @@ func _read_metadata() -> String:
 		var other := Vector3(transform[(4 * i + 4) % 12], transform[(4 * i + 5) % 12], transform[(4 * i + 6) % 12])
 		_damaged = _damaged or absf(row.length() * scale[i] - 1.0) > 0.001 or scale[i] != scale[0] or \
 				absf(row.dot(other)) > 0.0001 * row.length() * other.length() or high[i] < low[i]
+	_damaged = _damaged or _value(map, 2, 4) > 16384 or _value(map, 3, 4) > 16384
 	return "has damaged metadata" if _damaged else _read_payload(payload, bytes, scale[0])
 
 
