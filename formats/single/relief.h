@@ -1069,38 +1069,52 @@ static rlf_vote rlf_vote_tree(const relief_collider* collider, const float p[3])
     return vote;
 }
 
-float relief_distance(const relief_collider* collider, const float point[3], float normal[3]) {
+/* As relief_distance(), but extrapolates the surface up to `reach` beyond the root cells. */
+static float rlf_near(const relief_collider* collider, const float point[3], float reach, float normal[3]) {
     RLF_EXACT
     const relief_constants* constants = &collider->constants;
     const float* rows[3];
     const float scale = constants->size[0];
-    float p[3], distance = RELIEF_FAR_OUTSIDE;
-    rlf_vote vote = {0, {0, 0, 0}};
-    int i, within = 1;
+    float held[3], way[3] = {0, 0, 0}, distance, end, q;
+    rlf_vote vote;
+    int i, k, within = 1;
     rows[0] = constants->row_x;
     rows[1] = constants->row_y;
     rows[2] = constants->row_z;
+    normal[0] = normal[1] = normal[2] = 0;
+    for (i = 0; i < 3; ++i) { /* the nearest point of the root cells, and the way from it */
+        q = rows[i][0] * point[0] + (rows[i][1] * point[1] + (rows[i][2] * point[2] + rows[i][3]));
+        end = 0.99999994F * constants->size[1 + i]; /* the last number below */
+        held[i] = q < 0.0F ? 0.0F : q > end ? end : q;
+        within = within && held[i] == q; /* false for NaN */
+        for (k = 0; k < 3; ++k) {
+            way[k] += scale * scale * (q - held[i]) * rows[i][k];
+        }
+    }
+    if (collider->texels == NULL || (!within && !(reach > 0.0F && rlf_dot(way, way) < reach * reach))) {
+        return RELIEF_FAR_OUTSIDE;
+    }
+    vote = rlf_vote_tree(collider, held);
+    distance = vote.distance * scale;
+    if (!(distance >= -FLT_MAX)) { /* an overflow to -infinity is not inside */
+        return RELIEF_FAR_OUTSIDE;
+    }
     for (i = 0; i < 3; ++i) {
-        p[i] = rows[i][0] * point[0] + (rows[i][1] * point[1] + (rows[i][2] * point[2] + rows[i][3]));
-        within = within && p[i] >= 0.0F && p[i] < constants->size[1 + i]; /* false for NaN */
+        normal[i] = rows[0][i] * scale * vote.normal[0] +
+                    (rows[1][i] * scale * vote.normal[1] + rows[2][i] * scale * vote.normal[2]);
     }
-    if (within) {
-        vote = rlf_vote_tree(collider, p);
-        distance = vote.distance * scale;
-        within = distance > -FLT_MAX; /* an overflow to -infinity is not inside */
-    }
-    for (i = 0; normal != NULL && i < 3; ++i) {
-        normal[i] = within ? rows[0][i] * scale * vote.normal[0] +
-                                 (rows[1][i] * scale * vote.normal[1] + rows[2][i] * scale * vote.normal[2])
-                           : 0.0F;
-    }
-    return within ? distance : RELIEF_FAR_OUTSIDE;
+    return within ? distance : distance + rlf_dot(way, normal);
+}
+
+float relief_distance(const relief_collider* collider, const float point[3], float normal[3]) {
+    float unused[3];
+    return rlf_near(collider, point, 0.0F, normal != NULL ? normal : unused);
 }
 
 int relief_collide(const relief_collider* collider, float position[3], float velocity[3], float radius,
                    float restitution, float friction) {
     RLF_EXACT
-    float normal[3], distance = relief_distance(collider, position, normal) - radius, along;
+    float normal[3], distance = rlf_near(collider, position, radius, normal) - radius, along;
     int i;
     if (!(distance < 0.0F)) {
         return 0;

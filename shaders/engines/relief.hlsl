@@ -9,9 +9,6 @@
 #ifndef RELIEF_LOG2_WIDTH
 #define RELIEF_LOG2_WIDTH 11u
 #endif
-#ifndef RELIEF_FAR_OUTSIDE
-#define RELIEF_FAR_OUTSIDE 1.0e30
-#endif
 #ifndef RELIEF_PRECISE  // define it as precise, if the compiler has that qualifier, for exactly the signs of the CPU
 #define RELIEF_PRECISE
 #endif
@@ -24,7 +21,7 @@ struct ReliefCollider {
 };
 struct ReliefSurface {
     float3 normal;   // outwards, of unit length; zero outside the root cells
-    float distance;  // positive outside, negative inside; RELIEF_FAR_OUTSIDE outside the root cells
+    float distance;  // positive outside, negative inside; 1.0e30 outside the root cells
 };
 struct ReliefMotion {
     float3 position;
@@ -64,9 +61,7 @@ uint2 reliefPatchTexel(Texture2D<uint4> texels, int index) {
     uint4 words = texels.Load(int3(int(column), int(row), 0));
     return uint2(words.x | (words.y << 16u), words.z | (words.w << 16u));
 }
-
-// Counts the bits set in a byte.
-int reliefBitCount(uint bits) {
+int reliefBitCount(uint bits) {  // of a byte
     uint pairs = bits - ((bits >> 1u) & 0x55u);
     uint nibbles = (pairs & 0x33u) + ((pairs >> 2u) & 0x33u);
     return int((nibbles + (nibbles >> 4u)) & 0xfu);
@@ -95,7 +90,6 @@ uint reliefPatchByte(uint4 words, int i) {
     uint four = i > 7 ? high : low;
     return (four >> uint(8 * (i & 3))) & 0xffu;
 }
-
 // Returns the codes at the corners 00, 10, 01 and 11 of a grid square with the lowest corner `corner`.
 float4 reliefPatchCodes(Texture2D<uint4> texels, int first, uint2 record, float2 corner, float squares) {
     int side = int(squares) + 1;
@@ -122,7 +116,6 @@ float reliefPatchStep(uint2 record) {
     float power = asfloat(((scale >> 4u) + 115u) << 23u);  // 2^((scale >> 4) - 12); exp2() may round
     return (1.0 + float(scale & 15u) * (1.0 / 16.0)) * power * (1.0 / 255.0);
 }
-
 // Returns xyz: the gradient in the cell, of unit length and outwards; w: the distance, in cells.
 float4 reliefPatch(Texture2D<uint4> texels, int first, uint2 record, float3 q) {
     uint diagonal = (record.x >> 5u) & 3u;
@@ -181,11 +174,11 @@ ReliefLeaf reliefPatchLeaf(Texture2D<uint4> texels, int4 place, float3 p) {
 }
 
 // Returns xyz: the normal in map space; w: the distance, in roots. Without `whole`, a cell without a patch that is
-// outside returns RELIEF_FAR_OUTSIDE, which is faster. p, place: as for reliefPatchLeaf().
+// outside returns 1.0e30, which is faster. p, place: as for reliefPatchLeaf().
 float4 reliefPatches(Texture2D<uint4> texels, int4 place, float3 p, bool whole) {
     ReliefLeaf leaf = reliefPatchLeaf(texels, place, p);
     uint2 record = leaf.record;
-    float4 vote = float4(0.0, 0.0, 0.0, RELIEF_FAR_OUTSIDE);
+    float4 vote = float4(0.0, 0.0, 0.0, 1.0e30);
     if ((record.x & 3u) == 3u) {
         bool pair = (record.x & 15u) == 15u;
         int first = place.x + int(record.y & 0xffffffu);
@@ -212,20 +205,27 @@ float4 reliefPatches(Texture2D<uint4> texels, int4 place, float3 p, bool whole) 
     return vote;
 }
 
-// p: object space.
-ReliefSurface reliefDistance(Texture2D<uint4> texels, ReliefCollider collider, float3 p) {
+// As reliefDistance(), but extrapolates the surface up to `reach` beyond the root cells.
+ReliefSurface reliefNear(Texture2D<uint4> texels, ReliefCollider collider, float3 p, float reach) {
     ReliefSurface surface;
     surface.normal = float3(0.0, 0.0, 0.0);
-    surface.distance = RELIEF_FAR_OUTSIDE;
+    surface.distance = 1.0e30;
     float3 q = float3(reliefRow(collider.row_x, p), reliefRow(collider.row_y, p), reliefRow(collider.row_z, p));
-    float3 roots = collider.size.yzw;
-    if (q.x >= 0.0 && q.y >= 0.0 && q.z >= 0.0 && q.x < roots.x && q.y < roots.y && q.z < roots.z) {
-        float4 vote = collider.size.x * reliefPatches(texels, collider.place, q, true);
+    float3 held = clamp(q, float3(0.0, 0.0, 0.0), 0.99999994 * collider.size.yzw);  // in the root cells
+    float3 to = collider.size.x * collider.size.x * (q - held);
+    float3 way = collider.row_x.xyz * to.x + (collider.row_y.xyz * to.y + collider.row_z.xyz * to.z);
+    bool within = held.x == q.x && held.y == q.y && held.z == q.z;
+    if (within || (reach > 0.0 && reliefDot(way, way) < reach * reach)) {
+        float4 vote = collider.size.x * reliefPatches(texels, collider.place, held, true);
         float3 yz = collider.row_y.xyz * vote.y + collider.row_z.xyz * vote.z;
         surface.normal = collider.row_x.xyz * vote.x + yz;
-        surface.distance = vote.w > -3.4e38 ? vote.w : RELIEF_FAR_OUTSIDE;  // an overflow is not inside
+        float d = within ? vote.w : vote.w + reliefDot(way, surface.normal);
+        surface.distance = vote.w > -3.4e38 ? d : 1.0e30;  // an overflow is not inside
     }
     return surface;
+}
+ReliefSurface reliefDistance(Texture2D<uint4> texels, ReliefCollider collider, float3 p) {
+    return reliefNear(texels, collider, p, 0.0);
 }
 
 // Returns a ball's motion after a step to position p with velocity v. If it overlaps the collider, it moves to the
@@ -233,7 +233,7 @@ ReliefSurface reliefDistance(Texture2D<uint4> texels, ReliefCollider collider, f
 // to 1, its tangential one. Restitution 0 slides; with friction 1, the ball sticks.
 ReliefMotion reliefCollide(Texture2D<uint4> texels, ReliefCollider collider, float3 p, float3 v, float radius,
                            float restitution, float friction) {
-    ReliefSurface surface = reliefDistance(texels, collider, p);
+    ReliefSurface surface = reliefNear(texels, collider, p, radius);
     ReliefMotion motion;
     motion.position = p;
     motion.velocity = v;

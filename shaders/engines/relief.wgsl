@@ -6,7 +6,6 @@
 // texels: RGBA16UI without filtering, 2048 texels wide. collider: 80 bytes, laid out as std140. relief.h returns both.
 // Lengths are in object units. formats/README.md specifies the arithmetic, formats/patch_tree.cpp is the C++ version.
 const RELIEF_LOG2_WIDTH = 11u;
-const RELIEF_FAR_OUTSIDE = 1.0e30;
 struct ReliefCollider {
     row_x: vec4f,  // object space to map space, whose unit is a root cell
     row_y: vec4f,
@@ -16,7 +15,7 @@ struct ReliefCollider {
 }
 struct ReliefSurface {
     normal: vec3f,  // outwards, of unit length; zero outside the root cells
-    distance: f32,  // positive outside, negative inside; RELIEF_FAR_OUTSIDE outside the root cells
+    distance: f32,  // positive outside, negative inside; 1.0e30 outside the root cells
 }
 struct ReliefMotion {
     position: vec3f,
@@ -56,11 +55,9 @@ fn reliefPatchTexel(texels: texture_2d<u32>, index: i32) -> vec2u {
     let words = textureLoad(texels, vec2i(i32(column), i32(row)), 0);
     return vec2u(words.x | (words.y << 16u), words.z | (words.w << 16u));
 }
-
-// Counts the bits set in a byte.
-fn reliefBitCount(bits: u32) -> i32 {
-    let pairs = bits - ((bits >> 1u) & 0x55u);
-    let nibbles = (pairs & 0x33u) + ((pairs >> 2u) & 0x33u);
+i32 reliefBitCount(u32 bits) {  // of a byte
+    u32 pairs = bits - ((bits >> 1u) & 0x55u);
+    u32 nibbles = (pairs & 0x33u) + ((pairs >> 2u) & 0x33u);
     return i32((nibbles + (nibbles >> 4u)) & 0xfu);
 }
 
@@ -87,7 +84,6 @@ fn reliefPatchByte(words: vec4u, i: i32) -> u32 {
     let four = select(low, high, i > 7);
     return (four >> u32(8 * (i & 3))) & 0xffu;
 }
-
 // Returns the codes at the corners 00, 10, 01 and 11 of a grid square with the lowest corner `corner`.
 fn reliefPatchCodes(texels: texture_2d<u32>, first: i32, record: vec2u, corner: vec2f, squares: f32) -> vec4f {
     let side = i32(squares) + 1;
@@ -114,7 +110,6 @@ fn reliefPatchStep(record: vec2u) -> f32 {
     let power = bitcast<f32>(((scale >> 4u) + 115u) << 23u);  // 2^((scale >> 4) - 12); exp2() may round
     return (1.0 + f32(scale & 15u) * (1.0 / 16.0)) * power * (1.0 / 255.0);
 }
-
 // Returns xyz: the gradient in the cell, of unit length and outwards; w: the distance, in cells.
 fn reliefPatch(texels: texture_2d<u32>, first: i32, record: vec2u, q: vec3f) -> vec4f {
     let diagonal = (record.x >> 5u) & 3u;
@@ -173,11 +168,11 @@ fn reliefPatchLeaf(texels: texture_2d<u32>, place: vec4i, p: vec3f) -> ReliefLea
 }
 
 // Returns xyz: the normal in map space; w: the distance, in roots. Without `whole`, a cell without a patch that is
-// outside returns RELIEF_FAR_OUTSIDE, which is faster. p, place: as for reliefPatchLeaf().
+// outside returns 1.0e30, which is faster. p, place: as for reliefPatchLeaf().
 fn reliefPatches(texels: texture_2d<u32>, place: vec4i, p: vec3f, whole: bool) -> vec4f {
     let leaf = reliefPatchLeaf(texels, place, p);
     var record = leaf.record;
-    var vote = vec4f(0.0, 0.0, 0.0, RELIEF_FAR_OUTSIDE);
+    var vote = vec4f(0.0, 0.0, 0.0, 1.0e30);
     if ((record.x & 3u) == 3u) {
         let pair = (record.x & 15u) == 15u;
         let first = place.x + i32(record.y & 0xffffffu);
@@ -204,20 +199,27 @@ fn reliefPatches(texels: texture_2d<u32>, place: vec4i, p: vec3f, whole: bool) -
     return vote;
 }
 
-// p: object space.
-fn reliefDistance(texels: texture_2d<u32>, collider: ReliefCollider, p: vec3f) -> ReliefSurface {
+// As reliefDistance(), but extrapolates the surface up to `reach` beyond the root cells.
+fn reliefNear(texels: texture_2d<u32>, collider: ReliefCollider, p: vec3f, reach: f32) -> ReliefSurface {
     var surface: ReliefSurface;
     surface.normal = vec3f(0.0, 0.0, 0.0);
-    surface.distance = RELIEF_FAR_OUTSIDE;
+    surface.distance = 1.0e30;
     let q = vec3f(reliefRow(collider.row_x, p), reliefRow(collider.row_y, p), reliefRow(collider.row_z, p));
-    let roots = collider.size.yzw;
-    if (q.x >= 0.0 && q.y >= 0.0 && q.z >= 0.0 && q.x < roots.x && q.y < roots.y && q.z < roots.z) {
-        let vote = collider.size.x * reliefPatches(texels, collider.place, q, true);
+    let held = clamp(q, vec3f(0.0, 0.0, 0.0), 0.99999994 * collider.size.yzw);  // in the root cells
+    let to = collider.size.x * collider.size.x * (q - held);
+    let way = collider.row_x.xyz * to.x + (collider.row_y.xyz * to.y + collider.row_z.xyz * to.z);
+    let within = held.x == q.x && held.y == q.y && held.z == q.z;
+    if (within || (reach > 0.0 && reliefDot(way, way) < reach * reach)) {
+        let vote = collider.size.x * reliefPatches(texels, collider.place, held, true);
         let yz = collider.row_y.xyz * vote.y + collider.row_z.xyz * vote.z;
         surface.normal = collider.row_x.xyz * vote.x + yz;
-        surface.distance = select(RELIEF_FAR_OUTSIDE, vote.w, vote.w > -3.4e38);  // an overflow is not inside
+        let d = select(vote.w + reliefDot(way, surface.normal), vote.w, within);
+        surface.distance = select(1.0e30, d, vote.w > -3.4e38);  // an overflow is not inside
     }
     return surface;
+}
+fn reliefDistance(texels: texture_2d<u32>, collider: ReliefCollider, p: vec3f) -> ReliefSurface {
+    return reliefNear(texels, collider, p, 0.0);
 }
 
 // Returns a ball's motion after a step to position p with velocity v. If it overlaps the collider, it moves to the
@@ -225,7 +227,7 @@ fn reliefDistance(texels: texture_2d<u32>, collider: ReliefCollider, p: vec3f) -
 // to 1, its tangential one. Restitution 0 slides; with friction 1, the ball sticks.
 fn reliefCollide(texels: texture_2d<u32>, collider: ReliefCollider, p: vec3f, v: vec3f, radius: f32, restitution: f32,
     friction: f32) -> ReliefMotion {
-    let surface = reliefDistance(texels, collider, p);
+    let surface = reliefNear(texels, collider, p, radius);
     var motion: ReliefMotion;
     motion.position = p;
     motion.velocity = v;

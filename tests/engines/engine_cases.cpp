@@ -243,12 +243,14 @@ bool isAtBorder(const Collider& collider, const glm::vec3& p, const Answer& answ
 double motionError(const Query& query, const Answer& answer) {
     const glm::dvec3 p(query.point);
     const glm::dvec3 v(query.velocity);
-    const glm::dvec3 n(answer.surface);
+    const glm::dvec3 n(answer.normal);
     const double friction = double{query.reaction.z};
-    const float distance = answer.surface.w - query.reaction.x;
+    const bool beyond = answer.surface.w == kFarOutside;  // a ball may reach the root cells
+    const float distance = beyond ? answer.position.w : answer.surface.w - query.reaction.x;
     const bool hit = distance < 0.0F;
-    const glm::vec3 normal = hit ? glm::vec3(answer.surface) : glm::vec3(0.0F);
-    if (answer.position.w != distance || glm::vec3(answer.normal) != normal) {
+    const glm::vec3 normal = !hit ? glm::vec3(0.0F) : glm::vec3(beyond ? answer.normal : answer.surface);
+    if (answer.position.w != distance || glm::vec3(answer.normal) != normal ||
+        (hit && std::abs(glm::length(normal) - 1.0F) > 1e-5F)) {
         return -1.0;
     }
     if (!hit) {

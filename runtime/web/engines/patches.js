@@ -5,6 +5,7 @@ const f = Math.fround;
 const kLevelsMax = 15;
 const kTexelsMax = 1 << 24;
 const kSides = [2, 3, 5, 0]; // heights along a side of a patch; 0 for a pair
+const kBelowOne = 1 - 2 ** -24; // times a whole number: the last float below it
 const kFarOutside = f(1e30);
 const kNearest = 1 / 1024; // minimum distance between the surface and cells without a patch, in cells
 
@@ -225,17 +226,22 @@ function votePatches(words, { roots, levels }, px, py, pz) {
 const row = (constants, at, [x, y, z]) =>
     f(f(constants[at] * x) + f(f(constants[at + 1] * y) + f(f(constants[at + 2] * z) + constants[at + 3])));
 
-export function distance(collider, point, normal) {
+/** As distance(), but extrapolates the surface up to `reach` beyond the root cells. */
+function near(collider, point, reach, normal) {
     const constants = collider.floats;
+    const root = constants[12];
     const p = [f(point[0]), f(point[1]), f(point[2])];
-    const [x, y, z] = [row(constants, 0, p), row(constants, 4, p), row(constants, 8, p)];
-    // This form treats NaN as outside.
-    if (!(x >= 0 && y >= 0 && z >= 0 && x < constants[13] && y < constants[14] && z < constants[15])) {
+    const q = [row(constants, 0, p), row(constants, 4, p), row(constants, 8, p)];
+    const held = q.map((x, i) => Math.min(Math.max(x, 0), f(kBelowOne * constants[13 + i])));
+    const within = held.every((x, i) => x === q[i]); // false for NaN
+    const to = q.map((x, i) => f(f(root * root) * f(x - held[i])));
+    const way = within ? [0, 0, 0]
+        : [0, 1, 2].map((k) => f(f(constants[k] * to[0]) + f(f(constants[4 + k] * to[1]) + f(constants[8 + k] * to[2]))));
+    if (!within && !(reach > 0 && dot(...way, ...way) < f(reach * reach))) {
         normal?.fill(0, 0, 3);
         return kFarOutside;
     }
-    votePatches(collider.words, treeSize(collider.words), x, y, z);
-    const root = constants[12];
+    votePatches(collider.words, treeSize(collider.words), ...held);
     const left = f(vote.distance * root);
     if (left === -Infinity) { // an overflow is not inside
         normal?.fill(0, 0, 3);
@@ -245,12 +251,16 @@ export function distance(collider, point, normal) {
         const part = (at, component) => f(f(constants[at + i] * root) * component);
         normal[i] = f(part(0, vote.x) + f(part(4, vote.y) + part(8, vote.z)));
     }
-    return left;
+    return within ? left : f(left + dot(...way, normal[0], normal[1], normal[2]));
+}
+
+export function distance(collider, point, normal) {
+    return near(collider, point, 0, normal);
 }
 
 export function collide(collider, position, velocity, { radius = 0, restitution = 0, friction = 0, normal } = {}) {
     const n = [0, 0, 0];
-    const left = f(distance(collider, position, n) - f(radius));
+    const left = f(near(collider, position, f(radius), n) - f(radius));
     if (left < 0) {
         const speed = dot(f(velocity[0]), f(velocity[1]), f(velocity[2]), ...n);
         for (let i = 0; i < 3; ++i) {

@@ -17,9 +17,13 @@ namespace {
 constexpr const char* kQuery = R"(
 uniform highp sampler2D u_points;
 layout(location = 0) out vec4 o_surface;
+layout(location = 1) out vec4 o_motion;
 void main() {
-    ReliefSurface surface = levelDistance(texelFetch(u_points, ivec2(gl_FragCoord.xy), 0).xyz);
+    vec3 p = texelFetch(u_points, ivec2(gl_FragCoord.xy), 0).xyz;
+    ReliefSurface surface = levelDistance(p);
     o_surface = vec4(surface.normal, surface.distance);
+    ReliefMotion motion = levelCollide(p, vec3(0.0), 0.25, 0.5, 0.25);
+    o_motion = vec4(motion.position, motion.distance);
 }
 )";
 
@@ -58,17 +62,28 @@ TEST_P(LevelGlslGlTest, GivesTheDistancesOfTheWorld) {
     }
     const GlTexture places = makeTexture2D(GL_RGBA32F, kWidth, 64, GL_RGBA, GL_FLOAT, input.data());
     const GlTexture output = makeTexture2D(GL_RGBA32F, kWidth, 64, GL_RGBA, GL_FLOAT);
+    const GlTexture moved = makeTexture2D(GL_RGBA32F, kWidth, 64, GL_RGBA, GL_FLOAT);
     int unit = 0;
     for (const auto& [name, texture] :
          {std::pair("u_texels", &tree), {"u_bodies", &bodies}, {"u_cells", &cells}, {"u_points", &places}}) {
         useTexture(unit, *texture);
         program.set(name, unit++);
     }
-    const GlFramebuffer target = required(makeFramebuffer({output.name()}));
+    const GlFramebuffer target = required(makeFramebuffer({output.name(), moved.name()}));
     program.drawScreen(target.name(), kWidth, 64);
     const std::vector<float> surfaces = required(readTextureFloats(output, kWidth, 64));
+    const std::vector<float> motions = required(readTextureFloats(moved, kWidth, 64));
     int inside = 0;
+    int touching = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
+        const float* motion = &motions[4 * i];
+        const float gap = gapToBalls(level, points[i]);
+        const bool hit = motion[3] < 0.0F;
+        // Away from the surface, the plane of a cell is nearer than the ball.
+        EXPECT_TRUE(hit || gap > 0.2F) << gap;
+        EXPECT_TRUE(!hit || gap < 0.45F) << gap;
+        EXPECT_TRUE(hit || glm::vec3(motion[0], motion[1], motion[2]) == points[i]);
+        touching += hit && gap > 0.0F ? 1 : 0;
         const float expected = depthIn(level, points[i]);
         const float* surface = &surfaces[4 * i];
         if (std::abs(expected) > 1e-4F) {  // rows are rounded again for each body
@@ -81,6 +96,7 @@ TEST_P(LevelGlslGlTest, GivesTheDistancesOfTheWorld) {
         }
     }
     EXPECT_GT(inside, 300);
+    EXPECT_GT(touching, 100);
 }
 
 RELIEF_INSTANTIATE_GL_TESTS(LevelGlslGlTest);

@@ -60,6 +60,18 @@ inline float depthIn(const LoadedWorld& level, const glm::vec3& p) {
     return deepest;
 }
 
+/// Returns the distance of the nearest ball, negative inside; balls are round here, not faceted.
+inline float gapToBalls(const LoadedWorld& level, const glm::vec3& p) {
+    float gap = kFarOutside;
+    for (const WorldBody& body : level.world.bodies) {
+        const Pose pose = poseOf(body);
+        const bool small = body.collider == 1;
+        const glm::vec3 center = toWorld(pose, small ? glm::vec3(0.0F) : glm::vec3(0.2F, 0.1F, -0.3F));
+        gap = std::min(gap, glm::distance(p, center) - pose.scale * (small ? 0.4F : 0.9F));
+    }
+    return gap;
+}
+
 inline const EngineFile& fileNamed(const std::vector<EngineFile>& files, const std::string& name) {
     const auto found = std::ranges::find(files, name, &EngineFile::name);
     EXPECT_NE(found, files.end()) << name;

@@ -33,6 +33,7 @@ struct Real {
     friend bool operator<(Real a, Real b) { return a.value < b.value; }
     friend bool operator>(Real a, Real b) { return a.value > b.value; }
     friend bool operator>=(Real a, Real b) { return a.value >= b.value; }
+    friend bool operator==(Real a, Real b) { return a.value == b.value; }
 };
 
 struct Real2 {
@@ -110,6 +111,9 @@ inline Real2 floor(const Real2& a) {
 }
 inline Real3 floor(const Real3& a) {
     return {floor(a.x), floor(a.y), floor(a.z)};
+}
+inline Real3 clamp(const Real3& a, const Real3& low, const Real3& high) {
+    return {min(max(a.x, low.x), high.x), min(max(a.y, low.y), high.y), min(max(a.z, low.z), high.z)};
 }
 inline Real2 clamp(const Real2& a, const Real2& low, const Real2& high) {
     return {min(max(a.x, low.x), high.x), min(max(a.y, low.y), high.y)};

@@ -18,7 +18,6 @@
 #undef zxy
 #undef yzw
 #undef RELIEF_LOG2_WIDTH
-#undef RELIEF_FAR_OUTSIDE
 #ifdef __clang__
 #pragma clang diagnostic pop
 #endif

@@ -5,6 +5,7 @@
 #include <zstd.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -226,6 +227,9 @@ TEST(Single, CollidesByTheFormula) {
         const float restitution = i % 3 == 0 ? 0.0F : std::abs(unit(random));
         const float friction = i % 5 == 0 ? 1.0F : std::abs(unit(random));
         const FieldSample field = evaluate(collider, p);
+        if (field.distance == kFarOutside) {
+            continue;  // a ball may reach the root cells: the next test
+        }
         glm::vec3 moved = p;
         glm::vec3 turned = v;
         const int hit = relief_collide(&single.collider, &moved.x, &turned.x, radius, restitution, friction);
@@ -249,6 +253,35 @@ TEST(Single, CollidesByTheFormula) {
     }
     EXPECT_GT(inwards, 2000);
     EXPECT_GT(hits, inwards + 2000);
+}
+
+TEST(Single, BallsTouchASurfaceBeyondTheRootCells) {
+    // One root with a patch: outside above x = ½.
+    const PatchHeights heights = PatchHeights::of(std::array{0.5, 0.5, 0.5, 0.5}, 2);
+    DepthMap map;
+    map.format = MapFormat::kPatches;
+    map.decode = Decode::kPlane;
+    map.width = 2;
+    map.height = 1;
+    map.object_to_map = {{{1.0F, 0.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 1.0F, 0.0F}}};
+    map.object_per_map = glm::vec3(1.0F);
+    appendPatchTexel(map.texels, {1U | 1U << 16U, 1U});
+    appendPatchTexel(map.texels, PatchRecord::patch({}, false, heights, 0));
+    const Collider collider = colliderOf(std::move(map));
+    const Single single(test::written(collider));
+    for (const float radius : {0.0F, 0.2F, 0.7F, 2.0F}) {
+        for (const float x : {-3.0F, -0.3F, 0.2F, 0.49F, 0.6F, 0.9F, 1.1F, 1.4F, 2.6F}) {
+            // The patch looks along x.
+            glm::vec3 p(x, 0.5F, 0.5F);
+            glm::vec3 v(-1.0F, 0.0F, 0.0F);
+            const bool near = x >= 0.0F && x < 1.0F ? true : std::max(-x, x - 1.0F) < radius;
+            const bool touches = near && x - 0.5F < radius;
+            ASSERT_EQ(relief_collide(&single.collider, &p.x, &v.x, radius, 1.0F, 0.0F) != 0, touches)
+                << x << ' ' << radius;
+            ASSERT_NEAR(p.x, touches ? 0.5F + radius : x, 1e-5F);
+            ASSERT_NEAR(v.x, touches ? 1.0F : -1.0F, 1e-5F);
+        }
+    }
 }
 
 TEST(Single, RejectsEveryTruncationAndExtension) {
