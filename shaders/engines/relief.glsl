@@ -59,8 +59,8 @@ uvec2 reliefPatchTexel(highp usampler2D texels, int index) {
     uvec4 words = texelFetch(texels, ivec2(int(column), int(row)), 0);
     return uvec2(words.x | (words.y << 16u), words.z | (words.w << 16u));
 }
-int reliefBitCount(uint bits) {  // of a byte
-    uint pairs = bits - ((bits >> 1u) & 0x55u);
+int reliefBitCount(uint bits) {
+    uint pairs = bits - ((bits >> 1u) & 0x55u);  // of a byte
     uint nibbles = (pairs & 0x33u) + ((pairs >> 2u) & 0x33u);
     return int((nibbles + (nibbles >> 4u)) & 0xfu);
 }

@@ -61,8 +61,8 @@ uint2 reliefPatchTexel(Texture2D<uint4> texels, int index) {
     uint4 words = texels.Load(int3(int(column), int(row), 0));
     return uint2(words.x | (words.y << 16u), words.z | (words.w << 16u));
 }
-int reliefBitCount(uint bits) {  // of a byte
-    uint pairs = bits - ((bits >> 1u) & 0x55u);
+int reliefBitCount(uint bits) {
+    uint pairs = bits - ((bits >> 1u) & 0x55u);  // of a byte
     uint nibbles = (pairs & 0x33u) + ((pairs >> 2u) & 0x33u);
     return int((nibbles + (nibbles >> 4u)) & 0xfu);
 }

@@ -60,8 +60,8 @@ inline uint2 reliefPatchTexel(texture2d<uint> texels, int index) {
     uint4 words = texels.read(uint2(int(column), int(row)));
     return uint2(words.x | (words.y << 16u), words.z | (words.w << 16u));
 }
-inline int reliefBitCount(uint bits) {  // of a byte
-    uint pairs = bits - ((bits >> 1u) & 0x55u);
+inline int reliefBitCount(uint bits) {
+    uint pairs = bits - ((bits >> 1u) & 0x55u);  // of a byte
     uint nibbles = (pairs & 0x33u) + ((pairs >> 2u) & 0x33u);
     return int((nibbles + (nibbles >> 4u)) & 0xfu);
 }

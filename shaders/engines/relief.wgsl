@@ -55,9 +55,9 @@ fn reliefPatchTexel(texels: texture_2d<u32>, index: i32) -> vec2u {
     let words = textureLoad(texels, vec2i(i32(column), i32(row)), 0);
     return vec2u(words.x | (words.y << 16u), words.z | (words.w << 16u));
 }
-i32 reliefBitCount(u32 bits) {  // of a byte
-    u32 pairs = bits - ((bits >> 1u) & 0x55u);
-    u32 nibbles = (pairs & 0x33u) + ((pairs >> 2u) & 0x33u);
+fn reliefBitCount(bits: u32) -> i32 {
+    let pairs = bits - ((bits >> 1u) & 0x55u);  // of a byte
+    let nibbles = (pairs & 0x33u) + ((pairs >> 2u) & 0x33u);
     return i32((nibbles + (nibbles >> 4u)) & 0xfu);
 }
 
