@@ -39,6 +39,7 @@ struct ExportCommand {
 };
 
 constexpr std::uint32_t kResolution = 512;
+
 bool isPatches(const DepthMap& map) {
     return map.format == MapFormat::kPatches;
 }
@@ -105,14 +106,6 @@ Result<void> checkTogether(const ExportCommand& command) {
     return {};
 }
 
-std::string engineWords() {
-    std::string words;
-    for (const std::string_view name : kEngineNames) {
-        words.append(words.empty() ? "" : "|").append(name);
-    }
-    return words;
-}
-
 /// The engine of --engine, or nullopt without that option.
 Result<std::optional<Engine>> engineOf(const ExportCommand& command) {
     if (command.engine.empty()) {
@@ -120,8 +113,7 @@ Result<std::optional<Engine>> engineOf(const ExportCommand& command) {
     }
     const auto* const found = std::ranges::find(kEngineNames, command.engine.front());
     if (found == kEngineNames.end()) {
-        return fail(ErrorCode::kUsage,
-                    "--engine is '" + command.engine.front() + "' but must be one of " + engineWords());
+        return fail(ErrorCode::kUsage, "--engine " + butMustBeOneOf(command.engine.front(), kEngineNames));
     }
     return static_cast<Engine>(found - kEngineNames.begin());
 }
@@ -252,7 +244,7 @@ void addExport(CLI::App& app, Action& action) {
         ->valueText("N")
         ->transform(wholeNumber(kViewSizeMin, kViewSizeMax));
     addOption(verb, "--engine", command->engine, "Engine, and the folder for its files; created if missing")
-        ->valueText(engineWords() + " DIR")
+        ->valueText(choices(kEngineNames) + " DIR")
         ->values(2);
     addOption(verb, "--vdb", command->vdb,
               "Level set of signed distances, named \"surface\"; - for standard output")

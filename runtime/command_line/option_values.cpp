@@ -117,12 +117,17 @@ void addMemoryOption(CLI::App& app, ContainerLimits& limits) {
         ->transform(fieldValue<std::uint64_t>({.unit = "bytes", .range = kFromOne}));
 }
 
+std::string choices(std::span<const std::string_view> words) {
+    std::string text;
+    for (const std::string_view word : words) {
+        text.append(text.empty() ? "" : "|").append(word);
+    }
+    return text;
+}
+
 OptionRef addWordOption(CLI::App& app, const std::string& names, std::vector<std::string_view> words,
                         std::function<void(std::size_t)> set, const std::string& help) {
-    std::string shown;
-    for (const std::string_view word : words) {
-        shown.append(shown.empty() ? "" : "|").append(word);
-    }
+    const std::string shown = choices(words);
     const std::string name = names.substr(names.rfind(',') + 1);
     const CLI::callback_t read = [words = std::move(words), set = std::move(set),
                                   name](const CLI::results_t& given) {

@@ -66,7 +66,9 @@ OptionRef addFlag(CLI::App& app, const std::string& names, bool& field, const st
 template <class Enum>
 using WordsFor = std::vector<std::pair<std::string_view, Enum>>;
 
-/// Adds an option whose value is one of `words`; the help shows them as a|b|c. \param set  gets the index of the word
+/// Returns words as the help shows them: a|b|c.
+[[nodiscard]] std::string choices(std::span<const std::string_view> words);
+/// Adds an option whose value is one of `words`; the help shows their choices(). \param set  gets the index of the word
 OptionRef addWordOption(CLI::App& app, const std::string& names, std::vector<std::string_view> words,
                         std::function<void(std::size_t)> set, const std::string& help);
 template <class Field, class Enum>

@@ -48,18 +48,8 @@ expect_error 1 'output' "$relief" slice p.exr -o p.exr
 "$relief" bake "$bunny" -o engine.relief -q --budget 20kB
 "$relief" export engine.relief --engine c engine_c/deep
 cmp engine.relief engine_c/deep/engine.relief || die "the exported collider differs"
-cat >boxes.obj <<'O'
-o one
-v 0 0 0
-v 1 0 0
-v 0 1 0
-v 0 0 1
-f 1 3 2
-f 1 2 4
-f 1 4 3
-f 2 3 4
-O
-"$relief" bake boxes.obj --world city.1.0 -q --budget 20kB
+tetrahedron level.obj
+"$relief" bake level.obj --world city.1.0 -q --budget 20kB
 (cd city.1.0 && "$relief" export ./world.json --engine godot ../level -q)
 [ "$(find level -name 'city.1.0.*' | sort | tr '\n' ' ')" = 'level/city.1.0.bodies level/city.1.0.cells level/city.1.0.texels ' ] || die "$(ls level)"
 grep -q 'city\|NAME.bodies' level/RELIEF.md || die "the page of a level does not describe it"
