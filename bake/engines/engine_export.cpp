@@ -57,9 +57,9 @@ constexpr CopiedText kTexts[] = {
 
 /// JavaScript modules for three.js and PlayCanvas.
 constexpr std::string_view kModules[] = {
-    "runtime/web/engines/bytes.js",    "runtime/web/engines/index.d.ts", "runtime/web/engines/materials.js",
-    "runtime/web/engines/metadata.js", "runtime/web/engines/open.js",    "runtime/web/engines/patches.js",
-    "runtime/web/engines/xxh3.js",     "runtime/web/engines/zstd.js",
+    "runtime/web/engines/bytes.js",     "runtime/web/engines/index.d.ts",  "runtime/web/engines/index.js",
+    "runtime/web/engines/materials.js", "runtime/web/engines/metadata.js", "runtime/web/engines/open.js",
+    "runtime/web/engines/patches.js",   "runtime/web/engines/xxh3.js",     "runtime/web/engines/zstd.js",
 };
 
 /// Returns a text as a template literal of JavaScript.
@@ -106,16 +106,15 @@ void appendTexts(std::vector<EngineFile>& files, Engine engine, std::string_view
         return;
     }
     for (const std::string_view module : kModules) {
-        files.push_back(
-            {"relief" + std::string(module.substr(module.rfind('/'))), bytesOf(engineText(module))});
+        std::string text(engineText(module));
+        // Browsers import no shaders, which a bundler embeds in the npm package.
+        for (const std::string language : {"glsl", "wgsl"}) {
+            const std::string shader = "shaders/engines/relief." + language;
+            replaceAll(text, "export { default as " + language + " } from \"../../../" + shader + "\"",
+                       "export const " + language + " = " + literal(engineText(shader)));
+        }
+        files.push_back({"relief" + std::string(module.substr(module.rfind('/'))), bytesOf(text)});
     }
-    // The npm package bundles the texts of the shaders instead.
-    files.push_back(
-        {"relief/index.js",
-         bytesOf("// SPDX-License-Identifier: Apache-2.0\nexport { openCollider } from \"./open.js\";\n"
-                 "export { collide, distance } from \"./patches.js\";\nexport const glsl = " +
-                 literal(engineText("shaders/engines/relief.glsl")) +
-                 ";\nexport const wgsl = " + literal(engineText("shaders/engines/relief.wgsl")) + ";\n")});
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The entry relief-particles/collider: a collider for other engines, without WebAssembly. index.d.ts documents it.
-// esbuild bundles it into one file and embeds the shader texts: CMakeLists.txt beside this folder.
+// The npm package is one file of these modules with the texts of the shaders.
 export { openCollider } from "./open.js";
 export { collide, distance } from "./patches.js";
 export { default as glsl } from "../../../shaders/engines/relief.glsl";
