@@ -62,7 +62,7 @@ Expected expectedOf(const DepthMap& map, const TrueRay& ray, const Hit& hit, boo
     return {leaves ? behind : -behind, quantum + rounding};
 }
 
-class Votes {
+class VoteChecks {
   public:
     /// With planes, every point in a texel's column gets the distance to the shape's tangent plane at the hit of the
     /// centre ray. Projected texels vote the distance along that ray, with the shape's sign.
@@ -172,7 +172,7 @@ class Votes {
 };
 
 TEST(Analytic, SphereBoxAndTorusInEveryFormatCompareAndDecode) {
-    Votes votes;
+    VoteChecks votes;
     const glm::dvec3 center(0.3, -0.2, 1.1);
     const auto sphere = makeSphere(center, 0.8);
     const glm::dvec3 middle(-1.0, 0.5, 0.0);
@@ -197,7 +197,7 @@ TEST(Analytic, SphereBoxAndTorusInEveryFormatCompareAndDecode) {
 }
 
 TEST(Analytic, CubesInsideAConvexShapeBesideItAndInATorusHole) {
-    Votes votes;
+    VoteChecks votes;
     const auto sphere = makeSphere({0.2, 0.1, -0.2}, 0.75);
     const auto box = makeBox({0.15, 0.2, -0.25}, {0.4, 0.5, 0.3});
     const auto torus = makeTorus(1.0, 0.6);

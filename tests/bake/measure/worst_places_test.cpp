@@ -20,7 +20,7 @@ struct Measured {
     double unseen_percent = 0.0;
 };
 
-Measured measured(const TriangleMesh& mesh, const Collider& collider, std::uint32_t samples = 40'000) {
+Measured measuredPlaces(const TriangleMesh& mesh, const Collider& collider, std::uint32_t samples = 40'000) {
     const MeshQuery query = required(MeshQuery::build(mesh));
     const TruthSamples truth = sampleTruth(query, {.samples = samples});
     const Sights sights(collider.maps, query);
@@ -38,7 +38,7 @@ std::vector<std::string> threeViews(const std::string& size) {
 TEST(WorstPlaces, AreWhereAMapIsCorrupted) {
     const TriangleMesh sphere = makeIcosphere({1, 2, 3}, 1.0, 5);
     Collider collider = bakeSpecs(sphere, threeViews("64"));
-    const Measured sound = measured(sphere, collider);
+    const Measured sound = measuredPlaces(sphere, collider);
     // Clears a block of 10 × 10 texels in the map along y, where the sphere covers 62 texels. The map reports outside
     // there, at both ends.
     DepthMap& map = collider.maps[1];
@@ -48,7 +48,7 @@ TEST(WorstPlaces, AreWhereAMapIsCorrupted) {
             std::memcpy(texel.data(), map.texelAt(0, 0, 0).data(), texel.size());
         }
     }
-    const Measured found = measured(sphere, collider);
+    const Measured found = measuredPlaces(sphere, collider);
     ASSERT_GE(found.places.size(), 2U);
     // The map looks down: x is right and −z is up.
     const double texel = 2.0 / 62.0;
@@ -81,8 +81,8 @@ TEST(WorstPlaces, AreWhereAMapIsCorrupted) {
 TEST(WorstPlaces, CoarseMapsCauseTexelErrorsDeterministically) {
     const TriangleMesh torus = makeTorusMesh(1.0, 0.3, 128, 64);
     const Collider collider = bakeSpecs(torus, threeViews("12"));
-    const Measured found = measured(torus, collider);
-    const Measured single = onThreads(1, [&] { return measured(torus, collider); });
+    const Measured found = measuredPlaces(torus, collider);
+    const Measured single = onThreads(1, [&] { return measuredPlaces(torus, collider); });
     ASSERT_EQ(found.places.size(), 3U);
     ASSERT_EQ(single.places.size(), 3U);
     std::uint64_t before = ~std::uint64_t{0};
@@ -103,7 +103,7 @@ TEST(WorstPlaces, CoarseMapsCauseTexelErrorsDeterministically) {
 TEST(WorstPlaces, UnseenCavityIsFixedByACube) {
     const TriangleMesh mesh = joined({makeBoxMesh({0, 0, 0}, {1, 1, 1}), makeIcosphere({0.2, 0, 0}, 0.5, 4)});
     std::vector<std::string> specs = threeViews("32");
-    const Measured found = measured(mesh, bakeSpecs(mesh, specs));
+    const Measured found = measuredPlaces(mesh, bakeSpecs(mesh, specs));
     ASSERT_EQ(found.places.size(), 3U);
     for (const WorstPlace& place : found.places) {
         EXPECT_EQ(place.cause, WrongCause::kUnseen) << wordOf(place.cause);
@@ -112,7 +112,7 @@ TEST(WorstPlaces, UnseenCavityIsFixedByACube) {
         EXPECT_NEAR(double{glm::length(place.position - glm::vec3(0.2F, 0.0F, 0.0F))}, 0.5, 0.05);
     }
     specs.push_back(std::string("cube:compare=less,size=64,box=-0.4/-0.6/-0.6/0.8/0.6/0.6,decode=plane"));
-    const Measured cured = measured(mesh, bakeSpecs(mesh, specs));
+    const Measured cured = measuredPlaces(mesh, bakeSpecs(mesh, specs));
     const std::uint64_t left = cured.places.empty() ? 0 : cured.places[0].points;
     EXPECT_LT(left, found.places[0].points / 10);
     EXPECT_LT(cured.unseen_percent, 0.1);
@@ -124,8 +124,8 @@ TEST(WorstPlaces, PlateCausesSilhouetteErrors) {
     const TriangleMesh mesh =
         joined({makeBoxMesh({0, -0.5, 0}, {1, 0.5, 1}), makeBoxMesh({0, 0.07, 0}, {1, 0.05, 1})});
     const Measured found =
-        measured(mesh, bakeSpecs(mesh, {std::string("front-back:dir=-y,size=64") + kPlanes,
-                                        std::string("front-back:dir=-x,size=10") + kPlanes}));
+        measuredPlaces(mesh, bakeSpecs(mesh, {std::string("front-back:dir=-y,size=64") + kPlanes,
+                                              std::string("front-back:dir=-x,size=10") + kPlanes}));
     ASSERT_FALSE(found.places.empty());
     EXPECT_EQ(found.places[0].cause, WrongCause::kSilhouette) << wordOf(found.places[0].cause);
     EXPECT_EQ(found.places[0].map, 0);
@@ -138,7 +138,7 @@ TEST(WorstPlaces, OpenShellIsNamed) {
     const TriangleMesh sphere =
         without(makeIcosphere({0, 0, 0}, 1.0, 4), [](const glm::dvec3& p) { return p.y > 0.8; });
     const Measured open =
-        measured(sphere, bakeSpecs(sphere, {std::string("front-back:dir=-y,size=64") + kPlanes}));
+        measuredPlaces(sphere, bakeSpecs(sphere, {std::string("front-back:dir=-y,size=64") + kPlanes}));
     ASSERT_FALSE(open.places.empty());
     EXPECT_EQ(open.places[0].cause, WrongCause::kOpen) << wordOf(open.places[0].cause);
     EXPECT_EQ(open.places[0].map, 0);
@@ -148,8 +148,9 @@ TEST(Sights, WallParallelToTheViewIsUnseen) {
     // Four of the six faces are parallel to the only view.
     const TriangleMesh box = makeBoxMesh({0, 0, 0}, {1, 1, 1});
     for (const std::string& decode : {std::string(kPlanes), std::string()}) {
-        EXPECT_NEAR(measured(box, bakeSpecs(box, {"front-back:dir=-z,size=32" + decode})).unseen_percent,
-                    100.0 * 4.0 / 6.0, 1.0);
+        EXPECT_NEAR(
+            measuredPlaces(box, bakeSpecs(box, {"front-back:dir=-z,size=32" + decode})).unseen_percent,
+            100.0 * 4.0 / 6.0, 1.0);
     }
 }
 

@@ -5,11 +5,11 @@
 namespace relief::test {
 namespace {
 
-constexpr double kThickness = 0.1;
+constexpr double kNamedThickness = 0.1;
 using Named = std::vector<NamedShape>;
 
-ShapedMesh shaped(const TriangleMesh& mesh, const Named& named, ShapeAs as = ShapeAs::kAuto) {
-    return shapedBy(mesh, {as, kThickness, named});
+ShapedMesh shapedByName(const TriangleMesh& mesh, const Named& named, ShapeAs as = ShapeAs::kAuto) {
+    return shapedBy(mesh, {as, kNamedThickness, named});
 }
 
 bool inside(const ShapedMesh& shape, const glm::vec3& p) {
@@ -39,25 +39,26 @@ TriangleMesh makeTwoBoxes() {
 TEST(NamedShape, NamesClassifyParts) {
     const glm::vec3 tub(0.0F);
     const glm::vec3 block(4.0F, 0.0F, 0.0F);
-    const ShapedMesh found = shaped(makeTwoBoxes(), {});
+    const ShapedMesh found = shapedByName(makeTwoBoxes(), {});
     expectKinds(found.report, 1, 0, 1, 0);
     EXPECT_FALSE(inside(found, tub));
     EXPECT_TRUE(inside(found, block));
-    const ShapedMesh told = shaped(makeTwoBoxes(), {{"tub", ShapeAs::kSolid}, {"block", ShapeAs::kShell}});
+    const ShapedMesh told =
+        shapedByName(makeTwoBoxes(), {{"tub", ShapeAs::kSolid}, {"block", ShapeAs::kShell}});
     expectKinds(told.report, 0, 1, 1, 0);
     EXPECT_TRUE(inside(told, tub));
     EXPECT_FALSE(inside(told, block));
     EXPECT_TRUE(inside(told, {4.98F, 0.2F, 0.3F}));
     EXPECT_EQ(asWords(told.report), (std::vector<std::string>{"tub=solid", "block=shell"}));
     // Unnamed parts use the default.
-    const ShapedMesh rest = shaped(makeTwoBoxes(), {{"tub", ShapeAs::kAuto}}, ShapeAs::kShell);
+    const ShapedMesh rest = shapedByName(makeTwoBoxes(), {{"tub", ShapeAs::kAuto}}, ShapeAs::kShell);
     expectKinds(rest.report, 0, 0, 2, 0);
     EXPECT_EQ(asWords(rest.report), (std::vector<std::string>{"shell", "tub=auto"}));
 }
 
 TEST(NamedShape, NamedWallIsCutFromItsSurface) {
     // A glass lid leaves free space on both sides, so the box is empty.
-    const ShapedMesh glass = shaped(makeBoxWithLid(), {{"lid", ShapeAs::kShell}});
+    const ShapedMesh glass = shapedByName(makeBoxWithLid(), {{"lid", ShapeAs::kShell}});
     expectKinds(glass.report, 0, 0, 2, 0);
     EXPECT_FALSE(inside(glass, glm::vec3(0.0F)));
     for (const glm::vec3& wall : {glm::vec3(0.0F, 1.04F, 0.0F), {0.0F, 0.96F, 0.0F}, {0.2F, -0.96F, 0.3F}}) {
@@ -67,7 +68,7 @@ TEST(NamedShape, NamedWallIsCutFromItsSurface) {
     for (const auto& [named, as] :
          {std::pair{Named{{"lid", ShapeAs::kShell}}, ShapeAs::kSolid},
           {Named{{"lid", ShapeAs::kShell}, {"box", ShapeAs::kSolid}}, ShapeAs::kAuto}}) {
-        const ShapedMesh full = shaped(makeBoxWithLid(), named, as);
+        const ShapedMesh full = shapedByName(makeBoxWithLid(), named, as);
         expectKinds(full.report, 0, 1, 1, 0);
         EXPECT_TRUE(inside(full, glm::vec3(0.0F)));
         EXPECT_TRUE(inside(full, {0.0F, 1.04F, 0.0F}));
@@ -77,11 +78,11 @@ TEST(NamedShape, NamedWallIsCutFromItsSurface) {
 }
 
 TEST(NamedShape, ClosedSurfaceWithoutWallStaysWhole) {
-    const ShapedMesh plain = shaped(makeBoxWithLid(), {});
+    const ShapedMesh plain = shapedByName(makeBoxWithLid(), {});
     for (const Named& named : {Named{{"lid", ShapeAs::kSolid}}, Named{{"lid", ShapeAs::kTerrain}},
                                Named{{"lid", ShapeAs::kSolid}, {"box", ShapeAs::kSolid}},
                                Named{{"lid", ShapeAs::kAuto}, {"box", ShapeAs::kSolid}}}) {
-        const ShapedMesh shape = shaped(makeBoxWithLid(), named);
+        const ShapedMesh shape = shapedByName(makeBoxWithLid(), named);
         expectKinds(shape.report, 1, 0, 0, 0);
         EXPECT_EQ(shape.mesh->triangles, plain.mesh->triangles);
         EXPECT_EQ(shape.mesh->positions, plain.mesh->positions);
@@ -95,7 +96,7 @@ TEST(NamedShape, OpenPartsOfTwoKindsSplitAtSharedEdges) {
         const float x = floor.positions[t.x].x + floor.positions[t.y].x + floor.positions[t.z].x;
         floor.marks.push_back(x < 0.0F ? 1 : 2);
     }
-    const ShapedMesh shape = shaped(floor, {{"ground", ShapeAs::kTerrain}, {"slab", ShapeAs::kShell}});
+    const ShapedMesh shape = shapedByName(floor, {{"ground", ShapeAs::kTerrain}, {"slab", ShapeAs::kShell}});
     expectKinds(shape.report, 0, 0, 1, 1);
     EXPECT_TRUE(inside(shape, {-0.5F, -0.09F, 0.2F}));
     EXPECT_FALSE(inside(shape, {0.5F, -0.09F, 0.2F}));
@@ -111,21 +112,21 @@ TEST(NamedShape, ShellsDoNotAffectEnclosedParts) {
     TriangleMesh mesh = joined({box, ball});
     mesh.marks.assign(box.triangles.size(), 1);
     mesh.marks.resize(mesh.triangles.size(), 0);
-    const ShapedMesh shape = shaped(mesh, {{"room", ShapeAs::kShell}});
+    const ShapedMesh shape = shapedByName(mesh, {{"room", ShapeAs::kShell}});
     expectKinds(shape.report, 0, 1, 1, 0);
     EXPECT_TRUE(inside(shape, glm::vec3(0.0F)));
     EXPECT_FALSE(inside(shape, {1.5F, 0.1F, 0.2F}));
 }
 
 TEST(NamedShape, UnknownMarksAreIgnored) {
-    const ShapedMesh plain = shaped(makeBoxWithLid(), {});
+    const ShapedMesh plain = shapedByName(makeBoxWithLid(), {});
     TriangleMesh hostile = makeBoxWithLid();
     hostile.marks.assign(hostile.triangles.size(), 200);
-    const ShapedMesh beyond = shaped(hostile, {{"lid", ShapeAs::kShell}});
+    const ShapedMesh beyond = shapedByName(hostile, {{"lid", ShapeAs::kShell}});
     EXPECT_EQ(beyond.mesh->triangles, plain.mesh->triangles);
     EXPECT_EQ(beyond.report.named.at(0).triangles, 0U);
     hostile.marks.clear();
-    EXPECT_EQ(shaped(hostile, {{"lid", ShapeAs::kShell}}).mesh->triangles, plain.mesh->triangles);
+    EXPECT_EQ(shapedByName(hostile, {{"lid", ShapeAs::kShell}}).mesh->triangles, plain.mesh->triangles);
 }
 
 TEST(FinishMesh, MarksFollowTriangles) {

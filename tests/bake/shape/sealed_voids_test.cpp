@@ -14,12 +14,12 @@
 namespace relief::test {
 namespace {
 
-constexpr double kThickness = 0.06;
+constexpr double kWallThickness = 0.06;
 
 bool inPanel(const glm::dvec3& p) {
     for (int axis = 0; axis < 3; ++axis) {
         const glm::dvec2 across(p[(axis + 1) % 3], p[(axis + 2) % 3]);
-        if (std::abs(std::abs(p[axis]) - 0.5) < 0.5 * kThickness &&
+        if (std::abs(std::abs(p[axis]) - 0.5) < 0.5 * kWallThickness &&
             std::max(std::abs(across.x), std::abs(across.y)) < 1.5) {
             return true;
         }
@@ -30,18 +30,18 @@ bool inMiddle(const glm::dvec3& p) {
     return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) < 0.5;
 }
 
-TriangleMesh turned(const TriangleMesh& mesh, const glm::dmat3& turn) {
+TriangleMesh transformed(const TriangleMesh& mesh, const glm::dmat3& turn) {
     return moved(mesh, [&](const glm::dvec3& p) { return turn * p; });
 }
 
-ShapedMesh shaped(const TriangleMesh& mesh, ShapeOptions options = {}) {
-    options.thickness = kThickness;
+ShapedMesh walled(const TriangleMesh& mesh, ShapeOptions options = {}) {
+    options.thickness = kWallThickness;
     return shapedBy(mesh, options);
 }
 
 /// Whether the middle room is filled, tested at its centre.
 bool isFull(const TriangleMesh& mesh, const ShapeOptions& options = {}) {
-    const ShapedMesh shape = shaped(mesh, options);
+    const ShapedMesh shape = walled(mesh, options);
     const bool full = queryOf(shape.mesh).inside(glm::vec3(0.01F, 0.02F, 0.03F));
     EXPECT_EQ(shape.report.voids, full ? 1U : 0U);
     return full;
@@ -49,7 +49,7 @@ bool isFull(const TriangleMesh& mesh, const ShapeOptions& options = {}) {
 
 TEST(SealedVoids, AreInsideAndEndNoRay) {
     const glm::dmat3 turn = rotation(glm::dvec3(0.3, 1.0, 0.2), 33.0);
-    const ShapedMesh shape = shaped(turned(makeRooms(), turn));
+    const ShapedMesh shape = walled(transformed(makeRooms(), turn));
     EXPECT_EQ(shape.report.sheets, 6U);
     EXPECT_EQ(shape.report.voids, 1U);
     const MeshQuery query = queryOf(shape.mesh);
@@ -84,7 +84,7 @@ TEST(SealedVoids, AreInsideAndEndNoRay) {
 }
 
 TEST(SealedVoid, IsFilled) {
-    const MeshQuery query = queryOf(shaped(makeRooms()).mesh);
+    const MeshQuery query = queryOf(walled(makeRooms()).mesh);
     const DepthMap map = bakePatches(query, {.bytes = 200'000})->map;
     for (const glm::vec3& p : pointsIn(makeBoxMesh(glm::dvec3(0.0), glm::dvec3(0.4)).bounds, 20'000)) {
         ASSERT_LT(vote(map, p)->distance, 0.0F);

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kBudget = 160'000;
+constexpr std::uint64_t kLevelBudget = 160'000;
 
 /// A ball with bumps, with the area of a box of 4 × 4 × 0.5: 40 square units.
 TriangleMesh makeBumpyBall(double bumps) {
@@ -40,7 +40,7 @@ class LevelShares : public LevelBakes {
   protected:
     void SetUp() override {
         writeLevel(0.2);
-        request_.bake.budget = kBudget;
+        request_.bake.budget = kLevelBudget;
     }
 
     void writeLevel(double bumps) const {
@@ -64,10 +64,10 @@ TEST_F(LevelShares, BumpyBallGetsMoreThanABoxOfEqualArea) {
     std::map<std::string, std::uint64_t> shares = sharesOf(result);
     EXPECT_GT(shares["ball"], 2 * shares["box"]);
     EXPECT_GT(shares["ball"], shares["rock"]) << "the rock has lower bumps";
-    EXPECT_GT(shares["ball"] + shares["torus"] + shares["rock"], kBudget * 3 / 4)
+    EXPECT_GT(shares["ball"] + shares["torus"] + shares["rock"], kLevelBudget * 3 / 4)
         << "bytes that the box leaves";
-    EXPECT_LE(result.gpuBytes(), kBudget);
-    EXPECT_LE(shares["ball"] + shares["torus"] + shares["rock"] + shares["box"], kBudget);
+    EXPECT_LE(result.gpuBytes(), kLevelBudget);
+    EXPECT_LE(shares["ball"] + shares["torus"] + shares["rock"] + shares["box"], kLevelBudget);
     request_.bake.threads = 1;
     static_cast<void>(bake("one"));
     EXPECT_TRUE(filesOf("w") == filesOf("one"));

@@ -227,10 +227,10 @@ TEST(MeshTreeTest, MergesVerticesAndReportsOpenEdges) {
 class MeshStepGlTest : public testing::TestWithParam<StepPath> {};
 
 /// The particles' textures, one texel per particle.
-struct State {
+struct ParticleState {
     std::vector<float> position, velocity;
 
-    State(const GlTexture& positions, const GlTexture& velocities, std::size_t count) {
+    ParticleState(const GlTexture& positions, const GlTexture& velocities, std::size_t count) {
         const PassState restored;
         constexpr auto kWidth = static_cast<GLsizei>(ParticleSystem::kStateWidth);
         const auto rows = static_cast<GLsizei>(count) / kWidth;
@@ -266,9 +266,9 @@ TEST_P(MeshStepGlTest, ParticlesMoveAsAmongPatches) {
         exact.step();
         kept.step();
     }
-    const State ours(patches.particles->positions(), patches.particles->velocities(), kParticles);
-    const State theirs(exact.positions(), exact.velocities(), kParticles);
-    const State same(kept.positions(), kept.velocities(), kParticles);
+    const ParticleState ours(patches.particles->positions(), patches.particles->velocities(), kParticles);
+    const ParticleState theirs(exact.positions(), exact.velocities(), kParticles);
+    const ParticleState same(kept.positions(), kept.velocities(), kParticles);
     EXPECT_EQ(same.position, theirs.position);
     EXPECT_EQ(same.velocity, theirs.velocity);
     const auto deep = 0.01 * double{scene.side};

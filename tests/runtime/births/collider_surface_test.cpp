@@ -15,8 +15,6 @@
 namespace relief {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 ColliderSurface surfaceOf(const Collider& collider, std::uint32_t cells = kSurfaceCells) {
     auto made = colliderSurface(collider, cells);
     EXPECT_TRUE(made) << made.error().message;
@@ -65,12 +63,12 @@ TEST(ColliderSurface, MatchesABall) {
     for (const glm::vec3& p : surface.positions) {
         ASSERT_NEAR(glm::length(glm::dvec3(p) - glm::dvec3(1, 2, 3)), 0.5, 3e-3);
     }
-    EXPECT_NEAR(areaOf(surface) / kPi, 1.0, 5e-3);
+    EXPECT_NEAR(areaOf(surface) / std::numbers::pi, 1.0, 5e-3);
     ColliderSurface centred = surface;
     for (glm::vec3& p : centred.positions) {
         p -= glm::vec3(1, 2, 3);
     }
-    EXPECT_NEAR(volumeOf(centred), kPi / 6, 2e-3) << "oriented outwards";
+    EXPECT_NEAR(volumeOf(centred), std::numbers::pi / 6, 2e-3) << "oriented outwards";
 }
 
 TEST(ColliderSurface, KeepsTheEdgesOfABox) {

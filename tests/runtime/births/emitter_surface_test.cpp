@@ -21,7 +21,6 @@ namespace relief {
 namespace {
 
 constexpr int kCount = 50'000;
-constexpr double kPi = std::numbers::pi;
 
 /// A grid of `u` × `v` quads, whose vertex (i, j) is at place(i / u, j / v).
 struct Grid {
@@ -42,8 +41,8 @@ struct Grid {
     }
 };
 
-EmitterSurface surfaceOf(const std::vector<glm::uvec3>& triangles, const std::vector<glm::vec3>& positions,
-                         std::vector<float> weights = {}) {
+EmitterSurface emitterSurfaceOf(const std::vector<glm::uvec3>& triangles,
+                                const std::vector<glm::vec3>& positions, std::vector<float> weights = {}) {
     return required(EmitterSurface::create(triangles, std::move(weights), positions));
 }
 
@@ -61,7 +60,7 @@ TEST(EmitterSurface, LiesOnTheFacesOfABoxAndPointsOutwards) {
     const glm::vec3 half(0.5F, 2.0F, 0.1F);
     const AnimatedMesh box = movingBox(half);
     std::vector<std::size_t> counts(3);
-    for (const EmitterSurface::Place& place : drawn(surfaceOf(box.triangles, box.positions))) {
+    for (const EmitterSurface::Place& place : drawn(emitterSurfaceOf(box.triangles, box.positions))) {
         ASSERT_NEAR(glm::length(place.normal), 1.0F, 1e-6F);
         ASSERT_EQ(place.velocity, glm::vec3(0.0F));
         int axis = 0;
@@ -79,34 +78,35 @@ TEST(EmitterSurface, IsUniformOnABentPipe) {
     constexpr double kBend = 1.0;
     constexpr double kRadius = 0.5;
     const auto straight = [](double u, double v) {
-        return glm::dvec3(kBend + kRadius * std::cos(2 * kPi * v), 0.5 * kPi * kBend * u,
-                          kRadius * std::sin(2 * kPi * v));
+        return glm::dvec3(kBend + kRadius * std::cos(2 * std::numbers::pi * v),
+                          0.5 * std::numbers::pi * kBend * u, kRadius * std::sin(2 * std::numbers::pi * v));
     };
     const auto bent = [](double u, double v) {
-        const double out = kBend + kRadius * std::cos(2 * kPi * v);
-        return glm::dvec3(out * std::cos(0.5 * kPi * u), out * std::sin(0.5 * kPi * u),
-                          kRadius * std::sin(2 * kPi * v));
+        const double out = kBend + kRadius * std::cos(2 * std::numbers::pi * v);
+        return glm::dvec3(out * std::cos(0.5 * std::numbers::pi * u),
+                          out * std::sin(0.5 * std::numbers::pi * u),
+                          kRadius * std::sin(2 * std::numbers::pi * v));
     };
     const Grid rest(200, 400, straight);
     const Grid turned(200, 400, bent);
-    EmitterSurface surface = surfaceOf(rest.triangles, rest.positions);
+    EmitterSurface surface = emitterSurfaceOf(rest.triangles, rest.positions);
     surface.move(rest.positions, turned.positions, 0.0);
-    EXPECT_NEAR(surface.area(), 0.5 * kPi * kBend * 2 * kPi * kRadius, 1e-3);
+    EXPECT_NEAR(surface.area(), 0.5 * std::numbers::pi * kBend * 2 * std::numbers::pi * kRadius, 1e-3);
     std::vector<double> around;
     std::vector<double> along;
     for (const EmitterSurface::Place& place : drawn(surface, 100'000)) {
         const glm::dvec3 p(place.position);
         const double phi = std::atan2(p.z, std::hypot(p.x, p.y) - kBend);
-        around.push_back(phi < 0.0 ? phi + 2 * kPi : phi);
+        around.push_back(phi < 0.0 ? phi + 2 * std::numbers::pi : phi);
         along.push_back(std::atan2(p.y, p.x));
     }
-    EXPECT_LT(test::kolmogorov(along, [](double theta) { return theta / (0.5 * kPi); }),
+    EXPECT_LT(test::kolmogorov(along, [](double theta) { return theta / (0.5 * std::numbers::pi); }),
               test::kKolmogorovMax);
     const auto bent_fraction = [](double phi) {
-        return (kBend * phi + kRadius * std::sin(phi)) / (2 * kPi * kBend);
+        return (kBend * phi + kRadius * std::sin(phi)) / (2 * std::numbers::pi * kBend);
     };
     EXPECT_LT(test::kolmogorov(around, bent_fraction), test::kKolmogorovMax);
-    EXPECT_GT(test::kolmogorov(around, [](double phi) { return phi / (2 * kPi); }), 20.0)
+    EXPECT_GT(test::kolmogorov(around, [](double phi) { return phi / (2 * std::numbers::pi); }), 20.0)
         << "areas at rest would be detected";
 }
 
@@ -115,7 +115,7 @@ TEST(EmitterSurface, MovesLikeARotatingBody) {
     const AnimatedMesh box = movingBox({0.5F, 0.3F, 0.2F});
     const glm::vec3 axis = glm::normalize(glm::vec3(1.0F, 2.0F, -1.0F));
     constexpr double kTurn = 3.0;  // radians per second
-    EmitterSurface surface = surfaceOf(box.triangles, box.positions);
+    EmitterSurface surface = emitterSurfaceOf(box.triangles, box.positions);
     for (const double dt : {1.0 / 30, 1.0 / 60, 1.0 / 240}) {
         const auto turned = [&](double time) {
             std::vector<glm::vec3> out;
@@ -151,7 +151,7 @@ TEST(EmitterSurface, WeightsAreALinearDensity) {
         std::vector<float> weights(6, 0.0F);
         weights[corner] = 0.3F;
         std::vector<double> coordinates;
-        for (const EmitterSurface::Place& place : drawn(surfaceOf(two, corners, weights))) {
+        for (const EmitterSurface::Place& place : drawn(emitterSurfaceOf(two, corners, weights))) {
             const double x{place.position.x};
             const double y{place.position.y};
             ASSERT_LE(x + y, 1.000001) << "the other triangle has no weight";
@@ -163,7 +163,7 @@ TEST(EmitterSurface, WeightsAreALinearDensity) {
     // A triangle with three times the mean weight has three times the births.
     std::size_t near = 0;
     for (const EmitterSurface::Place& place :
-         drawn(surfaceOf(two, corners, {1.0F, 0.5F, 0.3F, 0.1F, 0.2F, 0.3F}))) {
+         drawn(emitterSurfaceOf(two, corners, {1.0F, 0.5F, 0.3F, 0.1F, 0.2F, 0.3F}))) {
         near += place.position.x < 2.0F ? 1 : 0;
     }
     EXPECT_NEAR(static_cast<double>(near) / kCount, 0.75, 5 * std::sqrt(0.1875 / kCount));
@@ -189,7 +189,7 @@ TEST(EmitterSurface, RejectsInvalidSurfaces) {
     EXPECT_TRUE(refused(one, {}, {{0, 0, 0}, {1, 0, 0}, {kInfinity, 1, 0}}));
     // Tiny and huge surfaces work as well.
     for (const float scale : {1e-18F, 1e15F}) {
-        EmitterSurface surface = surfaceOf(one, {corners[0], scale * corners[1], scale * corners[2]});
+        EmitterSurface surface = emitterSurfaceOf(one, {corners[0], scale * corners[1], scale * corners[2]});
         Pcg32 random(1);
         const EmitterSurface::Place place = surface.draw(random, 0.0F);
         EXPECT_EQ(place.normal, glm::vec3(0, 0, 1));
@@ -210,7 +210,7 @@ EmitterSettings settingsOf(EmitterSurface surface) {
 
 TEST(EmitterSurface, EmittersThrowAlongTheNormalAndAddTheSurfaceVelocity) {
     const AnimatedMesh box = movingBox({0.5F, 0.3F, 0.2F});
-    Emitter emitter(settingsOf(surfaceOf(box.triangles, box.positions)), 1);
+    Emitter emitter(settingsOf(emitterSurfaceOf(box.triangles, box.positions)), 1);
     std::vector<glm::vec3> later = box.positions;
     for (glm::vec3& p : later) {
         p += glm::vec3(0.1F, 0.0F, 0.2F);
@@ -223,7 +223,7 @@ TEST(EmitterSurface, EmittersThrowAlongTheNormalAndAddTheSurfaceVelocity) {
     ASSERT_EQ(emitter.placeVelocities().size(), births.size());
     EmitterMotion motion;
     // Scaled and rotated like its body, whose own velocity is added.
-    const glm::quat quarter = glm::angleAxis(float(kPi) / 2, glm::vec3(0, 1, 0));
+    const glm::quat quarter = glm::angleAxis(float(std::numbers::pi) / 2, glm::vec3(0, 1, 0));
     motion.body = {{0.0, {{0, 0, 0}, quarter, 3.0F}}, {1.0, {{0, 5, 0}, quarter, 3.0F}}};
     motion.inherit = 0.5F;
     const std::vector<Birth> own = births;
@@ -243,7 +243,7 @@ TEST(EmitterSurface, NoAreaMeansNoBirths) {
     const AnimatedMesh box = movingBox({0.5F, 0.3F, 0.2F});
     EmitterSettings settings = settingsOf({});
     EXPECT_FALSE(Emitter::check(settings));
-    settings.surface = BirthSurfaceValue(surfaceOf(box.triangles, box.positions).clone());
+    settings.surface = BirthSurfaceValue(emitterSurfaceOf(box.triangles, box.positions).clone());
     ASSERT_TRUE(Emitter::check(settings));
     Emitter emitter(settings, 1);
     std::vector<Birth> births;

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -21,8 +22,6 @@
 
 namespace relief {
 namespace {
-
-constexpr double kPi = 3.14159265358979;
 
 struct Light {
     float sun;
@@ -95,7 +94,7 @@ double sunPastSphere(const glm::dvec3& p, const glm::dvec3& center, double radiu
     constexpr int kRays = 1000;
     for (int i = 0; i < kRays; ++i) {
         const double r = static_cast<double>(kSunWidth) * std::sqrt((i + 0.5) / kRays);
-        const double angle = 2.0 * kPi * 0.61803398875 * i;
+        const double angle = 2.0 * std::numbers::pi * 0.61803398875 * i;
         const glm::dvec3 d = glm::normalize(sun + r * (std::cos(angle) * a + std::sin(angle) * b));
         const glm::dvec3 to = center - p;
         const double along = glm::dot(to, d);

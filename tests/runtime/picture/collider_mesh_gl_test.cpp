@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <functional>
 #include <limits>
+#include <numbers>
 
 #include "runtime/bodies/world_textures.h"
 #include "runtime/gl/gl_functions.h"
@@ -18,9 +19,8 @@
 namespace relief {
 namespace {
 
-constexpr std::uint32_t kWidth = 96;
-constexpr std::uint32_t kHeight = 64;
-constexpr double kPi = 3.14159265358979;
+constexpr std::uint32_t kColumns = 96;
+constexpr std::uint32_t kRows = 64;
 constexpr float kRadius = 0.5F;
 constexpr float kDistance = 3.0F;
 
@@ -28,8 +28,8 @@ PictureMesh sphereMesh(std::uint32_t around, std::uint32_t rings) {
     PictureMesh mesh;
     for (std::uint32_t j = 0; j <= rings; ++j) {
         for (std::uint32_t i = 0; i < around; ++i) {
-            const double a = 2.0 * kPi * i / around;
-            const double b = kPi * j / rings;
+            const double a = 2.0 * std::numbers::pi * i / around;
+            const double b = std::numbers::pi * j / rings;
             mesh.positions.emplace_back(kRadius * std::sin(b) * std::cos(a), kRadius * std::cos(b),
                                         -kRadius * std::sin(b) * std::sin(a));
         }
@@ -91,7 +91,7 @@ class ColliderMeshGlTest : public GlTest {
     const Collider collider_ = analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, kRadius), 128);
     WorldTextures textures_ = required(WorldTextures::create(collider_));
     ColliderMesh mesh_ = required(ColliderMesh::create(sphereMesh(128, 64)));
-    Frame frame_ = required(Frame::create(kWidth, kHeight));
+    Frame frame_ = required(Frame::create(kColumns, kRows));
     const RenderTarget target_ = frame_.target();
 };
 
@@ -100,7 +100,7 @@ TEST_P(ColliderMeshGlTest, SpheresLookTheSameFromMeshAndMaps) {
     const auto [maps_rgb, maps_depth] = draw(camera, {}, nullptr);
     const auto [mesh_rgb, mesh_depth] = draw(camera, {}, &mesh_);
     EXPECT_NE(maps_rgb, mesh_rgb) << "both pictures were drawn from the maps";
-    EXPECT_GT(maps_rgb[3 * (kWidth * (kHeight / 2 - 5) + kWidth / 2 - 5)], 60)
+    EXPECT_GT(maps_rgb[3 * (kColumns * (kRows / 2 - 5) + kColumns / 2 - 5)], 60)
         << "the side towards the sun is lit";
 
     // Outline: both cover the same pixels except for one pixel of the target along the circle. Depth: facets are off by

@@ -15,8 +15,8 @@
 namespace relief {
 namespace {
 
-constexpr std::uint32_t kWidth = 240;
-constexpr std::uint32_t kHeight = 180;
+constexpr std::uint32_t kSceneWidth = 240;
+constexpr std::uint32_t kSceneHeight = 180;
 constexpr std::array<std::uint8_t, 4> kGreen{90, 140, 60, 255};
 constexpr std::array<std::uint8_t, 4> kRed{170, 60, 50, 255};
 constexpr float kRoofHeight = 2.0F;
@@ -33,7 +33,7 @@ PictureMesh box(const glm::vec3& low, const glm::vec3& high, const std::array<st
     return mesh;
 }
 
-struct Rgb {
+struct ShadedPixel {
     float r, g, b;
     [[nodiscard]] float light() const { return (r + g + b) / 3.0F; }
     [[nodiscard]] bool white() const {
@@ -59,18 +59,18 @@ class MeshRendererGlTest : public GlTest {
     [[nodiscard]] std::vector<MeshPlace> meadow() const { return {{0, {}, false}, {1, {}, false}}; }
 
     /// The mean of 3 × 3 pixels around a point of the world.
-    [[nodiscard]] Rgb at(const glm::vec3& p) const {
-        const glm::vec4 clip =
-            camera_.projection(float{kWidth} / float{kHeight}) * camera_.view() * glm::vec4(p, 1.0F);
-        const auto x = static_cast<int>((0.5F + 0.5F * clip.x / clip.w) * float{kWidth});
-        const auto y = static_cast<int>((0.5F - 0.5F * clip.y / clip.w) * float{kHeight});
+    [[nodiscard]] ShadedPixel at(const glm::vec3& p) const {
+        const glm::vec4 clip = camera_.projection(float{kSceneWidth} / float{kSceneHeight}) * camera_.view() *
+                               glm::vec4(p, 1.0F);
+        const auto x = static_cast<int>((0.5F + 0.5F * clip.x / clip.w) * float{kSceneWidth});
+        const auto y = static_cast<int>((0.5F - 0.5F * clip.y / clip.w) * float{kSceneHeight});
         std::array<float, 3> sum{};
         for (int dy = -1; dy <= 1; ++dy) {
             for (int dx = -1; dx <= 1; ++dx) {
                 for (std::size_t k = 0; k < 3; ++k) {
-                    sum[k] += rgb_.at(
-                        3 * (static_cast<std::size_t>(y + dy) * kWidth + static_cast<std::size_t>(x + dx)) +
-                        k);
+                    sum[k] += rgb_.at(3 * (static_cast<std::size_t>(y + dy) * kSceneWidth +
+                                           static_cast<std::size_t>(x + dx)) +
+                                      k);
                 }
             }
         }
@@ -82,7 +82,7 @@ class MeshRendererGlTest : public GlTest {
     MeshRenderer renderer_ = required(MeshRenderer::create(std::vector<PictureMesh>{
         box({-8, -1, -8}, {8, 0, 8}, kGreen), box({-1, kRoofHeight, -1}, {1, kRoofHeight + 0.1F, 1}, kRed),
         box({-0.4F, 0.0F, -0.4F}, {0.4F, 0.5F, 0.4F}, kRed)}));
-    Frame frame_ = required(Frame::create(kWidth, kHeight));
+    Frame frame_ = required(Frame::create(kSceneWidth, kSceneHeight));
     std::vector<std::uint8_t> rgb_;
     const glm::vec3 open_{3.0F, 0.0F, 1.0F};
     const glm::vec3 below_{0.0F, 0.0F, 0.0F};  // below the roof's centre
@@ -91,7 +91,7 @@ class MeshRendererGlTest : public GlTest {
 
 TEST_P(MeshRendererGlTest, MeshesHaveTheirColorsAndTheSunCastsShadows) {
     draw({}, meadow());
-    const Rgb open = at(open_);
+    const ShadedPixel open = at(open_);
     EXPECT_GT(open.g, open.r + 10.0F);
     EXPECT_GT(open.g, open.b + 10.0F);
     EXPECT_GT(at(roof_).r, at(roof_).g + 30.0F);
@@ -108,7 +108,7 @@ TEST_P(MeshRendererGlTest, SnowLiesOnLevelSurfacesBelowTheSky) {
     draw({.snow = 1.0F}, meadow());
     EXPECT_TRUE(at(open_).white());
     EXPECT_TRUE(at(roof_).white());
-    const Rgb below = at(below_);
+    const ShadedPixel below = at(below_);
     EXPECT_GT(below.g, below.b + 10.0F);
     EXPECT_FALSE(below.white());
     draw({.snow = 1.0F}, {{0, {}, false}, {1, {}, true}});
@@ -129,8 +129,8 @@ TEST_P(MeshRendererGlTest, ColorsCanExcludeSnow) {
 
 TEST_P(MeshRendererGlTest, RainDarkensSurfaces) {
     draw({.sun = 0.0F}, meadow());
-    const Rgb dry = at(open_);
-    const Rgb dry_below = at(below_);
+    const ShadedPixel dry = at(open_);
+    const ShadedPixel dry_below = at(below_);
     draw({.sun = 0.0F, .wet = 1.0F}, meadow());
     EXPECT_LT(at(open_).light(), 0.95F * dry.light());
     EXPECT_NEAR(at(below_).light(), dry_below.light(), 2.0F);
@@ -139,7 +139,7 @@ TEST_P(MeshRendererGlTest, RainDarkensSurfaces) {
 TEST_P(MeshRendererGlTest, FogHasTheBackgroundColor) {
     MeshStyle style{.background = {0.2F, 0.3F, 0.9F}, .fog = 0.1F};
     draw(style, meadow());
-    const Rgb far = at(open_);
+    const ShadedPixel far = at(open_);
     EXPECT_GT(far.b, far.r + 80.0F);
     EXPECT_GT(far.b, far.g + 60.0F);
 }
@@ -181,7 +181,7 @@ TEST_P(MeshRendererGlTest, VerticesMove) {
     for (const float there : {0.0F, 3.0F}) {
         draw({}, {{0, {}, false}, {2, {}, false}});
         for (const float x : {0.0F, 3.0F}) {
-            const Rgb seen = at({x, 0.45F, 0.4F});
+            const ShadedPixel seen = at({x, 0.45F, 0.4F});
             EXPECT_EQ(seen.r > seen.g, x == there) << x;
         }
         ASSERT_TRUE(renderer_.setPositions(2, moved));

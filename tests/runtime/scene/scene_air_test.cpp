@@ -11,7 +11,7 @@
 namespace relief {
 namespace {
 
-const std::string kBox = "box_min = [0, 0, 0]\nbox_max = [1, 2, 3]\n";
+const std::string kBoundingBox = "box_min = [0, 0, 0]\nbox_max = [1, 2, 3]\n";
 
 TEST(SceneAir, KeysSetTheAir) {
     const Scene scene = sceneWith(
@@ -20,7 +20,7 @@ TEST(SceneAir, KeysSetTheAir) {
         "[[vortex]]\ncenter = [1, 0, 1]\naxis = [0, 0, -1e-20]\nstrength = 3\nradius = 0.25\nfalloff = 2\n"
         "[curl_noise]\namplitude = 0.5\nscale = 2\noctaves = 4\ndrift = 2000\nseed = 4294967295\n"
         "[flow]\nraw = \"f.raw\"\nsize = [512, 1, 8]\ncomponents = 2\noutside = \"edge\"\ngain = -2\n" +
-        kBox + "[forces]\nwind = [1, 0, 0]\nviscosity = 1.8e-5\n");
+        kBoundingBox + "[forces]\nwind = [1, 0, 0]\nviscosity = 1.8e-5\n");
     EXPECT_EQ(scene.air.attractors,
               (std::vector<Attractor>{{{1, 2, 3}, 4.0F, 0.5F}, {{0, 0, 0}, -1.0F, 1.0F, 0, 2.5F}}));
     EXPECT_EQ(scene.air.vortices,  // the axis has unit length
@@ -58,7 +58,7 @@ TEST(SceneAir, ReportListsTheActiveAir) {
         "[[attractor]]\nposition = [1, 2, 3]\nstrength = 4\nradius = 0.1\nreach = 2\n"
         "[[vortex]]\ncenter = [1, 0, 1]\nstrength = 3\nradius = 0.25\n"
         "[flow]\nraw = \"f.raw\"\nsize = [3, 2, 1]\n" +
-        kBox + "[curl_noise]\namplitude = 0.3\nscale = 2\n");
+        kBoundingBox + "[curl_noise]\namplitude = 0.3\nscale = 2\n");
     for (const char* part :
          {"\"viscosity\":0.1",
           "\"attractor\":[{\"position\":[1.0,2.0,3.0],\"strength\":4.0,\"radius\":0.1,\"falloff\":2},",

@@ -14,7 +14,7 @@
 namespace relief {
 namespace {
 
-const std::string kHead = "[[collider]]\nfile = \"box.relief\"\n";
+const std::string kOneBox = "[[collider]]\nfile = \"box.relief\"\n";
 
 void writeBox(const test::TemporaryFolder& folder) {
     Collider box = analytic::frontBackCollider(analytic::box({-0.4, -0.2, -0.3}, {0.4, 0.2, 0.3}), 16);
@@ -30,7 +30,7 @@ TEST(SceneMaterial, ResponsesAreAppliedByName) {
     const test::TemporaryFolder folder;
     writeBox(folder);
     const auto loaded = required(loadAll(
-        folder.write("scene.toml", kHead +
+        folder.write("scene.toml", kOneBox +
                                        "[[material]]\nname = \"stove\"\nfriction = 0.75\nlifetime_loss = 3\n"
                                        "[[material]]\nname = \"oak\"\nrestitution = 0.125\n"
                                        "[[spawn]]\non = \"collision\"\nmaterial = \"stove\"\n"),
@@ -50,10 +50,10 @@ TEST(SceneMaterial, UnknownNamesAreErrors) {
     for (const auto& [more, what] :
          {std::pair("[[material]]\nname = \"stave\"\n", "material[0].name = 'stave'"),
           {"[[spawn]]\non = \"collision\"\nmaterial = \"ice\"\n", "spawn[0].material = 'ice'"}}) {
-        expectErrorOf(loadAll(folder.write("scene.toml", kHead + more), {}), "scene.toml:3:1: ", what);
+        expectErrorOf(loadAll(folder.write("scene.toml", kOneBox + more), {}), "scene.toml:3:1: ", what);
         // Another scene that replaces this one during play.
-        const auto plays = loadAll(folder.write("plays.toml", kHead), {});
-        const auto changed = parseScene(kHead + more, "scene.toml");
+        const auto plays = loadAll(folder.write("plays.toml", kOneBox), {});
+        const auto changed = parseScene(kOneBox + more, "scene.toml");
         ASSERT_TRUE(plays && changed);
         EXPECT_TRUE(checkMaterials(plays->scene, *plays));
         EXPECT_FALSE(checkMaterials(*changed, *plays));

@@ -19,17 +19,18 @@
 namespace relief {
 namespace {
 
-const std::string kHead = "[[collider]]\nfile = \"tube.relief\"\n";
+const std::string kTubeCollider = "[[collider]]\nfile = \"tube.relief\"\n";
 
 TEST(ScenePlay, IsLoadedWithItsClip) {
     const std::string keys =
         "clip = \"bend\", start = 0.5, speed = -2, repeat = false, room = 1.5, resolution = 64";
-    EXPECT_EQ(goodScene(kHead + "play = { " + keys + " }\n").colliders.front().play,
+    EXPECT_EQ(goodScene(kTubeCollider + "play = { " + keys + " }\n").colliders.front().play,
               (ScenePlay{"bend", 0.5F, -2.0F, false, 1.5F, 64}));
     const test::TemporaryFolder folder;
     ASSERT_TRUE(saveCollider(folder.path() / "tube.relief", animatedContainer(bendingTube(12, 8))));
-    const std::string two = kHead + "position = [3, 0, 0]\nplay = { clip = \"bend\" }\n" + kHead +
-                            "play = { clip = \"grow\", start = 0.25, repeat = false }\n" + kHead;
+    const std::string two = kTubeCollider + "position = [3, 0, 0]\nplay = { clip = \"bend\" }\n" +
+                            kTubeCollider + "play = { clip = \"grow\", start = 0.25, repeat = false }\n" +
+                            kTubeCollider;
     const auto loaded = required(loadAll(folder.write("scene.toml", two), {}));
     ASSERT_TRUE(loaded.played[0] && loaded.played[1]);
     EXPECT_FALSE(loaded.played[2]) << "at rest";
@@ -48,7 +49,7 @@ TEST(ScenePlay, MissingClipsAndMeshesAreNamed) {
     Collider collider = animatedContainer(bendingTube(12, 8));
     ASSERT_TRUE(saveCollider(folder.path() / "tube.relief", collider));
     const auto expectRefused = [&](const std::string& words) {
-        expectErrorOf(loadAll(folder.write("scene.toml", kHead + "play = { clip = \"run\" }\n"), {}),
+        expectErrorOf(loadAll(folder.write("scene.toml", kTubeCollider + "play = { clip = \"run\" }\n"), {}),
                       "scene.toml:2:8", words);
     };
     expectRefused("'bend', 'grow'");
@@ -66,7 +67,7 @@ TEST(ScenePlay, MaterialsHaveColours) {
     ASSERT_TRUE(saveCollider(folder.path() / "tube.relief", animatedContainer(mesh)));
     const auto load = [&](const std::string& keys) {
         return loadAll(
-            folder.write("scene.toml", kHead + "play = {}\n" + keys +
+            folder.write("scene.toml", kTubeCollider + "play = {}\n" + keys +
                                            "[ground]\nenabled = false\n[render]\nmeshes = \".\"\n"),
             {});
     };
