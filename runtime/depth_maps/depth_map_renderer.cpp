@@ -112,6 +112,10 @@ void DepthMapRenderer::setUniforms(const GpuMesh& mesh, const DepthMap& map) con
 
 void DepthMapRenderer::render(GpuMesh& mesh, const DepthMap& map) const {
     const PassState state;
+    renderInPass(mesh, map);
+}
+
+void DepthMapRenderer::renderInPass(GpuMesh& mesh, const DepthMap& map) const {
     const DrawState draw_state;
     const GLuint planes = mesh.planes();
     useTexture(kPositionUnit, mesh.positions());
@@ -139,6 +143,9 @@ void DepthMapRenderer::render(GpuMesh& mesh, const DepthMap& map) const {
         glColorMask(!far, far, !far, far);
         mesh.draw();
     }
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_SCISSOR_TEST);
 }
 
 }  // namespace relief

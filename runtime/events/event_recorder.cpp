@@ -6,8 +6,8 @@
 #include <deque>
 #include <memory>
 #include <string>
-#include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/pass_state.h"
@@ -30,7 +30,11 @@ class EventRecorder : public StepFeature {
     [[nodiscard]] Result<void> check(const ShaderCollider* collider) const override;
     [[nodiscard]] std::span<const GlTexture> outputs() const override { return outputs_; }
     void replaced(std::uint32_t index, std::uint32_t id) override {
-        replaced_.push_back({steps_, index, id});
+        if (newest_.size() <= index) {
+            newest_.resize(std::size_t{index} + 1);
+        }
+        replaced_.push_back({steps_, id, newest_[index]});
+        newest_[index] = dropped_ + replaced_.size();
     }
     void beforeStep(double begin, double end, std::uint32_t extent, const ShaderCollider* collider) override;
 
@@ -38,6 +42,7 @@ class EventRecorder : public StepFeature {
     /// Replaces the lists for subsequent steps.
     void replaceList(EventList list) {
         list_ = std::move(list);
+        dropped_ += replaced_.size();
         replaced_.clear();
         extent_ = 0;
     }
@@ -51,12 +56,14 @@ class EventRecorder : public StepFeature {
 
     struct Replaced {        // an id that a birth replaced
         std::uint64_t step;  // the last step with this id
-        std::uint32_t index;
         std::uint32_t id;
+        std::uint64_t previous;  // as newest_: the id that this one had replaced
     };
     EventList list_;
     Outputs outputs_;
-    std::deque<Replaced> replaced_;  // since the oldest pending list
+    std::deque<Replaced> replaced_;      // since the oldest pending list
+    std::uint64_t dropped_ = 0;          // removed from the front of replaced_
+    std::vector<std::uint64_t> newest_;  // for each particle, 1 + the number of its newest entry; 0: none
     // The last step; steps_ counts from creation.
     std::uint64_t steps_ = 0;
     double begin_ = 0.0;
@@ -83,6 +90,7 @@ void EventRecorder::beforeStep(double begin, double end, std::uint32_t extent,
     const std::uint64_t oldest = list_.oldestNumber().value_or(steps_ + 1);
     while (!replaced_.empty() && replaced_.front().step < oldest) {
         replaced_.pop_front();
+        ++dropped_;
     }
     ++steps_;
     begin_ = begin;
@@ -109,16 +117,14 @@ Result<std::optional<StepEvents>> EventRecorder::wait(const ParticleSystem& part
 }
 
 StepEvents EventRecorder::withIds(const ParticleSystem& particles, EventList::Collected collected) const {
-    // For each index, the first id replaced after the event.
-    std::unordered_map<std::uint32_t, std::uint32_t> before;
-    for (const Replaced& one : replaced_) {
-        if (one.step >= collected.number) {
-            before.try_emplace(one.index, one.id);
-        }
-    }
     for (ParticleEvent& event : collected.events.events) {
-        const auto found = before.find(event.index);
-        event.id = found == before.end() ? particles.idOf(event.index) : found->second;
+        event.id = particles.idOf(event.index);
+        // Back to the first id that was replaced after the event.
+        std::uint64_t at = event.index < newest_.size() ? newest_[event.index] : 0;
+        while (at > dropped_ && replaced_[at - 1 - dropped_].step >= collected.number) {
+            event.id = replaced_[at - 1 - dropped_].id;
+            at = replaced_[at - 1 - dropped_].previous;
+        }
     }
     return std::move(collected.events);
 }

@@ -177,7 +177,7 @@ Result<void> LiveCollider::update(WorldTextures& textures, std::size_t body) {
     }
     const PassState state;
     for (std::size_t m = 0; m < slots.size(); ++m) {
-        renderer_.render(mesh_, frames_.maps[m]);
+        renderer_.renderInPass(mesh_, frames_.maps[m]);
         copyTexels(slots[m], frames_.maps[m]);
         copyMotion(slots[m], frames_.maps[m]);
     }

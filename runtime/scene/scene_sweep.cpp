@@ -162,17 +162,21 @@ void SceneSweep::add(const Scene& scene, std::span<const Emitter> emitters) {
 }
 
 void SceneSweep::add(const Scene& scene, std::span<const Birth> births) {
+    std::vector<ParticleType> types(scene.types.begin(), scene.types.end());
+    types.emplace_back();                                    // of births without a type
+    std::vector<std::optional<float>> speeds(types.size());  // of the fastest birth
     for (const Birth& birth : births) {
-        const ParticleType type =
-            birth.type < scene.types.size() ? ParticleType(scene.types[birth.type]) : ParticleType{};
-        const float speed = speedAtBodies(birth, type, scene, bounds_);
-        for (std::size_t i = 0; i < groups_.size(); ++i) {
-            if ((type.collides >> i & 1U) == 0) {
-                continue;
+        const std::size_t type = std::min<std::size_t>(birth.type, scene.types.size());
+        speeds[type] =
+            std::max(speeds[type].value_or(0.0F), speedAtBodies(birth, types[type], scene, bounds_));
+    }
+    for (std::size_t t = 0; t < types.size(); ++t) {
+        for (std::size_t i = 0; i < groups_.size() && speeds[t]; ++i) {
+            if ((types[t].collides >> i & 1U) != 0) {
+                float& fastest = groups_[i][types[t].radius];
+                fitted_ = fitted_ && *speeds[t] <= fastest;
+                fastest = std::max(fastest, *speeds[t]);
             }
-            float& fastest = groups_[i][type.radius];
-            fitted_ = fitted_ && speed <= fastest;
-            fastest = std::max(fastest, speed);
         }
     }
 }

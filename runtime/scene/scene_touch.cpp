@@ -47,10 +47,14 @@ std::vector<bool> TouchFilter::operator()(std::span<const Birth> births,
     std::vector<Body> near;
     std::copy_if(bodies_.begin(), bodies_.end(), std::back_inserter(near),
                  [&](const Body& body) { return body.box.meets(all); });
+    const bool all_rest = std::all_of(near.begin(), near.end(), [&](const Body& body) {
+        return loaded_->scene.colliders[body.index].keys.empty();
+    });
     std::vector<bool> touching;
     for (std::size_t i = 0; i < births.size(); ++i) {
         const double moment = time - static_cast<double>(births[i].age);
-        touching.push_back(touches(births[i].position, velocities[i], moment, near));
+        const bool too_slow = all_rest && glm::length(velocities[i]) < touching_.min_speed;
+        touching.push_back(!too_slow && touches(births[i].position, velocities[i], moment, near));
     }
     return touching;
 }
