@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-#include <iterator>
-#include <list>
-
 #include "bake/cli/command.h"
 #include "bake/cli/command_recipe.h"
-#include "bake/cli/option_details.h"
 #include "bake/cli/world_info.h"
 #include "bake/report/bake_report.h"
 #include "bake/report/collider_report.h"
@@ -52,25 +47,8 @@ std::string recipeDictionary() {
 GeneratedTexts bakeTexts() {
     const std::vector<FieldWords> bake = fieldsOf(BakeRequest());
     const std::vector<FieldWords> check = fieldsOf(CheckRequest());
-    std::vector<FieldWords> measurement = check;
-    std::erase_if(measurement, [&](const FieldWords& field) {
-        return std::ranges::find(bake, field.name, &FieldWords::name) != bake.end();
-    });
-    std::vector<FieldWords> options = bake;
-    std::ranges::move(fieldsOf(BakeOutputs()), std::back_inserter(options));
-    std::list<std::string> meanings;  // the fields refer to them
-    for (FieldWords& field : options) {
-        if (const std::string_view details = bakeDetails(field.name); !details.empty()) {
-            field.info.help =
-                meanings.emplace_back(std::string(field.info.help) + ". " + std::string(details));
-        }
-    }
     const std::string init = "bake/python/relief/__init__.py";
     return {
-        {"bake/cli/README.md", "bake-options", optionTable(options)},
-        {"bake/cli/README.md", "map-keys", mapKeyTable()},
-        {"bake/cli/README.md", "heights-keys", heightsKeyTable()},
-        {"bake/cli/README.md", "check-options", optionTable(measurement)},
         {init, "bake-arguments", pythonArguments(bake, "         ")},
         {init, "check-arguments", pythonArguments(check, "          ")},
         {.path = "recipe.dict", .part = {}, .text = recipeDictionary(), .built = true},

@@ -135,14 +135,6 @@ std::string heightsKeyLines() {
     return text;
 }
 
-std::string cell(std::string_view text) {
-    std::string out;
-    for (const char c : text) {
-        out += c == '|' ? "\\|" : std::string(1, c);
-    }
-    return out;
-}
-
 const std::vector<OptionGroup>& sharedGroups() {
     static const std::vector<OptionGroup> kGroups = {
         {"Limits",
@@ -159,29 +151,6 @@ std::vector<OptionGroup> withShared(std::vector<OptionGroup> groups) {
 }
 
 }  // namespace
-
-std::string_view bakeDetails(std::string_view name) {
-    const auto* const found = std::ranges::find(kBakeDetails, name, &OptionDetails::name);
-    return found == kBakeDetails.end() ? std::string_view() : found->text;
-}
-
-std::string mapKeyTable() {
-    std::string text = "| key | formats | value |\n| --- | --- | --- |\n";
-    for (const MapKey& key : kMapKeys) {
-        text.append("| `").append(key.key).append("` | ").append(key.formats).append(" | ");
-        text.append(key.text).append(" |\n");
-    }
-    return text;
-}
-
-std::string heightsKeyTable() {
-    std::string text = "| key | meaning | default |\n| --- | --- | --- |\n";
-    for (const FieldWords& field : fieldsOf(HeightsSpec())) {
-        text += "| `" + field.name + (field.choices.empty() ? "" : "=" + cell(valueText(field))) + "` | " +
-                std::string(field.info.help) + " | " + defaultText(field) + " |\n";
-    }
-    return text;
-}
 
 void addBakeDetails(CLI::App& verb) {
     for (const OptionDetails& option : kBakeDetails) {

@@ -290,23 +290,4 @@ std::string valueText(const FieldWords& field) {
     return !text.empty() ? text : isBytes(field.info) ? "BYTES" : field.info.unit == "%" ? "PCT" : "N";
 }
 
-std::string optionTable(const std::vector<FieldWords>& fields) {
-    std::string text = "| option | meaning | default |\n| --- | --- | --- |\n";
-    const auto cell = [](const std::string& words) {
-        std::string out;
-        for (const char c : words) {
-            if (c != ' ' || !out.ends_with(' ')) {
-                out += c == '|' ? "\\|" : c == '\n' ? "<br>" : std::string(1, c);
-            }
-        }
-        return out;
-    };
-    for (const FieldWords& field : fields) {
-        text += "| `" + optionName(field.name) +
-                (field.kind == FieldKind::kFlag ? "" : " " + cell(valueText(field))) + "` | " +
-                cell(std::string(field.info.help)) + " | " + cell(defaultText(field)) + " |\n";
-    }
-    return text;
-}
-
 }  // namespace relief

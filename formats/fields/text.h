@@ -63,7 +63,5 @@ struct FieldWords {
 [[nodiscard]] std::string defaultText(const FieldWords& field);
 /// Returns the placeholder of the value in --help: "BYTES", "fast|normal|best".
 [[nodiscard]] std::string valueText(const FieldWords& field);
-/// Returns a Markdown table of options: name, description, default.
-[[nodiscard]] std::string optionTable(const std::vector<FieldWords>& fields);
 
 }  // namespace relief
