@@ -52,7 +52,7 @@ if [ "${1:-}" = --page ]; then
     {
         echo '# Wrong points per byte'
         echo
-        echo 'Written by `scripts/accuracy.sh --page`. For each mesh and budget: the dense and sparse distance volumes of'
+        echo 'Written by `scripts/accuracy.sh --page`. For each mesh, at 0.25, 1 and 4 MB: the dense and sparse distance volumes of'
         echo '[README.md](README.md), the maps of the paper, and the patches that `relief bake` makes by default.'
         echo
         "$bin/relief-accuracy" "${meshes[@]}" "$@" | python3 scripts/accuracy_table.py

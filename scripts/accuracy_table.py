@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Formats relief-accuracy's JSON for scripts/accuracy.sh: accuracy_table.py [METHOD] <REPORT.json, with METHOD as ours
 
-Prints a row for each mesh and budget. Then prints, for each budget, ratios, geometric means over meshes, and whether the
-claims of bake/measure/README.md hold.
+Prints a row for each mesh, with the figures of all budgets in a cell. Then prints to standard error, for each budget,
+geometric means of ratios over meshes, and whether the claims of bake/measure/README.md hold.
 """
 import json
 import math
@@ -58,7 +58,7 @@ def measured_of(found):
 
 
 def label(contest):
-    return [contest["mesh"] + ("" if contest["closed"] else " (open)"), budget_text(contest["budget"])]
+    return contest["mesh"] + ("" if contest["closed"] else " (open)")
 
 
 def number(contest, method, group, name, digits):
@@ -68,31 +68,25 @@ def number(contest, method, group, name, digits):
 
 def sides(found):
     """The rows of wrong points. A heading that ends with '>' is right-aligned."""
-    methods = measured_of(found)
-    rivals = [method for method in methods if method in RIVALS and "ours" in methods]
     came = any("as_it_came" in contest.get("ours", {"accuracy": {}})["accuracy"] for contest in found)
-    rows = [["mesh", "budget>", *(f"{METHODS[method]} %>" for method in methods),
-             *(f"ours / {METHODS[rival]}>" for rival in rivals), "in %>", "out %>", *(["as it came %>"] if came else []), "bytes>",
-             "maps>", "ms>"]]
-    for contest in found:
-        ours = contest.get("ours")
-        ratios = [contest.get(f"ours/{rival}") for rival in rivals]
-        rows.append([*label(contest), *(number(contest, method, "near", "wrong_percent", 3) for method in methods),
-                     *("-" if ratio is None else f"{ratio:.3f}" for ratio in ratios),
-                     number(contest, "ours", "near", "false_inside_percent", 3),
-                     number(contest, "ours", "near", "false_outside_percent", 3),
-                     *([number(contest, "ours", "as_it_came", "wrong_percent", 3)] if came else []),
-                     str(ours["bytes"]) if ours else "-", str(ours["maps"]) if ours else "-",
-                     f"{1000.0 * ours['build_seconds']:.0f}" if ours and ours["build_seconds"] is not None else "-"])
+    columns = [(f"{METHODS[method]} %>", method, "near", "wrong_percent") for method in measured_of(found)]
+    columns += [("in %>", "ours", "near", "false_inside_percent"), ("out %>", "ours", "near", "false_outside_percent")]
+    columns += [("as it came %>", "ours", "as_it_came", "wrong_percent")] if came else []
+    rows = [["mesh", *(heading for heading, *_ in columns)]]
+    for mesh in dict.fromkeys(contest["mesh"] for contest in found):
+        of = [contest for contest in found if contest["mesh"] == mesh]
+        rows.append([label(of[0]), *(", ".join(number(contest, *column, 3) for contest in of) for _, *column in columns)])
     return rows
 
 
 def errors(found):
-    """The rows of distance and normal errors."""
+    """The rows of distance and normal errors, at the budget of TIMED_BUDGET."""
     methods = measured_of(found)
-    rows = [["mesh", "budget>", *(f"{METHODS[method]}>" for method in methods)]]
+    rows = [["mesh", *(f"{METHODS[method]}>" for method in methods)]]
     for contest in found:
-        rows.append([*label(contest), *(
+        if contest["budget"] != TIMED_BUDGET:
+            continue
+        rows.append([label(contest), *(
             f"{number(contest, method, 'distance_error', 'mean_percent', 4)} / "
             f"{number(contest, method, 'distance_error', 'p99_percent', 3)}; "
             f"{number(contest, method, 'normal_error_degrees', 'mean', 2)}° / "
@@ -151,11 +145,10 @@ def legend(meshes):
     return [f"%: misclassified points near the surface; in, out: false inside and false outside of ours. "
             f"{mesh['samples']} points, seed {mesh['seed']}, at a distance of {mesh['sigma_percent']:.1f} % of the longest side "
             "(standard deviation).",
-            "ms: one bake of ours, including the acceleration structure, plan, rays and fit. open: an edge has an odd number of "
-            "triangles.",
+            "open: an edge has an odd number of triangles.",
             *(["as it came: ours near sheets, against the surface of the file: points within half the thickness of it are inside. "
                "The truth of the other columns is the shells that the bake makes of sheets."] if came else []),
-            "Below: mean / 99th percentile of the error of the signed distance at those points, in % of the longest side, and of "
+            f"Below, at {budget_text(TIMED_BUDGET)}: mean / 99th percentile of the error of the signed distance at those points, in % of the longest side, and of "
             "the angle of the normal at the surface. Bricks store distances only near the surface: larger distances count as "
             "their band. Points that the maps classify as outside without a distance are not counted."]
 
@@ -168,8 +161,8 @@ def markdown(rows):
 def main():
     report = json.load(sys.stdin)
     found = contests(report, *sys.argv[1:])
-    print(markdown(sides(found)), "<br>\n".join(legend(report["meshes"])) + "\n", markdown(errors(found)),
-          f"```text\n{summary_text(found)}```", sep="\n")
+    print(markdown(sides(found)), "<br>\n".join(legend(report["meshes"])) + "\n", markdown(errors(found)), sep="\n", end="")
+    sys.stderr.write(summary_text(found))
 
 
 if __name__ == "__main__":
