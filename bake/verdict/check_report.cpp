@@ -16,9 +16,10 @@ std::string precisely(double percent) {
 
 std::string sideText(double inside_percent) {
     if (inside_percent >= 95.0) {
-        return "called inside";
+        return "classified as inside";
     }
-    return inside_percent <= 5.0 ? "called outside" : percentText(inside_percent) + " of them called inside";
+    return inside_percent <= 5.0 ? "classified as outside"
+                                 : percentText(inside_percent) + " of them classified as inside";
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ namespace relief {
 
 /// Returns "map 2 (front-back along 0/0/-1)", or "no map" for −1.
 [[nodiscard]] std::string mapWords(const Collider& collider, int map);
-/// Returns "0.41 m across: 4.5 % of the wrong points, 86 % of them called inside".
+/// Returns "0.41 m across: 4.5 % of the wrong points, 86 % of them classified as inside".
 [[nodiscard]] std::string placeText(const WorstPlace& place, const std::string& unit);
 /// Returns "below the texel size: map 2 (…) decides, whose texels are 0.02 wide".
 [[nodiscard]] std::string causeText(const WorstPlace& place, const Collider& collider);

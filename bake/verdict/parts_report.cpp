@@ -53,7 +53,9 @@ double middleExtent(const SurfacePart& part) {
 
 std::string partSideText(const PartAccuracy& accuracy) {
     const double inside = accuracy.wrong.false_inside / std::max(accuracy.wrong.total(), 1e-9);
-    return inside > 0.9 ? "called inside" : inside < 0.1 ? "called outside" : "called either";
+    return inside > 0.9   ? "classified as inside"
+           : inside < 0.1 ? "classified as outside"
+                          : "classified both ways";
 }
 
 /// Returns a text like "27 of 82 parts are lost".
@@ -299,12 +301,12 @@ void fields(FieldVisitor& visit, const IgnoredParts& ignored) {
     visit("parts", ignored.parts, {"Parts of the mesh"});
     visit("lost", ignored.lost,
           {"Parts that are not represented, but too small to lower the grade: more than 25 % of the points "
-           "near each are wrong, most of them called outside"});
+           "near each are wrong, most of them classified as outside"});
     visit("size", ignored.size, {"Longest side of the largest ignored part", "object units", kFromZero});
     visit("thick", ignored.thick,
           {"Parts that are thicker than in the mesh, but too small or too slightly off to lower the grade: "
            "more than 25 % of the "
-           "points near each are wrong, most of them called inside"});
+           "points near each are wrong, most of them classified as inside"});
     visit("unmeasured", ignored.unmeasured, {"Parts that were not measured: the smallest of too many"});
 }
 

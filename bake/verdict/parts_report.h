@@ -40,7 +40,7 @@ void fields(FieldVisitor& visit, const IgnoredParts& ignored);
 /// Returns the side of the finest texels at the centre of a part, or of patches in its bounds, object units; 0 without
 /// maps.
 [[nodiscard]] double partTexel(const SurfacePart& part, const Collider& collider);
-/// Returns "9 m long at (1, 2, 3): 48 % of the points near it are on the wrong side, called outside; …", then
+/// Returns "9 m long at (1, 2, 3): 48 % of the points near it are on the wrong side, classified as outside; …", then
 /// partCure().
 [[nodiscard]] std::string partText(const PartAccuracy& accuracy, const SurfaceParts& parts,
                                    const Collider& collider);
