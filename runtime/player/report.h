@@ -20,7 +20,7 @@ namespace relief {
     return path == StepPath::kCompute ? "compute" : "fragment";
 }
 
-/// `relief-sim --json`. Keys: README.md beside this file, "The report".
+/// `relief-sim --json`. fields() describes the keys.
 void fields(FieldVisitor& visit, const PlayerReport& report);
 
 }  // namespace relief

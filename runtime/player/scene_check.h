@@ -37,7 +37,7 @@ struct CheckReport {
 /// Returns the line "scene.toml is valid: …", with a newline.
 [[nodiscard]] std::string checkText(const CheckReport& report);
 
-// --- `relief-sim --check --json`. Keys: README.md beside this file, "Checking a scene".
+// --- `relief-sim --check --json`. fields() describes the keys.
 
 void fields(FieldVisitor& visit, const CheckedFile& file);
 
