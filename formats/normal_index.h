@@ -37,7 +37,7 @@ struct NormalIndex {
 [[nodiscard]] NormalIndex lowestAround(const glm::vec3& normal);
 
 /// Returns the index whose vector is nearest to `normal` by angle among the four that surround it in the square
-/// (Cigolle et al., JCGT 2014, "oct16 precise"). The error is at most 0.64°, against 0.94° for rounding.
+/// (Cigolle et al., JCGT 2014, "oct16 precise"). The error is at most 0.64°, against 0.96° for rounding.
 /// \param normal  any finite nonzero vector.
 [[nodiscard]] NormalIndex encodeNormal(const glm::vec3& normal);
 
