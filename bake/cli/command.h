@@ -68,8 +68,8 @@ struct ColliderFile {
 /// Errors: those of loadCollider, prefixed with the file.
 [[nodiscard]] Result<ColliderFile> readColliderFile(const std::string& file, const ContainerLimits& limits);
 
-/// Texts derived from the options of the verbs: the README's tables, Python's arguments, the fuzz dictionary of recipes, and
-/// the JSON Schemas of the reports.
+/// Texts derived from the options of the verbs: Python's arguments, the fuzz dictionary of recipes, and the JSON Schemas
+/// of the reports.
 [[nodiscard]] GeneratedTexts bakeTexts();
 
 }  // namespace relief

@@ -76,7 +76,7 @@ struct GroundAccuracy {
 };
 
 /// Returns the settings that ground was baked with. \param name  of the file, for messages.
-/// Errors: kUsage (not all of it was baked from height maps, or with the same settings).
+/// Errors: kUsage (a part was not baked from a height map, or with other settings than the rest).
 [[nodiscard]] Result<HeightsSpec> recordedHeights(const WorldField& field, const std::string& name);
 
 /// Measures ground. The result does not depend on the number of threads.

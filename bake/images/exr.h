@@ -30,7 +30,7 @@ struct ExrImage {
     /// Sets the camera. Camera space is that of OpenEXR and RenderMan: left-handed, x right, y up, z into the image,
     /// object units. NDC is (0, 0) and (1, 1) at the upper left and lower right corners of the image.
     /// \param x, y, z  rows that map object space to [0, 1] across the image, upwards, and from near to far.
-    /// \param scale     object units per unit of each.
+    /// \param scale     the extents of the image in object units: width, height and depth.
     void setOrthographicCamera(const glm::dvec4& x, const glm::dvec4& y, const glm::dvec4& z,
                                const glm::dvec3& scale);
 };

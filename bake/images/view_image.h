@@ -9,8 +9,8 @@
 //     normal.X/Y/Z   of the field at the first surface: unit length, object space, outwards
 //
 // Depths are +inf and the normal is zero if the ray hits no surface. A depth is negative if the surface lies before the
-// near face. The top row is the highest of the frame (axis_grid.h). If the inside extends to the end of the box, the
-// surface is there, and its normal points to the viewer.
+// near face. The top row is the highest of the frame (axis_grid.h). If the inside extends to the end of the box, the face
+// of the box counts as the surface, with a normal towards the viewer.
 #pragma once
 
 #include <cstdint>
@@ -32,8 +32,8 @@ inline constexpr std::uint32_t kViewSizeMax = 4096;
 /// a patch.
 ///
 /// A wall or a gap may be missed if its thickness along the ray is below 1/64 of its cell plus 1/8 of the finest texel
-/// (finestTexel; or 1/16384 of the ray). Between the two surfaces of a pair of patches, 1/4 of the cell is added to
-/// this limit. If the collider has several maps, the finest texel is added.
+/// (finestTexel()) or, if longer, 1/16384 of the ray. The limit is 1/4 of the cell higher between the two
+/// surfaces of a pair of patches, and a finest texel higher if the collider has several maps.
 ///
 /// The result does not depend on the number of threads.
 /// \param view  index of kDirectionNames. \param size  texels along the longer side; kViewSizeMin to kViewSizeMax.

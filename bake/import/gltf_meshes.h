@@ -73,7 +73,7 @@ class GltfMeshes {
     [[nodiscard]] MeshParts counts(std::size_t meshes) const;
 
   private:
-    /// Identifies vertex data: exporters write many accessors for the same view.
+    /// Identifies vertex data by its place, because exporters write many accessors for the same bytes.
     using Key = std::tuple<std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t, bool, std::uint64_t>;
     struct Vertices {
         std::vector<glm::vec3> positions;

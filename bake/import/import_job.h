@@ -42,7 +42,7 @@ struct ImportOptions {
 struct ImportLimits {
     std::uint64_t memory = 4'000'000'000;  ///< bytes for the importer, in addition to its code and the file
     std::uint32_t seconds = 60;            ///< limit on processor time and on wall time; at least 1
-    /// Maximum number of triangles, counting each instance; 1 to kTriangleMax. A bake needs about 120 bytes for each.
+    /// Maximum number of triangles, counting each instance; 1 to kTriangleMax. A bake takes about 160 bytes for each.
     std::uint64_t triangles = 20'000'000;
 };
 

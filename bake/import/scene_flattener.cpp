@@ -75,7 +75,7 @@ class NameMarks {
         const std::vector<std::string_view> known(names_.begin(), names_.end());
         text += didYouMean(*unmet, known);
         if (known.empty()) {
-            return fail(ErrorCode::kUsage, text + "; the file has no names, so leave it out");
+            return fail(ErrorCode::kUsage, text + "; the file has no names: use --as without one");
         }
         text += text.ends_with("?") ? " Its names: " : "; its names: ";
         for (std::size_t i = 0; i < std::min(known.size(), kListedMax); ++i) {
@@ -229,8 +229,9 @@ class Flattener {
             return tooManyTriangles(job_);
         }
         if (next == kLevelMeshesMax) {
-            return fail(ErrorCode::kLimit, "it has more than " + std::to_string(kLevelMeshesMax) +
-                                               " distinct meshes, counting each unequal scale; join some");
+            return fail(ErrorCode::kLimit,
+                        "it has more than " + std::to_string(kLevelMeshesMax) +
+                            " distinct meshes, counting a mesh once for each non-uniform scale; join some");
         }
         LevelMesh mesh{use.node->shown, mesh_.positions.size(), mesh_.triangles.size()};
         for (const std::uint32_t part : use.parts) {

@@ -14,7 +14,7 @@ namespace relief {
 [[nodiscard]] Result<TriangleMesh> flatten(ImportScene scene, const ImportJob& job);
 
 /// Like flatten(), but fills TriangleMesh::level_meshes and level_bodies. Rotation, uniform scale and translation
-/// become a body's pose. Shear, unequal scale and mirrors are applied to the mesh, which then counts as a separate
+/// become a body's pose. Shear, non-uniform scale and mirrors are applied to the mesh, which then counts as a separate
 /// mesh.
 /// Errors: also kLimit (more meshes or bodies than a world may have).
 [[nodiscard]] Result<TriangleMesh> flattenLevel(ImportScene scene, const ImportJob& job);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bakes patches for a budget of bytes, and finds the smallest budget that meets an error limit. The search increases
-// the budget until few enough points near the surface are misclassified, then bisects the last step.
+// the budget until few enough points near the surface are misclassified, then bisects the last interval.
 #pragma once
 
 #include <cstdint>
@@ -37,8 +37,8 @@ struct BudgetSearchOptions {
     std::uint64_t budget_min = 32'000;      ///< bytes; lowered to budget_max
     std::uint64_t budget_max = 64'000'000;  ///< bytes
     BakeOptions bake;                       ///< its maps are ignored
-    /// Fewer samples than `relief check` uses. The noise (a standard deviation of 0.04 percentage points at 1 %) is
-    /// below the resolution of another bisection.
+    /// Fewer samples than `relief check` uses. Their noise (a standard deviation of 0.04 percentage points at 1 %) is
+    /// smaller than the effect of another bisection.
     AccuracyOptions accuracy{.samples = 50'000};
     /// Called after each attempt.
     std::function<void(const BudgetTry&)> tried;

@@ -90,11 +90,13 @@ struct PartsAccuracy {
 };
 
 /// Measures points near each part's surface in the baked solid. Points are area-weighted, with an isotropic Gaussian
-/// offset, which is smaller for a thinner part that seems to be missing. Truth is the side of the whole mesh, except
-/// that a shell ends at its right_thickness. A part that fewer than 256 points classify as lost is measured again with
-/// 256.
-/// A lost part is minor if it is shorter than the detail, or if it exists and the surface is right at kNoticeableExcess
-/// of the detail. Missing minor parts still count as lost if minor parts count together and the detail is the default.
+/// offset. If most of a part seems to be missing, closer points are measured, too. Truth is the side of the whole mesh,
+/// except that a shell ends at its right_thickness. If fewer than 256 points classify a part as lost, it is measured
+/// again with 256.
+///
+/// A lost part is minor if it is shorter than the detail. It is also minor if it is not missing, and points at
+/// kNoticeableExcess of the detail are on the right side. Exception: if PartsAccuracy::minor_counts is set and the detail
+/// is the default, missing minor parts are lost.
 /// The result does not depend on the number of threads.
 /// \param query  of the solid of `parts`.
 [[nodiscard]] PartsAccuracy measureParts(const MeshQuery& query, const SurfaceParts& parts,

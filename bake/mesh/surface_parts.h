@@ -45,7 +45,7 @@ class SurfacePartsBuilder {
   public:
     /// Borrows the mesh.
     explicit SurfacePartsBuilder(const TriangleMesh& mesh);
-    /// Adds connected triangles; each label among them becomes a part.
+    /// Adds a connected piece. Its triangles of each label become a part.
     void add(const std::vector<std::uint32_t>& triangles, PartKind kind);
     /// Per triangle of the mesh; kNoLabel if it was not added.
     [[nodiscard]] const std::vector<std::uint32_t>& partOf() const { return part_of_; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the plane with the highest mean among the planes below all of a set of points. This is the supporting plane of
-// a texel (plane_fit.h) whose rays are parallel and all hit a surface.
+// Among the planes that lie below all points of a set, finds the plane with the highest mean over the points. This is
+// the supporting plane of a texel (plane_fit.h) whose rays are parallel and all hit a surface.
 //
 // With the points centred on the origin, it is the facet of their lower convex hull over the origin. The search starts
 // from three points whose triangle contains the origin. While some point is below their plane, the lowest such point

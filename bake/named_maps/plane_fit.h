@@ -40,16 +40,16 @@ inline constexpr std::size_t kFootprintRaysMax = 64;
 
 struct PlaneFitOptions {
     double u_max = 1.0;       ///< depth range: map depth 1, or kCubeDepthMax
-    double reach = 1.0;       ///< limit of the free space behind the plane that counts per ray, in u
+    double reach = 1.0;       ///< maximum free space behind the plane that a ray contributes, in u
     double span = 0.0;        ///< sum of both sides of a texel, object units
-    double pixel_cost = 0.0;  ///< a fit with less mean free space per ray, in u, is good enough
+    double pixel_cost = 0.0;  ///< mean free space per ray, in u, below which the fit stops
     bool cautious = false;    ///< the rays around the footprint constrain all planes, not only steep ones
     int refinements = 3;      ///< rounds of search among neighbouring normals; 0: none
     /// Moves planes inwards by this fraction of the spread of the sampled points around them, in exchange for more free
     /// space. Has no effect at steps, where the spread exceeds `span`/4.
     double inward_shift = 0.0;
-    /// Maximum distance of a point of the texel from a ray, in texel diagonals. A plane whose cosine is smaller drops
-    /// by more than the diagonal between two rays.
+    /// Maximum distance of a point of the texel from its nearest ray, in texel diagonals. A plane whose normal has a
+    /// smaller cosine with the rays drops by more than the diagonal between two rays.
     double rays_apart = 0.0;
     /// Rays start in free space. If false, a ray without a hit may be entirely in the solid.
     bool starts_free = true;
@@ -85,7 +85,8 @@ void forNeighbours(NormalIndex from, int step, const Visit& visit) {
 /// of a footprint without hits, which faces the viewer.
 /// \param centre  the texel's centre ray, from the viewer; the depth of the plane is measured along it.
 /// \param zero_depth  the point of that ray at map depth 0.
-/// \param deep  of the texel: planes that the rays do not justify must not cut deep solid. May be null.
+/// \param deep  points of the texel deep in the solid. Planes that the rays do not justify must not cut off these
+/// points. May be null.
 /// \return nullopt for an empty texel: no ray hits a surface, or the result is unknown and `starts_free` is false.
 [[nodiscard]] std::optional<FittedPlane> fitSupportingPlane(
     std::span<const FootprintRay> rays, const AroundRays& around, std::span<const FootprintRay> edge,

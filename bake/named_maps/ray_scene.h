@@ -59,13 +59,14 @@ class RayScene : public MeshQuery {
     bool closed_;
 };
 
-/// Whether a ray of this end that hits an inner side started in the solid, even though empty texels mean outside.
+/// Returns whether a ray of this end that first hits the inner side of a surface started in the solid, because the
+/// centre lies on the surface of a closed solid. Empty texels may mean outside nevertheless.
 [[nodiscard]] inline bool mayStartInside(const RayScene& scene, const View& view, RayEnd end) {
     return view.centre_on_surface && end == RayEnd::kNear && scene.closed();
 }
 
-/// Whether rays of this end may start in a closed solid, because the centre lies on the surface or the volume cuts the
-/// solid.
+/// Returns whether rays of this end may start in a closed solid, because the centre lies on the surface or the volume
+/// cuts the solid.
 [[nodiscard]] inline bool raysMayStartInside(const RayScene& scene, const View& view, RayEnd end) {
     return mayStartInside(scene, view, end) || (scene.closed() && !view.startsFree(end));
 }

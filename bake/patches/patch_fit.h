@@ -16,8 +16,8 @@ namespace relief {
 /// The best height on a line.
 struct HeightTarget {
     double height = 0.0;
-    /// Costs of errors above and below the height. One is zero if a line has no surface, so that any greater, or any
-    /// smaller, height is right. Both are zero if the line misses the cube.
+    /// Costs of errors above and below the height. If a line has no surface, one of them is zero, because all greater
+    /// or all smaller heights are right. Both are zero if the line misses the cube.
     double above = 0.0;
     double below = 0.0;
 };

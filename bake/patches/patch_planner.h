@@ -17,7 +17,7 @@
 namespace relief {
 
 struct PatchOptions {
-    /// From kPatchBytesMin to kPatchBytesMax. The limit of a tree by texel.
+    /// Size of the tree, kPatchBytesMin to kPatchBytesMax; its upper limit if `texel` is set.
     std::uint64_t bytes = 1'000'000;
     /// Object units. If above 0, it determines the tree instead of the bytes: a cell is split while the error of its
     /// patch exceeds a quarter of the texel and its side is longer than two texels.
@@ -33,7 +33,7 @@ struct PatchOptions {
     /// A leaf is split on trial if its errors exceed the worth of this many bytes. Lower values find better trees and
     /// take longer.
     double trial_bytes = 45.0;
-    /// Called periodically, from any thread but one at a time, with the fraction of the work done. Its exceptions end
+    /// Called periodically, from any thread but only one at a time, with the fraction of the work done. Its exceptions end
     /// the bake and propagate.
     std::function<void(double)> progress{};
 };

@@ -25,7 +25,8 @@ BakeRequest completed(BakeRequest request) {
 Result<BakeSettings> checkedSettings(const BakeRequest& request, const TriangleMesh* given) {
     BakeSettings settings = RELIEF_TRY(settingsOf(request));
     if (!request.heights.empty()) {
-        return fail(ErrorCode::kUsage, "--heights applies only to a height map read from a file; remove it");
+        return fail(ErrorCode::kUsage,
+                    "--heights applies only to a height map read from a file; remove --heights");
     }
     const std::string import = importOptionOf(request.import, request.import_limits);
     if (given != nullptr && !import.empty()) {

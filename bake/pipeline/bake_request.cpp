@@ -229,9 +229,10 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
         std::string(kMapFormatWords.back()) + "; repeatable";
     visit("map", request.map, {.help = kMapHelp, .value = "SPEC", .recorded = true});
     visit("decode", request.decode,
-          {.help = "Default for decode in --map; the paper uses projected", .fallback = "plane"});
-    visit("depth", request.depth,
-          {.help = "Default for depth in --map front-back; the paper uses half", .fallback = "unorm16"});
+          {.help = "Default of the key decode of --map; the paper uses projected", .fallback = "plane"});
+    visit(
+        "depth", request.depth,
+        {.help = "Default of the key depth of --map front-back; the paper uses half", .fallback = "unorm16"});
     visit("paper", request.paper,
           {.help = "Bake the maps of the original paper: front-back along -x, -y and -z, and a cube"});
     visit("resolution", request.resolution,
@@ -265,7 +266,7 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
            .fallback = "normal",
            .recorded = true});
     visit("prefer", request.prefer,
-          {.help = "Treat doubtful space as inside, as outside, or for the fewest errors",
+          {.help = "Classify doubtful space for the fewest errors, as inside, or as outside",
            .fallback = "neither",
            .recorded = true});
     visit("threads", request.threads,

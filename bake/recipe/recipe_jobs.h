@@ -34,7 +34,7 @@ struct RecipeJob {
     bool mesh_is_folder = false;         ///< the mesh is a folder whose mesh files form a level
     bool world = false;                  ///< `output` is a world's file, and the only output in its folder
     std::vector<std::string> arguments;  ///< of `relief bake`, files relative to the current folder; sorted
-    /// `arguments` with files relative to the recipe's folder, and kWorldOption: everything the output depends on.
+    /// Everything that the output depends on: `arguments`, with files relative to the recipe's folder, and kWorldOption.
     std::vector<std::string> options;
 };
 

@@ -11,9 +11,9 @@
 // clang-format off
 //     key      value               formats             meaning
 //     bytes    1MB, 250000         patches             maximum size of the tree
-//     texel    0.01                patches             texel size, object units, regardless of bytes; with `bytes`,
-//                                                      the finest size of at least this that fits. No other keys
-//                                                      are valid for patches.
+//     texel    0.01                patches             texel size, object units, for a tree of any size; with
+//                                                      `bytes`, the size grows until the tree fits. Patches have
+//                                                      no other keys.
 //     dir      +x -x … -z, a/b/c   all but cube        view direction; -y looks down
 //     up       +x -x … -z, a/b/c   all but cube        direction that points up in the image, projected
 //                                                      perpendicular to dir; default: the rule of view.h

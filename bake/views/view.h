@@ -61,8 +61,8 @@ struct View {
     Affine object_to_map;
     glm::vec3 object_per_map{1.0F};
     bool encloses = true;  ///< every vertex is in the volume
-    /// Whether the rays towards this surface start in free space, by RayEnd. The rays of kNear start at depth 0; those
-    /// of kFar start at the far end of the volume and run backwards.
+    /// By RayEnd: the rays towards this surface start in free space. Rays of kNear start at depth 0. Rays of kFar start
+    /// at the far end of the volume and run backwards.
     bool starts_free[2] = {true, true};
     /// For a cube that keeps the nearest surface: its centre lies on the surface, so that rays may start on either
     /// side. Set by bake().
@@ -76,8 +76,8 @@ struct View {
         return compare == Compare::kBoth || (compare == Compare::kLess) == (end == RayEnd::kNear);
     }
     [[nodiscard]] bool startsFree(RayEnd end) const { return starts_free[static_cast<std::size_t>(end)]; }
-    /// Whether texels without a surface mean "outside": a ray of one of the kept ends crossed the whole volume from
-    /// free space.
+    /// Returns whether texels without a surface mean "outside", because the rays of a stored surface start in free space
+    /// and cross the whole volume.
     [[nodiscard]] bool emptyIsOutside() const;
 
     /// Orthographic: the offsets from `origin` at which the rays of a column, and of a row, start.

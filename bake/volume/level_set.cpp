@@ -44,14 +44,14 @@ class Voxels {
             const double high = std::ceil(double{box.max[i]} / voxels.size_) + kMargin;
             if (!(std::abs(low) < kIndexMax && std::abs(high) < kIndexMax)) {
                 return fail(ErrorCode::kLimit,
-                            "it is too far from the origin for voxels this small; use fewer voxels");
+                            "it is too far from the origin for voxels this small; lower --voxels");
             }
             voxels.low_[i] = static_cast<int>(low);
             voxels.count_[i] = static_cast<int>(high - low) + 1;
             cells *= high - low + 1.0;
         }
         if (cells > kCellsMax) {
-            return fail(ErrorCode::kLimit, "the box around its inside has too many voxels; use fewer");
+            return fail(ErrorCode::kLimit, "the box around its inside has too many voxels; lower --voxels");
         }
         voxels.inside_.resize(static_cast<std::size_t>(cells));
         voxels.band_.resize(voxels.inside_.size());

@@ -34,7 +34,7 @@ struct ContainerNames {
 /// Returns the cache option that lists all tiles of a mesh; part of the entry of each tile.
 [[nodiscard]] std::string tilesWord(const std::vector<std::string>& tiles);
 
-/// Describes a container in the result of its collider.
+/// Copies the properties of a container into the result of its collider.
 void takeContainer(const Collider& from, std::span<const std::byte> bytes, WorldColliderResult& collider);
 
 /// Finds the colliders of a mesh in the folder of a world.

@@ -6,7 +6,7 @@
 
 namespace relief {
 
-/// Heap reserve of a bake, for `relief` and the programs benchmarked against it.
+/// Address space that a bake reserves, in `relief` and in the programs that benchmarks compare with it.
 inline constexpr std::size_t kBakeHeapBytes = std::size_t{128} << 20;
 
 /// Keeps freed blocks of up to 32 MB in the process and reserves address space for `bytes` more, with huge pages if

@@ -57,7 +57,7 @@ class TextScanner {
 /// quoting.
 class CsvReader {
   public:
-    /// fields() returns at most this many plus one: a hostile line could have millions.
+    /// Fields beyond this number and one more are dropped, because a hostile line could have millions.
     static constexpr std::size_t kFieldsMax = 8;
 
     /// \param text  borrowed; line() and fields() point into it.

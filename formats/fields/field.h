@@ -53,7 +53,7 @@ template <class View, class T, class... More>
     return text.empty() ? std::nullopt : std::optional(text);
 }
 
-/// An empty T to initialize the references of a view with, so that a schema can be derived from the view's type.
+/// An empty T. It initializes the references of a view, so that a schema can be derived from the type of the view.
 template <class T>
 inline const T kNone{};
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A brick distance volume as collider.
+// A distance volume of bricks, used as a collider.
 #pragma once
 
 #include "formats/bricks/brick_atlas.h"

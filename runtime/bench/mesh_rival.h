@@ -8,8 +8,8 @@
 namespace relief {
 
 /// Uploads a tree. The textures and defines of the rival also fit bench/mesh_query.frag.
-/// \param keeps  keep a bound of the distance with each particle, to skip queries or bound them. The particles move
-///               exactly as without.
+/// \param keeps  stores a bound of the distance with each particle, which avoids queries or limits their range. The
+///               particles move exactly as without the bound.
 /// Errors: kLimit (GL limits), kFailure.
 [[nodiscard]] Result<Rival> makeMeshRival(const MeshTree& tree, bool keeps = false);
 

@@ -7,8 +7,8 @@
 //
 // Between the two ends of a step, vertices move along straight lines at constant speed. For rotation at ω rad/s at
 // distance r from the axis, positions are off by at most r (ω dt)² / 8 and velocities by r ω² dt / 2. Areas are those
-// at the end of the step. On a stretching surface, the triangle of a birth therefore depends on the step length, for a
-// fraction of births as small as the stretch within a step.
+// at the end of the step. On a stretching surface, the step length therefore changes the triangles of some births. Their
+// fraction is as small as the stretch within a step.
 #pragma once
 
 #include <cstddef>

@@ -5,8 +5,8 @@
 //
 // The rasteriser only determines the triangle that a texel's ray hits. The plane is computed from the triangle itself
 // because rasterisers snap vertices to a grid of 1/256 pixel. Texels with an edge near their centre may get the
-// adjacent triangle, or the surface behind a silhouette. The plane is moved outwards to the next depth code, follows
-// the ray if steep, and faces the viewer if no plane can be stored. Silhouettes between texel centres are
+// adjacent triangle, or the surface behind a silhouette. The plane is rounded outwards to the next depth code. If it
+// is too steep to be stored, the texel stores a plane that faces the viewer. Silhouettes between texel centres are
 // missing; only the ray caster searches for them.
 #pragma once
 

@@ -55,8 +55,8 @@ Result<void> AnimatedCollider::check(const MeshPose& pose) const {
         return fail(ErrorCode::kUsage, "a pose of " + std::to_string(pose.joints.size()) + " joints and " +
                                            std::to_string(pose.weights.size()) +
                                            " morph weights was given to a mesh of " +
-                                           std::to_string(mesh_->joints.size()) + " and " +
-                                           std::to_string(mesh_->weights.size()));
+                                           std::to_string(mesh_->joints.size()) + " joints and " +
+                                           std::to_string(mesh_->weights.size()) + " morph weights");
     }
     if (!isFinite(pose)) {
         return fail(ErrorCode::kUsage, "the pose of an animated collider is not finite");

@@ -10,8 +10,8 @@
 //                 walker.update(textures, 0);
 //                 particles.step(dt);
 //
-// The maps cover the largest extent of any pose, not the whole path. The box has a constant size, and its centre is the
-// object's origin on the GPU. placed() accounts for this offset.
+// The maps cover the largest extent of any pose, not the whole path. The box has a constant size. On the GPU its centre
+// is the origin of object space; placed() accounts for this offset.
 #pragma once
 
 #include <cstdint>
@@ -27,8 +27,8 @@
 
 namespace relief {
 
-/// Returns liveFrames() around the origin for a mesh whose poses fit into a box of this size; space around the mesh is
-/// known to be free.
+/// Returns liveFrames() around the origin for a mesh whose poses fit into a box of this size. Space around the mesh
+/// counts as outside.
 /// \param room  object units, see poseExtent(). Errors: as liveFrames().
 [[nodiscard]] Result<Collider> animatedFrames(const glm::vec3& room, std::uint32_t resolution);
 
@@ -53,7 +53,7 @@ class AnimatedCollider {
     /// Moves the vertices; update() renders them. Call it at most once between two updates.
     /// Errors: those of check(); kUsage (called twice). The state is then unchanged.
     [[nodiscard]] Result<void> setPose(const MeshPose& pose);
-    /// Treats the last change as a jump: LiveCollider::settle(). Body poses are handled by WorldTextures.
+    /// Treats the last change of setPose() as a jump (LiveCollider::settle()). WorldTextures handles jumps of the body.
     void settle() { live_.settle(); }
 
     /// Returns the pose to pass to WorldTextures: that of the centre of the box. \param body  pose of the mesh's

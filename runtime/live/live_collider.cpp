@@ -166,8 +166,8 @@ void LiveCollider::settle() {
 Result<void> LiveCollider::update(WorldTextures& textures, std::size_t body) {
     const std::vector<LiveSlot> slots = textures.liveSlots(body);
     if (slots.size() != frames_.maps.size()) {
-        return fail(ErrorCode::kUsage,
-                    "body " + std::to_string(body) + " was not created as live with this collider's maps");
+        return fail(ErrorCode::kUsage, "body " + std::to_string(body) +
+                                           " was not created with `live` and the maps of this collider");
     }
     if (shown_ && !moved_ && !moving_) {
         return {};

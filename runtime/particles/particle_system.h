@@ -8,8 +8,8 @@
 //         birth     1 × RGBA32F                        time of birth, time of death, type, id mod 2^24
 //     (96 · texels after the clock has been set back for the first time; 16 · texels more for each feature output)
 //
-// Order of a step: births are written into the textures (birth_pass.h); one pass over the occupied rows determines
-// deaths, moves and collides (shaders/particles/step.glsl); the CPU frees the indices of dead particles.
+// Order of a step: births are written into the textures (birth_pass.h); one pass over the occupied rows removes dead
+// particles, moves the others and collides them (shaders/particles/step.glsl); the CPU frees the indices of the dead.
 //
 // Time: the CPU counts in double. The GPU uses floats relative to an epoch, which advances every epoch_seconds, so that
 // a float resolves half a millisecond even after days. A particle dies in the first step that ends at or after its time
@@ -37,7 +37,7 @@
 
 namespace relief {
 
-/// Velocity integration; both methods are first-order and differ only by rounding.
+/// Velocity integration. Both methods are of first order, and their results differ only by rounding.
 enum class Integrator : std::uint8_t {
     kEuler,  ///< semi-implicit: v' = v + dt a, P' = P + dt v'
     kVerlet,  ///< P' = P + dt/dt_before (P − P_before) + dt² a; the velocity is the displacement of the last step
@@ -137,8 +137,8 @@ class ParticleSystem {
     /// compilation). The features are then unchanged.
     [[nodiscard]] Result<void> replaceFeature(const StepFeature* old, std::shared_ptr<StepFeature> now);
 
-    /// Adds births for the start of the next step. A birth with an age is first advanced by it, under the forces and
-    /// without collisions. Free texels are used in ascending order.
+    /// Adds births for the start of the next step. A birth with an age first moves for this time, under the forces
+    /// and without collisions. Free texels are used in ascending order.
     /// \return the number of births added; the others are refused and counted.
     /// Errors: kUsage (a birth that is not isValid(), named by its index; none is added then).
     Result<std::size_t> spawn(std::span<const Birth> births);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws coloured meshes with sun and sky light, wetness and snow, for worlds whose field would take too long to trace.
-// Shadows use a depth map towards the sun, exposure to rain and snow one towards the zenith, and ambient occlusion the
-// depths of the picture.
+// Shadows come from a depth map towards the sun. Exposure to rain and snow comes from a depth map towards the zenith.
+// Ambient occlusion comes from the depths of the picture.
 //
 //     bytes on the GPU = 28 · vertices + 4 · corners + 16 · width · height + 144 MiB
 #pragma once

@@ -123,7 +123,7 @@ Result<std::vector<ParticleState>> Outputs::readParticles(const ParticleSystem& 
     }
     return fail(ErrorCode::kFailure, who +
                                          " are lost: their position or velocity overflows; lower "
-                                         "speeds, strengths, or radius and viscosity over mass, or time.dt");
+                                         "speeds, strengths, radius · viscosity / mass, or time.dt");
 }
 
 Result<void> Outputs::writeDump(std::span<const ParticleState> particles, const fs::path& path) const {

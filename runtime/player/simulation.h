@@ -30,8 +30,9 @@ struct SimulationOptions {
     Watchdog* watchdog = nullptr;     ///< may be null
     /// Called between steps before time 0; its exceptions propagate from create(). May be empty.
     std::function<void()> checkpoint = {};
-    /// Loads the colliders of a scene with a [stream]. Steps do not wait for it, so runs may differ, and the scene's
-    /// camera is not a point of interest. Null: reads the files of the world, and each step waits for what it needs.
+    /// Loads the colliders of a scene with a [stream]. Steps do not wait for the source, so runs may differ, and the
+    /// scene's camera is not a point of interest. Null: reads the files of the world; each step waits for its
+    /// colliders.
     std::unique_ptr<ColliderSource> source = nullptr;
 };
 
@@ -58,8 +59,8 @@ class Simulation {
     [[nodiscard]] Result<void> change(std::optional<std::vector<Emitter>> emitters);
 
     /// Passes the events of each step to `sink`, from the next step on and in order, a few steps late so that nothing
-    /// waits for the GPU. The tag is the number of the step, from 1. Events may include more than new hits: all that
-    /// [[spawn]] needs. A step has up to kEventsMax.
+    /// waits for the GPU. The tag is the number of the step, from 1. Besides new hits, the events include all that
+    /// [[spawn]] needs, up to kEventsMax per step.
     /// \param min_speed  slower hits may be left out.
     /// Errors: those of setEvents().
     using EventSink = std::function<Result<void>(const StepEvents&)>;
@@ -88,7 +89,7 @@ class Simulation {
     /// Returns the mesh of a collider that plays clips; null for other colliders.
     [[nodiscard]] const AnimatedMesh* animatedMesh(std::size_t collider) const;
     /// Uploads all wanted colliders of a streamed world that have arrived, without a limit of bytes, and requests the
-    /// others, for which it waits if its source does. Call it before a step. Errors: those of WorldStream::finish.
+    /// others. Waits for the others if the source waits. Call it before a step. Errors: those of WorldStream::finish.
     [[nodiscard]] Result<void> load();
     /// nullopt if no world is streamed.
     [[nodiscard]] std::optional<StreamCounts> streamCounts() const {
@@ -132,7 +133,7 @@ class Simulation {
     [[nodiscard]] WorldTextures& mutableTextures() { return stream_ ? stream_->textures() : *textures_; }
     /// Sets the poses of all clips at a time, in seconds, or none on error. posesNow() then follows.
     [[nodiscard]] Result<void> playClips(double time);
-    /// Moves the bodies; jumping bodies do not sweep.
+    /// Moves the bodies. A body that jumps does not push particles.
     void setPoses(double time);
     /// Returns the poses of all bodies. \param time  the time of the last playClips().
     [[nodiscard]] std::vector<Pose> posesNow(double time) const;

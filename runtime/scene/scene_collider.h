@@ -80,13 +80,13 @@ struct SceneCollider {
     std::filesystem::path path;  ///< resolved against the scene's folder
     std::string origin;  ///< position of that key, "scene.toml:3:8", for messages; empty without a scene file
     std::string node;    ///< node of a body of the world, which provides missing values; empty: none
-    /// For a further tile of a mesh: the number of the collider that names the node. It moves and collides like that
-    /// one.
+    /// For another tile of the node's mesh: the index of the collider that names the node. The tile moves and collides
+    /// like that collider.
     std::optional<std::size_t> tile_of{};
     ScenePose given_pose;
     float scale = 1.0F;
     float restitution = 1.0F;                   ///< multiplied with that of particles
-    float friction = 0.0F;                      ///< added to that of particles
+    float friction = 0.0F;                      ///< 1 − friction multiplies that of particles
     std::optional<SceneLive> live;              ///< deforms in waves: `path` is a mesh, not a container
     std::optional<ScenePlay> play;              ///< plays the animated mesh of the container
     std::uint32_t resolution = 256;             ///< texels along the longest side of its maps

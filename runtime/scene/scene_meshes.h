@@ -30,9 +30,9 @@ struct DrawnMeshes {
     std::optional<std::uint32_t> floor;  ///< mesh of the ground
 };
 
-/// Returns the files of render.meshes for the colliders of the scene, sorted, without reading them. A file has the
-/// storedMeshName of the mesh for a collider of a world, or the name of the container for others. The mesh of an
-/// animated collider is in the container itself.
+/// Returns the files of render.meshes for the colliders of the scene, sorted, without reading them. For a
+/// collider of a world, the file is named by storedMeshName() of its mesh; for another collider, by its container. The
+/// mesh of an animated collider is in the container itself.
 /// \param loaded  with render.meshes.
 /// Errors: kInvalidInput (no such file; a link out of the folder; a mesh without a name). Messages start with the place
 /// in the scene.

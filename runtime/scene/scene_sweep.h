@@ -16,8 +16,8 @@
 namespace relief {
 
 /// Computes the sweep from the longest step and the fastest birth so far: half the thickness of the thinnest collider
-/// that such a step could pass through, or the distance that the pieces of a sweep require, if larger; 0 if there is no
-/// such collider. Ignores deforming colliders.
+/// that such a step could pass through; 0 if there is no such collider. The sweep is longer if a step would otherwise
+/// need more pieces than a sweep can have. Ignores deforming colliders.
 class SceneSweep {
   public:
     SceneSweep() = default;

@@ -14,7 +14,7 @@ enum MapFlag : std::int32_t {
     kDecodesPlane = 8,
 };
 
-/// Number of first maps of a collider for which the evaluation of a step is unrolled.
+/// A step evaluates this many maps of a collider without a loop, and the others in a loop.
 inline constexpr int kUnrolledMaps = 8;
 
 /// Shader storage binding of the collider in a tour (collider_tour.glsl).

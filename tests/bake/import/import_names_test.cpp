@@ -94,7 +94,7 @@ TEST(ImportNames, GltfNamesAreNodesMeshesAndMaterials) {
                  {{"door-1"}, {1, 1, 1, 1, 1, 1}}});
     expectUnknown("c.gltf", text, {"door"}, "Its names: ");
     expectUnknown("s.stl", tetrahedronStl(), {"nothing"}, "its names: ");
-    expectUnknown("p.ply", tetrahedronPly(), {"nothing"}, "the file has no names, so leave it out");
+    expectUnknown("p.ply", tetrahedronPly(), {"nothing"}, "the file has no names: use --as without one");
 }
 
 TEST(ImportNames, HostileNamesAreSanitized) {
