@@ -25,7 +25,7 @@ from accuracy_table import RIVALS
 HERE = os.path.dirname(os.path.abspath(__file__))
 FURNITURE = '/usr/share/sweethome3d/furniture'
 ASSIMP = '/usr/share/assimp/models'
-CLOSEST = 20
+CLOSEST = 10
 LEAST = 0.01  # percent: replaces smaller fractions of wrong points in ratios
 PAPER = ['--map', 'front-back:dir=-z,size=512,depth=half,decode=projected', '--map', 'cube:size=512,decode=projected']
 PARTICLES, BLOCKS, REPEATS = 65536, 3, 3
