@@ -74,7 +74,7 @@ class ExrRows : public SampleRows {
             }
             if (count != 1) {
                 return fail(ErrorCode::kUnsupported,
-                            "it has several channels, or none of full resolution; save only the heights");
+                            "it needs exactly one channel, of full resolution; save only the heights");
             }
             const auto& window = file_->header().dataWindow();
             left_ = window.min.x;

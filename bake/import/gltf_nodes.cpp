@@ -56,8 +56,9 @@ Result<void> checkExtensions(const GltfValue& document) {
         const bool known = name.starts_with("KHR_materials_") || name.starts_with("KHR_xmp") ||
                            std::find(kKnown.begin(), kKnown.end(), name) != kKnown.end();
         if (!known) {
-            return fail(ErrorCode::kUnsupported, "it requires the extension '" + cleanUtf8(name, 100) +
-                                                     "', which is not supported; export it without it");
+            return fail(ErrorCode::kUnsupported,
+                        "it requires the extension '" + cleanUtf8(name, 100) +
+                            "', which is not supported; export the file without the extension");
         }
     }
     return {};

@@ -11,8 +11,8 @@
 
 namespace relief {
 
-/// Weight of a contact farther than a texel from any other material. Other contacts weigh 1, since texels are no
-/// sharper than that.
+/// Weight of a contact farther than a texel from any other material. Other contacts weigh 1, because texels do
+/// not resolve them.
 inline constexpr std::uint32_t kClearContact = 8;
 
 struct MaterialSample {

@@ -27,8 +27,8 @@ struct SurfacePart {
     double area = 0.0;             ///< of the same triangles
     std::uint64_t triangles = 0;   ///< number of them
     double thickness = 0.0;        ///< of the shell that represents a sheet, object units; else 0
-    /// The part of `thickness` that counts as correct: all if it was requested; of a default, at most a tenth of the
-    /// longest side.
+    /// The portion of `thickness` that counts as correct. A requested thickness counts completely, a default one up to
+    /// a tenth of the longest side.
     double right_thickness = 0.0;
 
     [[nodiscard]] double size() const { return static_cast<double>(bounds.longestSide()); }

@@ -29,10 +29,10 @@ Result<BudgetSearchResult> searchBudget(const BakeRequest& request, const BakeSe
     BudgetSearchOptions options;
     options.max_error_percent = double{*request.max_error};
     if (const double floats = wrongByFloats(truth.mesh()); floats > 2.0 * options.max_error_percent) {
-        return fail(ErrorCode::kDifference, truth.mesh().name + ": --max-error is " +
-                                                percentText(options.max_error_percent) +
-                                                ", but floats this far from the origin make about " +
-                                                percentText(floats) + " wrong; move it to the origin");
+        return fail(ErrorCode::kDifference,
+                    truth.mesh().name + ": --max-error is " + percentText(options.max_error_percent) +
+                        ", but floats this far from the origin make about " + percentText(floats) +
+                        " of the points wrong; move the mesh to the origin");
     }
     options.budget_max = request.budget.value_or(options.budget_max);
     options.bake = settings.bake;

@@ -40,14 +40,15 @@ struct NamedShape {
 
 struct ShapeOptions {
     /// kSolid: every part is a solid, with or without holes. kShell: every part is a sheet. kTerrain: every open part
-    /// is a height field, along its flattest axis unless another fits better.
+    /// is a height field, along the axis that kAuto finds for a terrain, otherwise along the axis of its largest
+    /// projection.
     ShapeAs as = ShapeAs::kAuto;
     double thickness = 0.0;  ///< of shells, object units, above 0; see defaultThickness()
     /// Overrides `as`. Names are unique, at most kAskedNamesMax. If a triangle has several, the last one applies.
     std::vector<NamedShape> named = {};
     /// `thickness` is a default that each sheet adapts to its size (partThickness).
     bool thickness_by_part = false;
-    /// The default comes from a texel length requested for all parts; no sheet becomes thicker.
+    /// The default is derived from --texel. Adapting it to a part then does not make the shell thicker.
     bool thickness_by_texel = false;
     VoidsAs voids = VoidsAs::kFull;
 

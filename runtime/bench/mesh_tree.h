@@ -24,7 +24,7 @@ struct MeshTree {
     static constexpr std::size_t kWidth = 4;
     /// Maximum triangles per leaf.
     static constexpr std::uint32_t kLeafMax = 4;
-    /// Four-bit code of a child that is a node. A leaf has its number of triangles, and an unused child has 0.
+    /// Four-bit code of a child that is a node. The code of a leaf is its number of triangles; 0: an unused child.
     static constexpr std::uint32_t kNodeCode = 15;
     /// Texels per node and per triangle.
     static constexpr std::size_t kTexels = 3;

@@ -13,7 +13,7 @@
 namespace relief {
 
 /// Starts recording events with the next step; nullopt stops it (the default), after which steps have no extra cost.
-/// Recompiles the step if this changes it; pending lists are lost.
+/// Recompiles the step if it did not record before, or no longer does. Pending lists are lost.
 /// Errors: kUsage (invalid options), kLimit, kUnsupported (too few draw buffers), kFailure.
 [[nodiscard]] Result<void> setEvents(ParticleSystem& particles, const std::optional<EventOptions>& options);
 /// Records several lists, each with its own selection; an event may be in more than one.

@@ -24,7 +24,7 @@ struct PlayedMesh {
 
     /// Returns the pose at a time of the scene, seconds.
     [[nodiscard]] MeshPose poseAt(double time) const;
-    /// Returns the number of the current run of the clip. Between runs, it jumps unless it is cyclic.
+    /// Returns the number of the current run of the clip. The pose jumps between runs unless the clip is cyclic.
     [[nodiscard]] double run(double time) const;
 };
 

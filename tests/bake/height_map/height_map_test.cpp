@@ -203,7 +203,7 @@ TEST_F(HeightMaps, FloatsAreMetresAndNanIsAHole) {
     rejects(path, "low=0,high=1", "a.exr': --heights low applies only to unsigned samples",
             ErrorCode::kUsage);
     image.channels.push_back({"Z", std::vector<float>(6, 0.0F)});
-    rejects(write("b.exr", *encodeExr(image)), "spacing=1", "several channels", ErrorCode::kUnsupported);
+    rejects(write("b.exr", *encodeExr(image)), "spacing=1", "exactly one channel", ErrorCode::kUnsupported);
     writeParts(folder_ / "parts.exr");
     rejects(folder_ / "parts.exr", "spacing=1", "parts.exr': it has 2 parts; save only the heights",
             ErrorCode::kUnsupported);
