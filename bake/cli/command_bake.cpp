@@ -106,7 +106,7 @@ Result<void> runMeshCommand(BakeCommand& command, FileGuard& files) {
         return fail(ErrorCode::kUsage, "MESH is required; name a mesh file, or see relief bake --help");
     }
     const Stopwatch total;
-    Progress progress({quotedPath(command.request.mesh), !command.common.quiet, command.request.time_limit});
+    Progress progress({quotedPath(command.request.mesh), !command.common.quiet, command.request.timeout});
     static_cast<void>(RELIEF_TRY(settingsOf(command.request)));
     RELIEF_TRY(preflightBake(command.request, command.output, command.outputs, files));
     command.request.repair.examine = command.outputs.json || !command.common.quiet;

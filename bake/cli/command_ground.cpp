@@ -130,7 +130,7 @@ Result<void> runGroundCommand(const std::string& folder, const WorldCall& call) 
     const Stopwatch total;
     static_cast<void>(RELIEF_TRY(settingsOf(call.request)));
     RELIEF_TRY(preflightGround(folder, call));
-    Progress progress({quotedPath(call.request.mesh), !call.common.quiet, call.request.time_limit});
+    Progress progress({quotedPath(call.request.mesh), !call.common.quiet, call.request.timeout});
     progress.begin("baking the ground");
     const GroundResult result = RELIEF_TRY(bakeGroundOf(
         call.request, {{}, folder, call.outputs.compress, [&](double share) { progress.set(share); }}));

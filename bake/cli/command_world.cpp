@@ -110,7 +110,7 @@ Result<void> runWorldCommand(const std::string& folder_name, const WorldCall& ca
     const fs::path folder = folder_name;
     RELIEF_TRY(checkWorldRequest(call.request));
     RELIEF_TRY(preflightWorld(folder, call));
-    Progress progress({quotedPath(call.request.mesh), !call.common.quiet, call.request.time_limit});
+    Progress progress({quotedPath(call.request.mesh), !call.common.quiet, call.request.timeout});
     WorldWatcher watcher;
     watcher.begin = [&](const char* stage) { progress.begin(stage); };
     watcher.ended = [&](std::size_t done, std::size_t all) {

@@ -146,7 +146,7 @@ std::string cell(std::string_view text) {
 const std::vector<OptionGroup>& sharedGroups() {
     static const std::vector<OptionGroup> kGroups = {
         {"Limits",
-         {"--threads", "--time-limit", "--import-memory", "--import-time", "--max-triangles",
+         {"--threads", "--timeout", "--max-import-memory", "--import-timeout", "--max-triangles",
           "--max-memory"}},
         {"Help and messages", {"--help", "--manual", "--quiet", "--verbose", "--warnings-only"}}};
     return kGroups;

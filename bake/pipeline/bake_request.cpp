@@ -48,8 +48,8 @@ Result<MapSource> sourceOf(const BakeRequest& request) {
 
 /// Returns an error if an option for meshes is set.
 std::string otherThanHeights(const BakeRequest& request) {
-    constexpr std::array<std::string_view, 5> kAllowed = {"heights", "threads", "time_limit", "import_memory",
-                                                          "import_time"};
+    constexpr std::array<std::string_view, 5> kAllowed = {"heights", "threads", "timeout",
+                                                          "max_import_memory", "import_timeout"};
     for (const FieldWords& field : changedFields(request)) {
         if (std::ranges::find(kAllowed, field.name) == kAllowed.end()) {
             return optionName(field.name) + " has no effect with --heights; remove it";
@@ -61,8 +61,8 @@ std::string otherThanHeights(const BakeRequest& request) {
 /// Returns an error if an option is set that --animated does not support.
 std::string otherThanAnimated(const BakeRequest& request) {
     constexpr std::array<std::string_view, 12> kAllowed = {
-        "animated", "clips", "resolution",    "quality",     "prefer",        "threads",
-        "unit",     "up",    "import_memory", "import_time", "max_triangles", "time_limit"};
+        "animated", "clips", "resolution",        "quality",        "prefer",        "threads",
+        "unit",     "up",    "max_import_memory", "import_timeout", "max_triangles", "timeout"};
     for (const FieldWords& field : changedFields(request)) {
         if (std::ranges::find(kAllowed, field.name) == kAllowed.end()) {
             return optionName(field.name) + " has no effect with --animated; remove one of them";
@@ -313,7 +313,7 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
                    "such as spacing=1,low=0,high=500",
            .value = "SPEC",
            .recorded = true});
-    visit("time_limit", request.time_limit,
+    visit("timeout", request.timeout,
           {.help = "Time limit of the whole bake, in seconds; beyond it, exit with code 6 and write nothing",
            .unit = "s",
            .range = {double{0.001F}, 1e7},

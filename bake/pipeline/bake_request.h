@@ -60,9 +60,9 @@ struct BakeRequest {
     std::optional<VoidsAs> voids;
     std::optional<MaterialsAs> materials;
     bool animated = false;
-    std::vector<std::string> clips;   ///< files with additional clips for `animated`
-    std::string heights;              ///< HeightsSpec if `mesh` is a height map; empty if it is a mesh
-    std::optional<float> time_limit;  ///< seconds; enforced by the caller, who can end the bake
+    std::vector<std::string> clips;  ///< files with additional clips for `animated`
+    std::string heights;             ///< HeightsSpec if `mesh` is a height map; empty if it is a mesh
+    std::optional<float> timeout;    ///< seconds; enforced by the caller, who can end the bake
     /// Object units: a box that the roots of patches contain in addition to the mesh. Not an option, and not recorded.
     std::optional<Bounds> roots_hold{};
 };

@@ -268,7 +268,7 @@ py::tuple bakeGround(const BakeRequest& request) {
         [request](const auto& checkpoint) -> Result<GroundResult> {
             return bakeGroundOf(request, {{}, {}, 0, [&](double) { checkpoint(); }});
         },
-        request.time_limit));
+        request.timeout));
     return py::make_tuple(std::make_shared<Collider>(need(readContainer(baked.container))),
                           textsOf(baked.warnings));
 }
@@ -284,7 +284,7 @@ py::tuple bake(BakeRequest request, std::optional<TriangleMesh> mesh) {
         need(files.reads(clips));
     }
     request.repair.examine = false;
-    const std::optional<float> seconds = request.time_limit;
+    const std::optional<float> seconds = request.timeout;
     const BakeResult baked = need(interruptible<BakeResult>(
         [request = std::move(request), files = std::move(files),
          mesh = std::move(mesh)](const auto& checkpoint) mutable -> Result<BakeResult> {

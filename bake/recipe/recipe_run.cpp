@@ -229,8 +229,8 @@ class Runner {
         const std::vector<std::string>& own = asset.job.arguments;
         arguments.insert(arguments.end(), own.begin(), own.end());
         if (std::ranges::none_of(own,
-                                 [](const std::string& word) { return word.starts_with("--time-limit"); })) {
-            arguments.emplace_back("--time-limit=3600");  // a hanging bake must not block the others
+                                 [](const std::string& word) { return word.starts_with("--timeout"); })) {
+            arguments.emplace_back("--timeout=3600");  // a hanging bake must not block the others
         }
         if (const Result<void> started = children_.startSelf(arguments, index); !started) {
             failAsset(asset, started.error());

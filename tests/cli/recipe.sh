@@ -87,10 +87,10 @@ for state in baked 'up to date'; do
 done
 
 # A bake that exceeds its time is stopped, and the exit code signals a limit.
-printf '%s\n' 'version = 1' '[[asset]]' "mesh = \"bunny.obj\"" 'output = "late.relief"' 'budget = "16MB"' 'time-limit = 0.2' >late.toml
+printf '%s\n' 'version = 1' '[[asset]]' "mesh = \"bunny.obj\"" 'output = "late.relief"' 'budget = "16MB"' 'timeout = 0.2' >late.toml
 cp "$bunny" bunny.obj
 expect 6 "$relief" bake --recipe late.toml
-grep -q 'late.relief: .*--time-limit' stderr || die "the limit is not named: $(cat stderr)"
+grep -q 'late.relief: .*--timeout' stderr || die "the limit is not named: $(cat stderr)"
 
 # Errors in a recipe have a position, and nothing is baked. Also options that conflict with recipes or require one.
 printf '%s\n' 'version = 1' '[[asset]]' 'mesh = "hill.obj"' 'output = "h.relief"' 'budgte = 1' >in/wrong.toml

@@ -49,7 +49,7 @@ while not (children := open(f'/proc/{run.pid}/task/{run.pid}/children').read().s
 child = int(children[0])
 while b'--json' not in (words := open(f'/proc/{child}/cmdline', 'rb').read()):  # until the child executes the bake
     pass
-assert b'--time-limit=3600' in words.split(b'\0'), words
+assert b'--timeout=3600' in words.split(b'\0'), words
 os.kill(child, signal.SIGSEGV)
 events = [json.loads(line) for line in run.stdout]
 failed = [e for e in events if e['event'] == 'failed']

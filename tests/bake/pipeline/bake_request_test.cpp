@@ -150,7 +150,7 @@ TEST(RecordedBake, IsOneShellCommand) {
     for (const char* options :
          {"--unit $(reboot)", "--prefer ;reboot", "`reboot` x", "--unit mm;reboot", "--up '+z",
           "--map cube:size=6|reboot", "--unit \"mm\"", "x > file", "--unit a\tb\\", "--unit ~/x",
-          "--unit \xff", "--time-limit 5", "--threads 7", "--from the=future", "--map cube:size=many",
+          "--unit \xff", "--timeout 5", "--threads 7", "--from the=future", "--map cube:size=many",
           "--repair magic", "--as wall", "--thickness -1", "--quality"}) {
         EXPECT_EQ(wordsOf(options), "") << options;
         EXPECT_FALSE(recorded(options).understood) << options;

@@ -43,9 +43,9 @@ WAYS = [
     (dict(PATCHES, as_=["sheet=terrain", "box=solid"]), ["--budget", "60kB", "--as", "sheet=terrain", "--as", "box=solid"]),
     (dict(holes="keep", resolution=32), ["--holes", "keep", "--resolution", "32"]),
     (dict(PATCHES, repair="wrap=0.1", strict=True), ["--budget", "60kB", "--repair", "wrap=0.1", "--strict"]),
-    (dict(PATCHES, unit="mm", up="+z", import_memory="1GB", import_time=9, max_triangles=100, time_limit=500),
-     ["--budget", "60kB", "--unit", "mm", "--up", "+z", "--import-memory", "1GB", "--import-time", "9", "--max-triangles", "100",
-      "--time-limit", "500"]),
+    (dict(PATCHES, unit="mm", up="+z", max_import_memory="1GB", import_timeout=9, max_triangles=100, timeout=500),
+     ["--budget", "60kB", "--unit", "mm", "--up", "+z", "--max-import-memory", "1GB", "--import-timeout", "9", "--max-triangles", "100",
+      "--timeout", "500"]),
     (dict(max_error="20%", budget="1MB"), ["--max-error", "20", "--budget", "1MB"]),
     (dict(paper=True, resolution=32), ["--paper", "--resolution", "32"]),
     (dict(maps="cube:size=32"), ["--map", "cube:size=32"]),
@@ -129,7 +129,7 @@ def test_arrays_match_their_file(mesh):
 
 
 CHECKS = [dict(samples=3000), dict(samples=3000, detail=0.5),
-          dict(samples=3000, unit="mm", up="+z", import_memory="1GB", import_time=9, max_triangles=100, hidden="keep")]
+          dict(samples=3000, unit="mm", up="+z", max_import_memory="1GB", import_timeout=9, max_triangles=100, hidden="keep")]
 
 
 @pytest.mark.parametrize("bake,arguments", [({}, arguments) for arguments in CHECKS] + [
@@ -190,9 +190,9 @@ def test_type_errors_name_the_argument(arguments):
         relief.bake(np.eye(3), [[0, 1, 2]], **arguments)
 
 
-def test_time_limit(mesh):
-    with pytest.raises(relief.LimitError, match="time_limit"):
-        relief.bake(mesh, budget="64MB", quality="best", time_limit=0.05)
+def test_timeout(mesh):
+    with pytest.raises(relief.LimitError, match="timeout"):
+        relief.bake(mesh, budget="64MB", quality="best", timeout=0.05)
     with pytest.raises(relief.UsageError, match="^unit applies only to a mesh read from a file"):
         relief.bake(np.eye(3), [[0, 1, 2]], unit="mm")
     with pytest.raises(relief.UsageError, match="NAME=KIND applies only to a mesh read from a file"):
