@@ -152,7 +152,7 @@ Result<void> runCheck(const CheckCommand& command, const std::string& file, File
     const bool passed = run.passes(command.max_error);
     if (!passed && run.original.accuracy.field.near.total() <= double{*command.max_error}) {
         return fail(ErrorCode::kDifference, *lostPartsWarning(run.part_accuracy, run.parts, run.collider) +
-                                                "; --detail LENGTH ignores shorter parts");
+                                                "; --min-part LENGTH ignores shorter parts");
     }
     if (!passed) {
         return fail(ErrorCode::kDifference,
@@ -230,10 +230,10 @@ void addCheck(CLI::App& app, Action& action) {
     addFields(verb, command->request.import_limits);
     addMemoryOption(verb, command->limits);
     addFlag(verb, "--json", command->json, "Print the report as JSON");
-    groupVerbOptions(verb,
-                     {{"Comparison with the mesh",
-                       {"--mesh", "--max-error", "--samples", "--seed", "--detail", "--heights", "--within"}},
-                      {"Output", {"--html", "--json"}}});
+    groupVerbOptions(
+        verb, {{"Comparison with the mesh",
+                {"--mesh", "--max-error", "--samples", "--seed", "--min-part", "--heights", "--within"}},
+               {"Output", {"--html", "--json"}}});
     onVerb(verb, [command, &action] {
         action = [command](FileGuard& files) -> Result<void> {
             if (command->files.size() > 1 && !command->request.mesh.empty()) {

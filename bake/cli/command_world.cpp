@@ -145,8 +145,8 @@ Result<void> writePage(const std::string& file, const WorldCheckCall& call, cons
 }  // namespace
 
 Result<void> runWorldCheck(const std::string& file, const WorldCheckCall& call) {
-    if (call.request.detail) {
-        return fail(ErrorCode::kUsage, "--detail has no effect on worlds; remove it");
+    if (call.request.min_part) {
+        return fail(ErrorCode::kUsage, "--min-part has no effect on worlds; remove it");
     }
     const std::string player = RELIEF_TRY(preflightPage(file, call.request.mesh, call.html, call.files));
     const WorldField field(RELIEF_TRY(loadWorld(file, call.limits)));

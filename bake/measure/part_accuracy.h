@@ -21,14 +21,14 @@ struct PartOptions {
     std::size_t parts_max = 10'000;      ///< only the largest parts are measured
     std::uint64_t seed = 1;
     double sigma_share = 0.005;  ///< as in AccuracyOptions, in units of the part's longest side
-    /// Longest side of the smallest part that counts, object units; nullopt: defaultDetail.
-    std::optional<double> detail = {};
-    double scale = 1.0;  ///< of the object in its world, for defaultDetail
+    /// Longest side of the smallest part that counts, object units; nullopt: defaultMinPart.
+    std::optional<double> min_part = {};
+    double scale = 1.0;  ///< of the object in its world, for defaultMinPart
 };
 
 /// Returns kNoticeableShare of the diagonal of the parts without outliers. If `unit` is metres, at most
 /// kNoticeableMetres in the world.
-[[nodiscard]] double defaultDetail(const SurfaceParts& parts, const std::string& unit, double scale = 1.0);
+[[nodiscard]] double defaultMinPart(const SurfaceParts& parts, const std::string& unit, double scale = 1.0);
 
 enum class PartVerdict : std::uint8_t {
     kHeld,    ///< at most kPartCoarse
@@ -74,7 +74,7 @@ struct IgnoredParts {
 };
 
 struct PartsAccuracy {
-    double detail = 0.0;  ///< object units
+    double min_part = 0.0;  ///< object units
     std::vector<PartAccuracy>
         parts;  ///< by state: lost, coarse, and so on; within a state by wrong points times size
     /// Nodes, then materials, with a name and several parts; least accurate first.
@@ -93,8 +93,8 @@ struct PartsAccuracy {
 /// offset, which is smaller for a thinner part that seems to be missing. Truth is the side of the whole mesh, except
 /// that a shell ends at its right_thickness. A part that fewer than 256 points classify as lost is measured again with
 /// 256.
-/// A lost part is minor if it is shorter than the detail, or if it exists and the surface is right at kNoticeableExcess
-/// of the detail. Missing minor parts still count as lost if minor parts count together and the detail is the default.
+/// A lost part is minor if it is shorter than `min_part`, or if it exists and the surface is right at kNoticeableExcess
+/// of `min_part`. Missing minor parts still count as lost if minor parts count together and `min_part` is the default.
 /// The result does not depend on the number of threads.
 /// \param query  of the solid of `parts`.
 [[nodiscard]] PartsAccuracy measureParts(const MeshQuery& query, const SurfaceParts& parts,

@@ -204,9 +204,9 @@ std::string partsText(const PartsAccuracy& accuracy, const SurfaceParts& parts, 
     }
     text += groupsText(accuracy, false, collider.unit) + groupsText(accuracy, true, collider.unit);
     if (accuracy.countOf(PartVerdict::kMinor) > 0) {
-        text += "Parts shorter than " + lengthText(accuracy.detail, collider.unit) +
-                ", or off by less than " + lengthText(kNoticeableExcess * accuracy.detail, collider.unit) +
-                ", do not lower the grade; --detail LENGTH changes that\n";
+        text += "Parts shorter than " + lengthText(accuracy.min_part, collider.unit) +
+                ", or off by less than " + lengthText(kNoticeableExcess * accuracy.min_part, collider.unit) +
+                ", do not lower the grade; --min-part LENGTH changes that\n";
     }
     return text;
 }
@@ -358,7 +358,7 @@ void fields(FieldVisitor& visit, const PartsReport& report) {
         "Parts with more that are too small to be noticed",
         "Parts not measured"};
     const PartsAccuracy& accuracy = report.accuracy;
-    visit("detail", accuracy.detail,
+    visit("min_part", accuracy.min_part,
           {"Parts shorter than this do not lower the grade", "object units", kFromZero});
     visit("count", accuracy.parts.size(), {"Parts of the mesh"});
     for (std::size_t i = 0; i < kPartVerdicts; ++i) {

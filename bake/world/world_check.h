@@ -19,7 +19,7 @@
 namespace relief {
 
 struct WorldCheckRequest {
-    /// `mesh` is the level; `samples` are distributed among its bodies; `detail` is unused.
+    /// `mesh` is the level; `samples` are distributed among its bodies; `min_part` is unused.
     CheckRequest check;
     std::optional<float> within;  ///< world units; nullopt: as `relief check` for a single collider
     bool pictures = false;        ///< adds slices through the worst places

@@ -475,7 +475,7 @@ def check(collider: Collider, mesh: Any, triangles: Any = None, *,
           # generated: check-arguments by scripts/generate.sh
           samples: Optional[Number] = None,
           seed: Optional[Number] = None,
-          detail: Optional[Number] = None,
+          min_part: Optional[Number] = None,
           unit: Optional[str] = None,
           up: Optional[str] = None,
           hidden: Optional[str] = None,

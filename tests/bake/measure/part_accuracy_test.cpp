@@ -63,15 +63,15 @@ TEST(PartAccuracy, MissingPillarIsLostDespiteItsSmallArea) {
     EXPECT_NEAR(worst.sigma, 0.005 * 9.0, 1e-6);
 
     PartOptions options;
-    options.detail = 9.5;
+    options.min_part = 9.5;
     const PartsAccuracy coarse = measured(shape, fieldOfBoxes({slab.bounds}), options);
-    EXPECT_EQ(coarse.countOf(PartVerdict::kLost), 0U) << "smaller than the detail";
+    EXPECT_EQ(coarse.countOf(PartVerdict::kLost), 0U) << "smaller than `min_part`";
     EXPECT_EQ(coarse.countOf(PartVerdict::kMinor), 1U);
     EXPECT_EQ(coarse.ignored.lost, 1U);
     EXPECT_EQ(coarse.ignored.size, 9.0);
-    EXPECT_NEAR(defaultDetail(shape.parts, ""), 0.01 * std::sqrt(2.0) * 5000.0, 0.01);
-    EXPECT_DOUBLE_EQ(defaultDetail(shape.parts, "m"), 0.1);
-    EXPECT_DOUBLE_EQ(defaultDetail(shape.parts, "m", 100.0), 0.001);
+    EXPECT_NEAR(defaultMinPart(shape.parts, ""), 0.01 * std::sqrt(2.0) * 5000.0, 0.01);
+    EXPECT_DOUBLE_EQ(defaultMinPart(shape.parts, "m"), 0.1);
+    EXPECT_DOUBLE_EQ(defaultMinPart(shape.parts, "m", 100.0), 0.001);
 
     // Filled as by a texel of 20 m.
     Bounds swollen = pillar.bounds;
@@ -126,7 +126,7 @@ TEST(PartAccuracy, ManySmallLostPartsMatter) {
         cubes.push_back(makeBoxMesh({i % 10, i / 10 % 10, i / 100}, glm::dvec3(0.04)));
     }
     const ShapedMesh shape = shaped(joined(cubes));
-    EXPECT_GT(defaultDetail(shape.parts, ""), 0.08);
+    EXPECT_GT(defaultMinPart(shape.parts, ""), 0.08);
     EXPECT_EQ(measured(shape, fieldOfBoxes({}), fewPoints()).countOf(PartVerdict::kLost), 200U);
     // A hundredth of the surface is missing, and half of the points near it are wrong.
     std::vector<Bounds> most;
@@ -136,11 +136,11 @@ TEST(PartAccuracy, ManySmallLostPartsMatter) {
     const PartsAccuracy few = measured(shape, fieldOfBoxes(most), fewPoints());
     EXPECT_EQ(few.countOf(PartVerdict::kLost), 0U);
     EXPECT_EQ(few.ignored.lost, 2U);
-    // An explicit detail overrides the default.
+    // An explicit `min_part` overrides the default.
     PartOptions options = fewPoints();
-    options.detail = 0.1;
+    options.min_part = 0.1;
     EXPECT_EQ(measured(shape, fieldOfBoxes({}), options).ignored.lost, 200U);
-    options.detail = 0.05;
+    options.min_part = 0.05;
     EXPECT_EQ(measured(shape, fieldOfBoxes(most), options).countOf(PartVerdict::kLost), 2U);
 }
 
@@ -244,7 +244,7 @@ TEST(PartAccuracy, ShellIsWrongBeyondItsThickness) {
     const Field baked = fieldOfBoxes({body.bounds, shell});
 
     PartOptions fine;
-    fine.detail = 0.01;
+    fine.min_part = 0.01;
     const PartsAccuracy asked = measured(shaped(mesh, {ShapeAs::kAuto, kThick, {}}), baked, fine);
     EXPECT_EQ(asked.countOf(PartVerdict::kHeld), 2U);
 

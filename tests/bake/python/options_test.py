@@ -128,7 +128,7 @@ def test_arrays_match_their_file(mesh):
     assert relief.check(collider, vertices, triangles, samples=2000).wrong_percent < 5
 
 
-CHECKS = [dict(samples=3000), dict(samples=3000, detail=0.5),
+CHECKS = [dict(samples=3000), dict(samples=3000, min_part=0.5),
           dict(samples=3000, unit="mm", up="+z", max_import_memory="1GB", import_timeout=9, max_triangles=100, hidden="keep")]
 
 
