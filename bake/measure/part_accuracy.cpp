@@ -158,7 +158,7 @@ class PartMeter {
         found.state = found.points < kExposed * points ? PartVerdict::kHidden
                       : wrong > kPartLost              ? PartVerdict::kLost
                       : wrong > kPartCoarse            ? PartVerdict::kCoarse
-                                                       : PartVerdict::kHeld;
+                                                       : PartVerdict::kKept;
         return judged;
     }
 
@@ -215,7 +215,7 @@ class Groups {
     std::map<std::pair<std::uint64_t, std::string>, Sum> sums_;
 };
 
-/// The order is lost, coarse, minor, held, then the others.
+/// The order is lost, coarse, minor, kept, then the others.
 int rankOf(PartVerdict state) {
     constexpr std::array<int, kPartVerdicts> kRanks = {3, 1, 0, 4, 2, 5};
     return kRanks[static_cast<std::size_t>(state)];
@@ -260,7 +260,7 @@ void IgnoredParts::add(const IgnoredParts& other, double scale) {
     parts += other.parts;
     lost += other.lost;
     size = std::max(size, scale * other.size);
-    thick += other.thick;
+    thickened += other.thickened;
     unmeasured += other.unmeasured;
 }
 
@@ -274,7 +274,7 @@ PartsAccuracy measureParts(const MeshQuery& query, const SurfaceParts& parts, co
     const auto size = [&](std::uint32_t i) { return parts.parts[i].size(); };
     std::ranges::stable_sort(order, std::greater<>(), size);
     for (const std::uint32_t i : order) {
-        all.parts[i] = {.part = i, .state = PartVerdict::kRest, .points = 0, .wrong = {}, .sigma = 0.0};
+        all.parts[i] = {.part = i, .state = PartVerdict::kUnmeasured, .points = 0, .wrong = {}, .sigma = 0.0};
     }
     order.resize(std::min(order.size(), options.parts_max));
     const auto large = static_cast<std::size_t>(
@@ -305,8 +305,8 @@ PartsAccuracy measureParts(const MeshQuery& query, const SurfaceParts& parts, co
         }
     }
     all.ignored.parts = all.parts.size();
-    all.ignored.thick = all.countOf(PartVerdict::kMinor) - all.ignored.lost;
-    all.ignored.unmeasured = all.countOf(PartVerdict::kRest);
+    all.ignored.thickened = all.countOf(PartVerdict::kMinor) - all.ignored.lost;
+    all.ignored.unmeasured = all.countOf(PartVerdict::kUnmeasured);
     nodes.addTo(all.groups);
     materials.addTo(all.groups);
     // Also weighted by size: a large part that is half wrong is worse than a small part that is all wrong.

@@ -31,21 +31,21 @@ struct PartOptions {
 [[nodiscard]] double defaultMinPart(const SurfaceParts& parts, const std::string& unit, double scale = 1.0);
 
 enum class PartVerdict : std::uint8_t {
-    kHeld,    ///< at most kPartCoarse
+    kKept,    ///< at most kPartCoarse
     kCoarse,  ///< at most kPartLost
     kLost,
-    kHidden,  ///< inside other parts, where nothing can collide
-    kMinor,   ///< lost, but too small to lower the grade
-    kRest,    ///< beyond parts_max; not measured
+    kHidden,      ///< inside other parts, where nothing can collide
+    kMinor,       ///< lost, but too small to lower the grade
+    kUnmeasured,  ///< beyond parts_max; not measured
 };
 template <>
-inline constexpr std::array<std::string_view, 6> kWordsOf<PartVerdict>{"held",   "coarse", "lost",
-                                                                       "hidden", "minor",  "rest"};
+inline constexpr std::array<std::string_view, 6> kWordsOf<PartVerdict>{"kept",   "coarse", "lost",
+                                                                       "hidden", "minor",  "unmeasured"};
 inline constexpr std::size_t kPartVerdicts = kWordsOf<PartVerdict>.size();
 
 struct PartAccuracy {
     std::uint32_t part = 0;  ///< index into SurfaceParts::parts
-    PartVerdict state = PartVerdict::kHeld;
+    PartVerdict state = PartVerdict::kKept;
     std::uint32_t points = 0;  ///< number near the part's exposed surface
     WrongShare wrong;          ///< percent of them
     double sigma = 0.0;        ///< standard deviation of their distance from the part, object units
@@ -66,8 +66,8 @@ struct IgnoredParts {
     std::uint64_t parts = 0;       ///< total
     std::uint64_t lost = 0;        ///< PartVerdict::kMinor, mostly classified as outside
     double size = 0.0;             ///< longest side of the largest lost part
-    std::uint64_t thick = 0;       ///< PartVerdict::kMinor, mostly classified as inside
-    std::uint64_t unmeasured = 0;  ///< PartVerdict::kRest
+    std::uint64_t thickened = 0;   ///< PartVerdict::kMinor, mostly classified as inside
+    std::uint64_t unmeasured = 0;  ///< PartVerdict::kUnmeasured
 
     /// Adds the parts of another mesh. \param scale  factor for its sizes.
     void add(const IgnoredParts& other, double scale);

@@ -49,7 +49,7 @@ TEST(PartAccuracy, MissingPillarIsLostDespiteItsSmallArea) {
     ASSERT_EQ(shape.parts.parts.size(), 2U);
 
     const PartsAccuracy right = measured(shape, fieldOfBoxes({slab.bounds, pillar.bounds}));
-    EXPECT_EQ(right.countOf(PartVerdict::kHeld), 2U);
+    EXPECT_EQ(right.countOf(PartVerdict::kKept), 2U);
     EXPECT_LE(right.parts[0].wrong.total(),
               0.3);  // floats near 900 m resolve a 700th of the points' distance
 
@@ -227,7 +227,7 @@ TEST(PartAccuracy, PartsInsideOthersAreHidden) {
     const TriangleMesh outer = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0));
     const TriangleMesh sheet = moved(makePlane(0.1F, 2), [](const glm::dvec3& p) { return 0.5 * p; });
     const PartsAccuracy found = measured(shaped(joined({outer, sheet})), fieldOfBoxes({outer.bounds}));
-    EXPECT_EQ(found.countOf(PartVerdict::kHeld), 1U);
+    EXPECT_EQ(found.countOf(PartVerdict::kKept), 1U);
     EXPECT_EQ(found.countOf(PartVerdict::kHidden), 1U);
 }
 
@@ -246,7 +246,7 @@ TEST(PartAccuracy, ShellIsWrongBeyondItsThickness) {
     PartOptions fine;
     fine.min_part = 0.01;
     const PartsAccuracy asked = measured(shaped(mesh, {ShapeAs::kAuto, kThick, {}}), baked, fine);
-    EXPECT_EQ(asked.countOf(PartVerdict::kHeld), 2U);
+    EXPECT_EQ(asked.countOf(PartVerdict::kKept), 2U);
 
     const ShapedMesh by_default = shaped(mesh, {ShapeAs::kAuto, kThick, {}, true});
     EXPECT_DOUBLE_EQ(by_default.parts.parts[1].thickness, kThick);
@@ -263,7 +263,7 @@ TEST(PartAccuracy, ShellIsWrongBeyondItsThickness) {
     EXPECT_GT(absent.parts.front().wrong.false_outside, 40.0);
     shell.min.y = 8.0F - 0.005F;
     shell.max.y = 8.0F + 0.005F;
-    EXPECT_EQ(measured(by_default, fieldOfBoxes({body.bounds, shell}), fine).countOf(PartVerdict::kHeld), 2U);
+    EXPECT_EQ(measured(by_default, fieldOfBoxes({body.bounds, shell}), fine).countOf(PartVerdict::kKept), 2U);
 }
 
 TEST(PartAccuracy, DefaultThicknessDependsOnThePart) {
@@ -317,7 +317,7 @@ TEST(PartAccuracy, IsDeterministic) {
     };
     const PartsAccuracy all = measure();
     const PartsAccuracy again = onThreads(1, measure);
-    EXPECT_EQ(all.countOf(PartVerdict::kRest), 10U);
+    EXPECT_EQ(all.countOf(PartVerdict::kUnmeasured), 10U);
     ASSERT_EQ(all.parts.size(), again.parts.size());
     for (std::size_t i = 0; i < all.parts.size(); ++i) {
         EXPECT_EQ(all.parts[i].part, again.parts[i].part);

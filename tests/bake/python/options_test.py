@@ -151,7 +151,7 @@ def test_checks_match_the_tool(bake, arguments, mesh, tmp_path):
     assert accuracy.wrong_percent == pytest.approx(said["verdict"]["wrong_percent"], abs=1e-12)
     assert (accuracy.grade, accuracy.lost_parts) == (said["verdict"]["grade"], said["verdict"]["lost_parts"])
     ignored = said["verdict"]["ignored_parts"]
-    assert accuracy.ignored_parts == ignored["lost"] + ignored["thick"]
+    assert accuracy.ignored_parts == ignored["lost"] + ignored["thickened"]
     assert len(accuracy.places) == len(said["worst_places"])
     for place, other in zip(accuracy.places, said["worst_places"]):
         assert place.position == pytest.approx(other["position"], abs=1e-6)
