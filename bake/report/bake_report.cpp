@@ -116,8 +116,8 @@ std::string shapeText(const ShapeReport& report, const std::string& unit) {
         return text;
     }
     if (report.thickness > 0.0) {
-        const bool alike = report.thickness_least == report.thickness;
-        text += "; sheets are " + (alike ? "" : shortNumber(report.thickness_least) + " to ") +
+        const bool alike = report.thickness_min == report.thickness;
+        text += "; sheets are " + (alike ? "" : shortNumber(report.thickness_min) + " to ") +
                 shortNumber(report.thickness) + " " + unitText(unit) + " thick";
     }
     if (report.coincident_triangles > 0) {
@@ -207,7 +207,7 @@ void fields(FieldVisitor& visit, const RepairReport& care) {
         visit_repair("mesh_health", care.repaired, {"Health of the repaired mesh"});
     };
     visit("repair", groupIf(!care.repair.empty(), repair), {"Results of --repair; null without it"});
-    visit("turned_triangles", care.turned, {"Triangles turned to face outwards"});
+    visit("flipped_triangles", care.turned, {"Triangles flipped to face outwards"});
 }
 
 void fields(FieldVisitor& visit, const InputFile& input) {

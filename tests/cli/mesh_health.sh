@@ -48,7 +48,7 @@ expect_error 3 'holed\.obj: .*7 boundary edges' "$relief" bake holed.obj -o stri
 
 # Reversed triangles do not change the maps.
 expect 0 "$relief" bake turned.obj -o turned.relief "${small[@]}" --json
-json stdout "d['turned_triangles'] == 86 and d['repair'] is None"
+json stdout "d['flipped_triangles'] == 86 and d['repair'] is None"
 "$relief" export ball.relief -o a -q
 "$relief" export turned.relief -o b -q
 diff -r a b || die "reversed triangles change the maps"
