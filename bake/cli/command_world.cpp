@@ -170,7 +170,7 @@ Result<void> runWorldCheck(const std::string& file, const WorldCheckCall& call) 
             const LostParts& first = accuracy->lost.front();
             return fail(ErrorCode::kDifference, "mesh '" + first.mesh + "': " + first.text);
         }
-        const bool floats = accuracy->places.front().cause == WorldCause::kFloats;  // at the worst body
+        const bool floats = accuracy->places.front().cause == WorldCause::kPrecision;  // at the worst body
         return fail(ErrorCode::kDifference,
                     shortNumber(accuracy->all.total()) +
                         " % of the points near the surface are on the wrong side, more than "

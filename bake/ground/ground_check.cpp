@@ -481,8 +481,8 @@ class GroundChecker {
             return;
         }
         const auto isClose = [&](const GroundWorstPlace& other) {
-            return std::max(std::abs(double{other.place.x} - double{probe.x}),
-                            std::abs(double{other.place.z} - double{probe.z})) < kApart * spacing();
+            return std::max(std::abs(double{other.position.x} - double{probe.x}),
+                            std::abs(double{other.position.z} - double{probe.z})) < kApart * spacing();
         };
         if (std::ranges::any_of(worst, [&](const GroundWorstPlace& other) {
                 return isClose(other) && badness(other) >= badness(place);

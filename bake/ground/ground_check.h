@@ -50,8 +50,8 @@ struct GroundNear {
 };
 
 struct GroundWorstPlace {
-    glm::vec3 place{0.0F};  ///< on the surface of the height map, world space
-    /// The body at that place; empty for a single collider, or if there is none.
+    glm::vec3 position{0.0F};  ///< on the surface of the height map, world space
+    /// The body at that position; empty for a single collider, or if there is none.
     std::string node;
     std::optional<double> error;  ///< along y, metres; nullopt: no surface within range
     double rise = 0.0;            ///< height range of the square, relative to its side

@@ -29,7 +29,7 @@ class LineWriter : public FieldVisitor {
 
   private:
     void add(std::string_view name, const MeshFault& fault) {
-        add(name, fault.what + " at " + shortest(fault.at));
+        add(name, fault.description + " at " + shortest(fault.position));
     }
     void add(std::string_view name, const std::string& value) {
         std::string words(name);

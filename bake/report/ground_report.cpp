@@ -104,7 +104,7 @@ std::string groundCheckText(const GroundAccuracy& accuracy, const std::string& n
     text += table(rows) + "\n";
     rows = {{"worst place", "tile", "error>", "rise of its square, in sides>"}};
     for (const GroundWorstPlace& place : accuracy.worst) {
-        rows.push_back({positionText(place.place), place.node.empty() ? "-" : place.node,
+        rows.push_back({positionText(place.position), place.node.empty() ? "-" : place.node,
                         place.error ? millimetres(*place.error) : "no surface", shortNumber(place.rise)});
     }
     return text + table(rows);
@@ -124,7 +124,7 @@ void fields(FieldVisitor& visit, const GroundNear& near) {
 }
 
 void fields(FieldVisitor& visit, const GroundWorstPlace& place) {
-    visit("place", place.place, {"On the surface of the height map", "[x, y, z]"});
+    visit("position", place.position, {"On the surface of the height map", "[x, y, z]"});
     visit("node", place.node, {"Tile at the place; empty for a single collider"});
     visit("error", place.error,
           {"Distance along y to the collider's surface; null if none is within range", "m"});

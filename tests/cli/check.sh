@@ -31,13 +31,13 @@ P
 # The first matching advice achieves the promised accuracy.
 check_advice() { # MESH COLLIDER PATTERN
     "$relief" check "$2" --mesh "$1" --samples 20000 --json >before.json 2>/dev/null
-    bash -c "$(python3 -c 'import json, sys; print(next(a["command"] for a in json.load(open("before.json"))["advice"] if sys.argv[1] in a["about"] + a["command"]))' "$3" |
+    bash -c "$(python3 -c 'import json, sys; print(next(a["command"] for a in json.load(open("before.json"))["advice"] if sys.argv[1] in a["description"] + a["command"]))' "$3" |
         sed "s#^relief#'$relief'#") -q" 2>/dev/null
     "$relief" check "$2" --mesh "$1" --samples 20000 --json >after.json 2>/dev/null
     python3 - "$3" <<'P' || die "the advice for $2 does not achieve what it promises"
 import json, sys
 before, after = (json.load(open(f)) for f in ('before.json', 'after.json'))
-advice = next(a for a in before['advice'] if sys.argv[1] in a['about'] + a['command'])
+advice = next(a for a in before['advice'] if sys.argv[1] in a['description'] + a['command'])
 said, found = advice['wrong_percent'], after['verdict']['wrong_percent']
 print(said, found)
 sys.exit(0 if advice['helps'] and abs(said - found) <= 0.15 * said + 0.2 and said < before['verdict']['wrong_percent'] else 1)
@@ -45,7 +45,7 @@ P
 }
 "$relief" bake "$bunny" -o few.relief --budget 20kB -q
 check_advice "$bunny" few.relief '--budget 40kB'
-json before.json '{p["cause"] for p in d["worst_places"]} == {"texel"} and [a["about"] for a in d["advice"]] == ["patches of twice the size"]'
+json before.json '{p["cause"] for p in d["worst_places"]} == {"texel"} and [a["description"] for a in d["advice"]] == ["patches of twice the size"]'
 "$relief" bake "$bunny" -o maps.relief -q --map front-back:dir=-x,size=64 --map front-back:dir=-y,size=64 --map front-back:dir=-z,size=64
 check_advice "$bunny" maps.relief 'patches of the same size'
 json after.json 'd["accuracy"]["gpu_bytes"] <= 1e5 and [p["map"] for p in d["worst_places"]] == [0] * 3'

@@ -64,7 +64,7 @@ test("each feature of the page changes the picture", { timeout: 300_000 }, async
     await page.locator("#places button").first().click();
     assert.notEqual(await page.evaluate("reliefView.camera.distance"), before);
     await page.waitForFunction("!document.getElementById('pin').hidden");
-    assert.equal(await page.locator("#why").textContent(), made.check.worst_places[0].why);
+    assert.equal(await page.locator("#explanation").textContent(), made.check.worst_places[0].explanation);
 
     assert.equal(await message(), "");
     assert.deepEqual(messages, []);

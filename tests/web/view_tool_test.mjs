@@ -73,7 +73,7 @@ test("the page of a check shows its numbers, worst places, parts and advice", { 
     await page.locator("#places button").last().click();
     const target = await page.evaluate("reliefView.camera.target");
     assert.ok(target.every((v, k) => Math.abs(v - worst.position[k]) < 1e-4), `${target} instead of ${worst.position}`);
-    assert.equal(await page.locator("#why").textContent(), worst.why);
+    assert.equal(await page.locator("#explanation").textContent(), worst.explanation);
     assert.deepEqual(messages, []);
 });
 

@@ -207,11 +207,11 @@ export class Panel {
                                  place.map === null ? "no map" : `map ${place.map}`].join(", "))))));
     }
 
-    #goTo({ position, normal, why }) {
+    #goTo({ position, normal, explanation }) {
         this.selectMap(-1);
         this.app.pin = position;
         this.app.camera.lookAt(position, normal, 0.9 * this.app.body.box.longest);
-        $("why").textContent = why;
+        $("explanation").textContent = explanation;
     }
 
     // --- particles
@@ -276,8 +276,8 @@ function checkRows({ accuracy: original, repaired, sampling }, length) {
             ["samples of each kind", sampling.samples.toLocaleString("en")], ["seed", `${sampling.seed}`]];
 }
 
-function adviceText({ about, tried, helps, wrong_percent: left, untried }, verdict) {
-    return !tried ? `${about}; not tried: ${untried}` : helps
-        ? `${about}; tried: ${shortNumber(left)} % wrong points instead of ${shortNumber(verdict.wrong_percent)} %`
-        : `Tried without improvement: ${about} (${shortNumber(left)} %)`;
+function adviceText({ description, tried, helps, wrong_percent: left, untried_reason: reason }, verdict) {
+    return !tried ? `${description}; not tried: ${reason}` : helps
+        ? `${description}; tried: ${shortNumber(left)} % wrong points instead of ${shortNumber(verdict.wrong_percent)} %`
+        : `Tried without improvement: ${description} (${shortNumber(left)} %)`;
 }

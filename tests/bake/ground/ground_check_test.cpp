@@ -61,7 +61,7 @@ TEST_F(GroundChecks, ShiftIsMeasured) {
     EXPECT_EQ(single.near.mean, right.near.mean);
     EXPECT_EQ(single.seams->p99, right.seams->p99);
     EXPECT_EQ(single.anywhere.total(), right.anywhere.total());
-    EXPECT_EQ(single.worst.front().place, right.worst.front().place);
+    EXPECT_EQ(single.worst.front().position, right.worst.front().position);
     EXPECT_LT(right.near.mean_abs, 0.01);
     EXPECT_LT(right.near.wrong.total(), 0.5);
     EXPECT_LT(right.seams->wrong.total(), 0.5);
