@@ -166,7 +166,7 @@ class GroundChecker {
 
     Result<GroundAccuracy> run() {
         const Stopwatch watch;
-        result_.map = map_.name();
+        result_.height_map = map_.name();
         result_.hash = map_.hash();
         result_.columns = map_.columns();
         result_.rows = map_.rows();
@@ -181,8 +181,8 @@ class GroundChecker {
         if (seam_squares_ > 0) {
             result_.seams = seams_.result();
         }
-        result_.anywhere = {percent(false_inside_, result_.anywhere_points),
-                            percent(false_outside_, result_.anywhere_points)};
+        result_.uniform = {percent(false_inside_, result_.uniform_points),
+                           percent(false_outside_, result_.uniform_points)};
         result_.seconds = watch.seconds();
         return std::move(result_);
     }
@@ -460,7 +460,7 @@ class GroundChecker {
 
     void count(const Probe& probe, const Outcome& outcome) {
         if (probe.kind == Kind::kAnywhere) {
-            ++result_.anywhere_points;
+            ++result_.uniform_points;
             false_inside_ += outcome.inside && !outcome.truth ? 1 : 0;
             false_outside_ += !outcome.inside && outcome.truth ? 1 : 0;
             return;
