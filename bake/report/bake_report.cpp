@@ -85,8 +85,8 @@ std::string patchesLine(const PatchesReport& report, const std::string& unit) {
         " apart";
     if (report.max_error) {
         line += "; " + shortNumber(report.wrong_percent) +
-                " % of the points near the surface are on the wrong side, found by " +
-                countText(report.tries.size(), "try", "tries");
+                " % of the points near the surface are on the wrong side, found in " +
+                countText(report.tries.size(), "trial");
     }
     return line + "\n";
 }
@@ -194,7 +194,7 @@ void fields(FieldVisitor& visit, const PatchesReport& report) {
                      {"--max-error", "%", kFromZero});
         visit_search("wrong_percent", report.wrong_percent,
                      {"Points near the surface that are on the wrong side", "%", kPercentRange});
-        visit_search("tries", report.tries, {"Trials, in order"});
+        visit_search("trials", report.tries, {"Trials, in order"});
     };
     visit("search", groupIf(report.max_error.has_value(), search),
           {"Search for the smallest budget; null without --max-error"});

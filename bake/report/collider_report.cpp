@@ -114,7 +114,7 @@ void colliderFields(FieldVisitor& visit, const Collider& collider, const Contain
     visit("file_size", info.file_size, {"Size of the file", "bytes"});
     visit("bounds", collider.bounds, {"Bounds of the mesh"});
     visit("unit", collider.unit, {"Unit of lengths: m, or empty if unknown"});
-    visit("texel_bytes", collider.texelBytes(), {"Size of all maps on the GPU", "bytes"});
+    visit("gpu_bytes", collider.texelBytes(), {"Size of all maps on the GPU", "bytes"});
     visit("maps", maps, {.help = "Maps, in the order of the file", .items = kFromOne});
     visit("materials", collider.materials.list, {"Materials of the surface, by id; empty if it has none"});
     visit("material_bytes", collider.materials.bytes(), {"Size of the materials", "bytes"});

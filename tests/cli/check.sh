@@ -4,13 +4,13 @@
 . "$(dirname "$0")/lib.sh"
 
 "$relief" bake "$bunny" -o b.relief --paper --resolution 64 --json >bake.json 2>/dev/null
-bytes=$(python3 -c 'import json; print(json.load(open("bake.json"))["texel_bytes"])')
+bytes=$(python3 -c 'import json; print(json.load(open("bake.json"))["gpu_bytes"])')
 expect 0 "$relief" check b.relief --mesh "$bunny" --samples 5000
 head -1 stdout | matches -xE 'b\.relief: [0-9.]+ % wrong near the surface: poor' || die "no verdict: $(cat stdout)"
 grep -qE '^  relief bake .*bunny.obj -o b.relief --budget [0-9.]+[kM]B$' stdout || die "no advice: $(cat stdout)"
 expect 0 "$relief" check b.relief --mesh "$bunny" --samples 5000 --json
 cp stdout report.json
-json report.json 'd["mesh"]["name"] == "bunny.obj" and d["mesh"]["baked_from_it"] and d["warnings"] == [] and d["passed"]'
+json report.json 'd["mesh"]["name"] == "bunny.obj" and d["mesh"]["is_source"] and d["warnings"] == [] and d["passed"]'
 json report.json '0 < d["verdict"]["wrong_percent"] == d["accuracy"]["near"]["wrong_percent"] < 30'
 json report.json "d['accuracy']['gpu_bytes'] == $bytes and d['sampling']['samples'] == 5000 and d['sampling']['seed'] == 1"
 json report.json 'len(d["worst_places"]) == 3 and all(0 < p["size"] < 0.6 and 0 <= p["map"] < 4 for p in d["worst_places"])'
@@ -101,7 +101,7 @@ grep -q '^b.relief: .*: within --max-error 50 %$' stdout && ! grep -q '^What to 
 (cat "$bunny" && echo '# touched') >touched.obj
 expect 0 "$relief" check b.relief --mesh touched.obj --samples 1000 --json
 grep -q 'warning: .*touched.obj' stderr || die "no warning: $(cat stderr)"
-json stdout 'not d["mesh"]["baked_from_it"] and len(d["warnings"]) == 1'
+json stdout 'not d["mesh"]["is_source"] and len(d["warnings"]) == 1'
 expect_error 3 'box.obj' "$relief" check b.relief --mesh "$models/OBJ/box.obj"
 expect_error 1 'max-error' "$relief" check b.relief --mesh "$bunny" --max-error few
 expect_error 6 'samples' "$relief" check b.relief --mesh "$bunny" --samples 99999999999
