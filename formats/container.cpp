@@ -74,7 +74,7 @@ flatbuffers::Offset<fb::Materials> addMaterials(flatbuffers::FlatBufferBuilder& 
     for (const Material& one : materials.list) {
         const auto name = builder.CreateString(one.name);
         list.push_back(fb::CreateMaterial(builder, name, one.restitution, one.friction, one.lifetime_loss,
-                                          one.area_share));
+                                          one.area_fraction));
     }
     std::vector<fb::MaterialSides> sides;
     for (const MaterialSides& pair : materials.sides) {

@@ -551,7 +551,7 @@ Result<MaterialSource> materialSource(const TriangleMesh& mesh, bool single) {
                                            "; merge some, or bake with --materials none");
     }
     for (std::size_t i = 0; i < shares.size(); ++i) {
-        source.list[i].area_share = static_cast<float>(std::min(shares[i], 1.0));
+        source.list[i].area_fraction = static_cast<float>(std::min(shares[i], 1.0));
     }
     source.positions = mesh.positions;
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {

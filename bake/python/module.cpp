@@ -307,8 +307,8 @@ py::list placesOf(const std::vector<WorstPlace>& found) {
     for (const WorstPlace& place : found) {
         places.append(py::dict(
             py::arg("position") = py::make_tuple(place.position.x, place.position.y, place.position.z),
-            py::arg("size") = place.size(), py::arg("share_percent") = place.share_percent,
-            py::arg("inside_percent") = place.inside_percent, py::arg("map") = place.map,
+            py::arg("size") = place.size(), py::arg("contribution_percent") = place.contribution_percent,
+            py::arg("false_inside_percent") = place.false_inside_percent, py::arg("map") = place.map,
             py::arg("cause") = std::string(wordOf(place.cause))));
     }
     return places;

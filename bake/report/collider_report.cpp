@@ -9,7 +9,7 @@ std::string materialsText(const Materials& materials) {
     for (const Material& one : materials.list) {
         rows.push_back({one.name.empty() ? "-" : one.name, shortNumber(double{one.restitution}),
                         shortNumber(double{one.friction}), shortNumber(double{one.lifetime_loss}),
-                        shortNumber(100.0 * double{one.area_share}) + " %"});
+                        shortNumber(100.0 * double{one.area_fraction}) + " %"});
     }
     return countText(materials.list.size(), "material") + " in " + bytesText(materials.bytes()) + "\n" +
            table(rows);
@@ -103,7 +103,7 @@ void fields(FieldVisitor& visit, const Material& material) {
           {"1 − friction is a factor of the particles' own 1 − friction", {}, kShareRange});
     visit("lifetime_loss", material.lifetime_loss,
           {"Lifetime lost per step in contact", "s", {0.0, double{kMaterialLossMax}}});
-    visit("area_percent", 100.0 * double{material.area_share},
+    visit("area_percent", 100.0 * double{material.area_fraction},
           {"Fraction of the mesh's surface", "%", kPercentRange});
 }
 

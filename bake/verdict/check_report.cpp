@@ -89,8 +89,8 @@ std::string accuracyText(const ColliderAccuracy& accuracy, const TruthSamples& s
 }
 
 std::string placeText(const WorstPlace& place, const std::string& unit) {
-    return lengthText(place.size(), unit) + " across: " + percentText(place.share_percent) +
-           " of the wrong points, " + sideText(place.inside_percent);
+    return lengthText(place.size(), unit) + " across: " + percentText(place.contribution_percent) +
+           " of the wrong points, " + sideText(place.false_inside_percent);
 }
 
 std::string mapWords(const Collider& collider, int map) {
@@ -249,9 +249,9 @@ void fields(FieldVisitor& visit, const WorstPlaceReport& report) {
     visit("size", place.size(),
           {"Longest side of the box of its points on the wrong side", "object units", kFromZero});
     visit("points", place.points, {"Points near the surface on the wrong side", {}, kFromOne});
-    visit("share_percent", place.share_percent,
+    visit("contribution_percent", place.contribution_percent,
           {"Fraction of all wrong points near the surface", "%", kPercentRange});
-    visit("false_inside_percent", place.inside_percent,
+    visit("false_inside_percent", place.false_inside_percent,
           {"Fraction of its points that are classified as inside", "%", kPercentRange});
     visit("map", onlyIf(has_map, place.map),
           {"Index of the map that decides most of its points; null if no map votes", {}, kFromZero});

@@ -259,9 +259,9 @@ class WorstPlace:
     """A point on the wrong side, surrounded by others."""
     size: float
     """Longest side of the box of its points on the wrong side."""
-    share_percent: float
+    contribution_percent: float
     """Percentage of all wrong points near the surface."""
-    inside_percent: float
+    false_inside_percent: float
     """Percentage of its points that are classified as inside."""
     map: int
     """Map that decides most of them; -1: no map votes."""

@@ -202,7 +202,7 @@ export class Panel {
             ...(one.tried && !one.helps ? [] : [element("code", {}, command)]), element("p", { class: "hint" }, adviceText(one, verdict)))));
         $("places-title").textContent = places.length ? "Worst places, by fraction of wrong points" : "No wrong places";
         $("places").replaceChildren(...places.map((place) => element("li", {}, element("button", { onclick: () => this.#goTo(place) },
-            element("b", {}, `${shortNumber(place.share_percent)} %`),
+            element("b", {}, `${shortNumber(place.contribution_percent)} %`),
             element("span", {}, [`${this.#length(place.size)} across`, kCauses[place.cause],
                                  place.map === null ? "no map" : `map ${place.map}`].join(", "))))));
     }

@@ -156,7 +156,7 @@ def test_checks_match_the_tool(bake, arguments, mesh, tmp_path):
     for place, other in zip(accuracy.places, said["worst_places"]):
         assert place.position == pytest.approx(other["position"], abs=1e-6)
         assert (place.cause, place.map) == (other["cause"], other["map"])
-        assert place.share_percent == pytest.approx(other["share_percent"])
+        assert place.contribution_percent == pytest.approx(other["contribution_percent"])
     assert [str(one.message) for one in caught] == said["warnings"]
 
 
