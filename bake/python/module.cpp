@@ -326,12 +326,14 @@ py::tuple check(const SharedCollider& collider, const CheckRequest& request,
     const py::dict measured(
         py::arg("false_inside_percent") = accuracy.near.false_inside,
         py::arg("false_outside_percent") = accuracy.near.false_outside,
-        py::arg("distance_mean") = accuracy.distance_mean, py::arg("distance_p99") = accuracy.distance_p99,
-        py::arg("normal_mean") = accuracy.normal_mean, py::arg("unknown_percent") = accuracy.unknown_percent,
+        py::arg("distance_error_mean") = accuracy.distance_mean,
+        py::arg("distance_error_p99") = accuracy.distance_p99,
+        py::arg("normal_error_mean") = accuracy.normal_mean,
+        py::arg("unknown_percent") = accuracy.unknown_percent,
         py::arg("lost_parts") = run.part_accuracy.countOf(PartVerdict::kLost),
         py::arg("ignored_parts") = run.part_accuracy.countOf(PartVerdict::kMinor),
         py::arg("grade") = verdictOf(run.wrongPercent(), run.part_accuracy, run.collider.unit).grade,
-        py::arg("places") = placesOf(run.places));
+        py::arg("worst_places") = placesOf(run.places));
     return py::make_tuple(measured, textsOf(run.warnings));
 }
 

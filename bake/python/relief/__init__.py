@@ -193,14 +193,14 @@ class Collider:
         return Samples(*self._handle.query(_coordinates(points, "points"), distance))
 
     @_hinting
-    def save(self, path: Path, compression: int = 0) -> None:
-        """Writes a .relief file atomically. compression: zstd level, 1 to 19; 0: none."""
-        _relief.save(self._handle, _path(path), _whole(compression, "compression", 0, 19))
+    def save(self, path: Path, compress: int = 0) -> None:
+        """Writes a .relief file atomically. compress: zstd level, 1 to 19; 0: none."""
+        _relief.save(self._handle, _path(path), _whole(compress, "compress", 0, 19))
 
     @_hinting
-    def to_bytes(self, compression: int = 0) -> bytes:
+    def to_bytes(self, compress: int = 0) -> bytes:
         """Returns the bytes that save() writes, for load()."""
-        return _relief.to_bytes(self._handle, _whole(compression, "compression", 0, 19))
+        return _relief.to_bytes(self._handle, _whole(compress, "compress", 0, 19))
 
     def __repr__(self) -> str:
         return f"<Collider of {self._handle.mesh_name or 'a mesh'}: {self._handle.map_count} maps, {self.gpu_bytes} bytes>"
@@ -277,10 +277,10 @@ class Accuracy:
     """Percentage of points near the surface that are inside, but outside in truth."""
     false_outside_percent: float
     """Percentage of points near the surface that are outside, but inside in truth."""
-    distance_mean: float
+    distance_error_mean: float
     """Mean error of the distance near the surface, in the mesh's units."""
-    distance_p99: float
-    normal_mean: float
+    distance_error_p99: float
+    normal_error_mean: float
     """Mean error of normals on the surface, degrees."""
     unknown_percent: float
     """Percentage of points near the surface without a vote."""
@@ -292,7 +292,7 @@ class Accuracy:
     """ "good", "fair" or "poor", as in `relief check`: the worse of the grades of the whole mesh and of its parts. A lost part
     is poor. Coarse parts lower the grade to "fair" if they and the ignored parts together miss more than 1 % of the points near
     the surface. Ignored parts by themselves do not lower it."""
-    places: tuple[WorstPlace, ...] = ()
+    worst_places: tuple[WorstPlace, ...] = ()
     """The worst first; at most three."""
 
     @property
@@ -494,7 +494,7 @@ def check(collider: Collider, mesh: Any, triangles: Any = None, *,
         _wrong_type(collider, "collider", "a relief.Collider")
     words = _words(_CHECK, locals())
     measured = _run(_relief.check, collider._handle, words, *_source(mesh, triangles, "mesh"))
-    return Accuracy(**{**measured, "places": tuple(WorstPlace(**place) for place in measured["places"])})
+    return Accuracy(**{**measured, "worst_places": tuple(WorstPlace(**place) for place in measured["worst_places"])})
 
 
 for _function, _fields in ((bake, _BAKE), (check, _CHECK)):

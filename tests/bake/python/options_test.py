@@ -152,8 +152,8 @@ def test_checks_match_the_tool(bake, arguments, mesh, tmp_path):
     assert (accuracy.grade, accuracy.lost_parts) == (said["verdict"]["grade"], said["verdict"]["lost_parts"])
     ignored = said["verdict"]["ignored_parts"]
     assert accuracy.ignored_parts == ignored["lost"] + ignored["thickened"]
-    assert len(accuracy.places) == len(said["worst_places"])
-    for place, other in zip(accuracy.places, said["worst_places"]):
+    assert len(accuracy.worst_places) == len(said["worst_places"])
+    for place, other in zip(accuracy.worst_places, said["worst_places"]):
         assert place.position == pytest.approx(other["position"], abs=1e-6)
         assert (place.cause, place.map) == (other["cause"], other["map"])
         assert place.contribution_percent == pytest.approx(other["contribution_percent"])

@@ -62,7 +62,7 @@ def test_sphere():
     along = np.sum(normal[near] * points[near] / radius[near, None], axis=1)
     assert np.quantile(along, 0.01) > 0.99
     accuracy = relief.check(collider, *sphere(), samples=20_000)
-    assert accuracy.wrong_percent < 0.5 and accuracy.distance_mean < 0.003
+    assert accuracy.wrong_percent < 0.5 and accuracy.distance_error_mean < 0.003
 
 
 def test_queries_match_relief_query(bunny, tmp_path):
@@ -83,7 +83,7 @@ def test_queries_match_relief_query(bunny, tmp_path):
 def test_files_equal_bytes(bunny, tmp_path):
     collider = relief.load(bunny)
     collider.save(tmp_path / "plain.relief")
-    collider.save(tmp_path / "packed.relief", compression=19)
+    collider.save(tmp_path / "packed.relief", compress=19)
     assert (tmp_path / "plain.relief").read_bytes() == bunny.read_bytes()
     assert (tmp_path / "packed.relief").stat().st_size < bunny.stat().st_size
     points = random_points(1000)
