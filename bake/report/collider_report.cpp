@@ -81,7 +81,7 @@ void fields(FieldVisitor& visit, const ColliderMapReport& report) {
 
 void fields(FieldVisitor& visit, const MeshClip& clip) {
     visit("name", clip.name, {"Name, unique among the clips"});
-    visit("seconds", clip.seconds, {"Length", "s", kFromZero});
+    visit("duration", clip.seconds, {"Length", "s", kFromZero});
 }
 
 void fields(FieldVisitor& visit, const AnimatedMesh& mesh) {

@@ -328,7 +328,7 @@ EMSCRIPTEN_KEEPALIVE const char* relief_player_animation(const Player* player, i
     }
     Json clips = Json::array();
     for (const MeshClip& clip : mesh->clips) {
-        clips.push_back({{"name", clip.name}, {"seconds", clip.seconds}});
+        clips.push_back({{"name", clip.name}, {"duration", clip.seconds}});
     }
     Json joints = Json::array();
     for (const MeshJoint& joint : mesh->joints) {

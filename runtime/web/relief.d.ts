@@ -377,7 +377,7 @@ export class ParticleSystem {
      * Describes the animation of a body whose collider has `play`; null for other bodies. Joints are those of the glTF
      * skin, or the node of a mesh without a skin.
      */
-    animation(body: number): { clips: { name: string; seconds: number }[]; joints: string[]; weights: number } | null;
+    animation(body: number): { clips: { name: string; duration: number }[]; joints: string[]; weights: number } | null;
     /**
      * Sets the pose of a body that plays a clip, from the next step on. Without `joints`, the clip continues. The pose
      * may not exceed the extent of the clips, scaled by `room` of `play`.
