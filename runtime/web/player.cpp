@@ -20,8 +20,8 @@ Json json(const glm::vec3& v) {
 }
 
 Json describeStream(const std::optional<StreamCounts>& counts) {
-    return counts ? Json{{"wanted", counts->wanted},
-                         {"present", counts->present},
+    return counts ? Json{{"requested", counts->wanted},
+                         {"loaded", counts->present},
                          {"failed", counts->failed},
                          {"gpu_bytes", counts->gpu_bytes}}
                   : Json();

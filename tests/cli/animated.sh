@@ -14,7 +14,7 @@ matches AnimatedMorphCube.bin <cube.d || die "depfile: $(cat cube.d)"
 expect 0 "$relief" info cube.relief
 matches -E '^  Square +4.2' <stdout && matches "^groups   'AnimatedMorphCube'" <stdout && matches "^material 'Material'" <stdout && matches -- '--animated$' <stdout || die "info: $(cat stdout)"
 expect 0 "$relief" info cube.relief --json
-json stdout "abs(d['animation']['clips'][0]['seconds'] - 4.2) < 0.01 and d['animation']['joints'] == 1"
+json stdout "abs(d['animation']['clips'][0]['duration'] - 4.2) < 0.01 and d['animation']['joints'] == 1"
 expect 0 "$relief" check cube.relief --mesh $cube --max-error 2
 matches 'in its rest pose' <stdout || die "check: $(cat stdout)"
 printf '0,0,0\n0.9,0.9,0.9\n1.5,0,0\n0,-1.2,0\n' >points.csv

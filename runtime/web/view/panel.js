@@ -183,7 +183,7 @@ export class Panel {
         const range = Math.max(2 * distance.p99, 1e-3 * body.box.longest);
         look.heat = $("heat").checked ? range : 0;
         // A sheet lies in the middle of its shell: subtract half of the recorded thickness, if any.
-        look.depth = 0.5 * Number(/(?:^| )--thickness (?:auto=)?([0-9.e+-]+)/.exec(body.collider.info.options)?.[1] ?? 0);
+        look.depth = 0.5 * Number(/(?:^| )--thickness (?:auto=)?([0-9.e+-]+)/.exec(body.collider.info.provenance.options)?.[1] ?? 0);
         $("sheets-note").textContent = look.depth === 0 ? "" : `Sheets have a thickness of ${this.#length(2 * look.depth)}; ` +
             "white: the mesh is in the middle of its shell.";
         this.#legend("heat", range);
@@ -243,7 +243,7 @@ export class Panel {
         const { length } = this.#shownMaps();
         $("facts").textContent = `${length} map${length === 1 ? "" : "s"}, ` +
             (size >= 1e6 ? `${(size / 1e6).toFixed(2)} MB` : `${Math.round(size / 1e3)} kB`) +
-            (info.mesh.triangles ? ` from ${info.mesh.triangles.toLocaleString("en")} triangles` : "") +
+            (info.provenance.triangles ? ` from ${info.provenance.triangles.toLocaleString("en")} triangles` : "") +
             `, ${this.#length(body.box.longest)} long` + (data.collider?.animated ? ", at rest" : "");
         $("show-field").hidden = !data.mesh;
         $("show-picture").hidden = true;
