@@ -183,7 +183,7 @@ std::vector<EventOptions> Simulation::spawnEventLists() const {
     }
     for (const Spawner& spawner : spawners_) {
         lists.push_back(spawner.eventOptions());
-        lists.back().most = std::min(lists.back().most, kEventsMax);
+        lists.back().max_per_step = std::min(lists.back().max_per_step, kEventsMax);
     }
     return lists;
 }
@@ -195,7 +195,7 @@ Result<void> Simulation::setEvents() {
     }
     constexpr float kNone = std::numeric_limits<float>::infinity();
     EventOptions options{
-        .hits = false, .min_speed = event_sink_ ? sink_min_speed_ : kNone, .most = kEventsMax};
+        .hits = false, .min_speed = event_sink_ ? sink_min_speed_ : kNone, .max_per_step = kEventsMax};
     for (const SceneSpawn& spawn : spawns_) {
         const bool death = spawn.on == SpawnOn::kDeath;
         options.deaths = options.deaths || death;

@@ -45,7 +45,7 @@ name = "chip"
 on_collision = "stop"
 [[spawn]]
 on = "collision"
-of = "drop"
+parent = "drop"
 material = "oak"
 type = "chip"
 count = 2

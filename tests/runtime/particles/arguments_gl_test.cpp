@@ -119,8 +119,9 @@ TEST_P(ArgumentsGlTest, Bodies) {
 }
 
 TEST_P(ArgumentsGlTest, Events) {
-    for (const EventOptions& wrong : {EventOptions{.most = 0}, EventOptions{.most = (1U << 24) + 1},
-                                      EventOptions{.min_speed = -1.0F}, EventOptions{.min_speed = kNan}}) {
+    for (const EventOptions& wrong :
+         {EventOptions{.max_per_step = 0}, EventOptions{.max_per_step = (1U << 24) + 1},
+          EventOptions{.min_speed = -1.0F}, EventOptions{.min_speed = kNan}}) {
         EXPECT_TRUE(refused(setEvents(*particles_, wrong)));
     }
     EXPECT_TRUE(refused(setEvents(*particles_, std::vector<EventOptions>(kEventLists + 1))));

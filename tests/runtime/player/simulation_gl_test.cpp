@@ -88,14 +88,14 @@ name = "splash"
 collides = ["ground"]
 [[spawn]]
 on = "collision"
-of = "drop"
+parent = "drop"
 type = "splash"
 count = [1, 3]
 most = 60
 lifetime = [0.2, 0.4]
 [[spawn]]
 on = "death"
-of = "drop"
+parent = "drop"
 type = "splash"
 most = 30
 )";
