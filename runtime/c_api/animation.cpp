@@ -123,14 +123,14 @@ int64_t relief_world_add(relief_world* world, const relief_animation* animation,
                                std::to_string(kResolutionMin) + " to 4096, or 0 for 512");
         }
         added.options.resolution = resolution > 0 ? resolution : added.options.resolution;
-        added.options.room = added.animation.extent.room;
+        added.options.box_size = added.animation.extent.box_size;
         if (box_size != nullptr) {
             glm::vec3 sides;
             for (std::size_t i = 0; i < 3; ++i) {
                 RELIEF_TRY(call.number(box_size[i], kLifetime, {"box_size", i}));
                 sides[static_cast<int>(i)] = box_size[i];
             }
-            added.options.room = sides;
+            added.options.box_size = sides;
         }
         const std::size_t body = to.field.world().bodies.size() + to.added.size();
         if (body >= kWorldBodiesMax) {

@@ -343,10 +343,10 @@ Result<void> Simulation::makeLive(const LoadedScene& loaded) {
     }
     for (std::size_t i = 0; i < loaded.played.size(); ++i) {
         if (const auto& played = loaded.played[i]) {
-            auto collider = RELIEF_TRY(
-                withPrefix(loaded.scene.colliders[i].origin + ": collider.play",
-                           AnimatedCollider::create(
-                               played->mesh, {.resolution = played->play.resolution, .room = played->room})));
+            auto collider = RELIEF_TRY(withPrefix(
+                loaded.scene.colliders[i].origin + ": collider.play",
+                AnimatedCollider::create(
+                    played->mesh, {.resolution = played->play.resolution, .box_size = played->box_size})));
             played_.push_back({i, std::move(collider)});
         }
     }

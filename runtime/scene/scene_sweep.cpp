@@ -167,7 +167,7 @@ void SceneSweep::add(const Scene& scene, std::span<const Birth> births) {
             birth.type < scene.types.size() ? ParticleType(scene.types[birth.type]) : ParticleType{};
         const float speed = speedAtBodies(birth, type, scene, bounds_);
         for (std::size_t i = 0; i < groups_.size(); ++i) {
-            if ((type.collides >> i & 1U) == 0) {
+            if ((type.collides_with >> i & 1U) == 0) {
                 continue;
             }
             float& fastest = groups_[i][type.radius];

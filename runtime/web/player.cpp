@@ -100,7 +100,8 @@ Result<Scene> readScene(std::string_view text, const std::filesystem::path& path
 /// Returns whether neither plays a clip, or both play one with maps of the same size.
 bool sameMaps(const SceneCollider& a, const SceneCollider& b) {
     return a.play.has_value() == b.play.has_value() &&
-           (!a.play || (a.play->resolution == b.play->resolution && a.play->room == b.play->room));
+           (!a.play ||
+            (a.play->resolution == b.play->resolution && a.play->bounds_scale == b.play->bounds_scale));
 }
 
 /// Applies the wanted poses and clips; fails if anything else of a collider changes.

@@ -379,7 +379,7 @@ export class ParticleSystem {
     animation(body: number): { clips: { name: string; duration: number }[]; joints: string[]; weights: number } | null;
     /**
      * Sets the pose of a body that plays a clip, from the next step on. Without `joints`, the clip continues. The pose
-     * may not exceed the extent of the clips, scaled by `room` of `play`.
+     * may not exceed the extent of the clips, scaled by `play.bounds_scale`.
      * @param joints  glTF joint matrices, column-major, one per joint. For a three.js skeleton: boneMatrices, multiplied
      *                by the mesh's bindMatrix on the right and bindMatrixInverse on the left.
      * @param weights  one weight per morph target.

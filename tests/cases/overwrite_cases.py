@@ -42,7 +42,7 @@ cell = 0
 [render]
 atlas = "atlas.png"
 size = [16, 16]
-every = 1
+steps_per_frame = 1
 """
 DRAWN = """[collider]
 file = "box.relief"

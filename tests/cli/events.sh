@@ -19,7 +19,7 @@ velocity = [0.25, 0.0, 0.0]
 velocity_spread = [0.0, 0.0, 0.0]
 rate = 1.0
 duration = 4.0
-spread = false
+interpolate = false
 lifetime = 1.5
 [forces]
 gravity = [0.0, -9.8, 0.0]

@@ -16,7 +16,7 @@ convert -size 4x4 xc:red atlas.png
 mkdir frames
 cp atlas.png frames/frame_0002.png
 printf '%s\n' '[collider]' 'file = "box.relief"' '[time]' 'steps = 4' '[[type]]' 'cell = 0' '[render]' \
-    'atlas = "frames/frame_0002.png"' 'size = [16, 16]' 'every = 2' >scene.toml
+    'atlas = "frames/frame_0002.png"' 'size = [16, 16]' 'steps_per_frame = 2' >scene.toml
 printf 'version = 1\n[[asset]]\nmesh = "box.obj"\noutput = "{stem}.new.relief"\nmap = "cube:size=16"\n' >r.toml
 sha256sum box.* points.csv atlas.png scene.toml r.toml frames/frame_0002.png >before
 expect_kept() { # PATTERN COMMAND…: fails with a usage error, and no file changes

@@ -46,7 +46,7 @@ share = {'walker': 8, 'wobbling_torus': 10}.get(path[:-5], 40)
 # The village's mud keeps its rate: at 2 MB few soles are as near the ground as the scene requires.
 full = 1000 if path == 'village.toml' else 0
 text = re.sub(r'(?m)^rate = ([0-9.]+)', lambda m: 'rate = %g' % (float(m[1]) / (share if float(m[1]) >= full else 1)), text)
-text = re.sub(r'(?m)^every = .*', 'every = 100000', text)
+text = re.sub(r'(?m)^steps_per_frame = .*', 'steps_per_frame = 100000', text)
 if path in ('village.toml', 'walker.toml'):
     text = text.replace('clip = "walk"', 'clip = "walk", resolution = %d' % (128 if path == 'village.toml' else 256))
 open(path, 'w').write(text)
@@ -139,8 +139,8 @@ meshes = "."
 [[render.weather]]
 snow = 1.0
 T
-expect 0 "$relief_sim" prints.toml --frame-every 60 --frames prints_seldom -q
-expect 0 "$relief_sim" prints.toml --frame-every 4 --frames prints_often -q
+expect 0 "$relief_sim" prints.toml --steps-per-frame 60 --frames prints_seldom -q
+expect 0 "$relief_sim" prints.toml --steps-per-frame 4 --frames prints_often -q
 python3 - <<'P'
 import glob, subprocess
 

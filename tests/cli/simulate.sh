@@ -20,7 +20,7 @@ burst = 1000
 lifetime = [0.1, 1.0]
 [render]
 size = [33, 21]
-every = 10
+steps_per_frame = 10
 S
 
 # --check needs no GPU, display or driver: here any attempt to create a context fails with 5.

@@ -97,7 +97,7 @@ TEST_P(ArgumentsGlTest, NumbersOutOfRange) {
     EXPECT_TRUE(refused(particles_->setTypes({})));
     EXPECT_TRUE(refused(particles_->setTypes(std::vector<ParticleType>(kParticleTypesMax + 1))));
     EXPECT_TRUE(refusedType([](ParticleType& type) { type.mass = 0.0F; }));
-    EXPECT_TRUE(refusedType([](ParticleType& type) { type.collides = kCollidesWithAll + 1; }));
+    EXPECT_TRUE(refusedType([](ParticleType& type) { type.collides_with = kCollidesWithAll + 1; }));
     for (float ParticleType::*const member :
          {&ParticleType::radius, &ParticleType::restitution, &ParticleType::friction,
           &ParticleType::friction_threshold, &ParticleType::lifetime_loss}) {

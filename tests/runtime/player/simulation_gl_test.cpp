@@ -85,7 +85,7 @@ name = "drop"
 on_collision = "die"
 [[type]]
 name = "splash"
-collides = ["ground"]
+collides_with = ["ground"]
 [[spawn]]
 on = "collision"
 parent = "drop"

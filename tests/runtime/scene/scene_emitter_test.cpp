@@ -57,12 +57,12 @@ TEST(SceneEmitter, ReadsShapes) {
 
 TEST(SceneEmitter, ReadsTimesAndSpeeds) {
     const SceneEmitter timed =
-        good("start = 1.5\nburst = 10\nburst_every = 0.5\nduration = 3\nspread = false\n");
+        good("start = 1.5\nburst = 10\nburst_every = 0.5\nduration = 3\ninterpolate = false\n");
     EXPECT_EQ(timed.start, 1.5);
     EXPECT_EQ(timed.burst, 10U);
     EXPECT_EQ(timed.burst_every, 0.5);
     EXPECT_EQ(timed.duration, 3.0);
-    EXPECT_FALSE(timed.spread);
+    EXPECT_FALSE(timed.interpolate);
     const EmitterAim span = *good("direction = [0, 2, 0]\ncone = 20\nspeed = [1, 4]\n").aim;
     EXPECT_EQ(*span.direction, glm::vec3(0, 2, 0));
     EXPECT_EQ(span.cone_degrees, 20.0F);
