@@ -193,7 +193,7 @@ void addCheck(CLI::App& app, Action& action) {
         "relief check bunny.relief\n"
         "relief check *.relief\n"
         "relief check bunny.relief --mesh bunny.obj\n"
-        "relief check bunny.relief --mesh bunny.obj --html bunny.html\n"
+        "relief check bunny.relief --mesh bunny.obj --page bunny.html\n"
         "relief check bunny.relief --mesh bunny.obj --max-error 2 --json\n"
         "relief check level/world.json --mesh level.glb\n"
         "relief check ground/world.json --mesh heights.png");
@@ -222,9 +222,9 @@ void addCheck(CLI::App& app, Action& action) {
         ->valueText("LENGTH")
         ->range(1e-6, 1e15)
         ->needs(mesh);
-    addOption(verb, "--html", command->html,
+    addOption(verb, "--page", command->html,
               "Also write the page of relief view with the verdict, the worst places and the remedies")
-        ->valueText("OUT")
+        ->valueText("OUT.html")
         ->needs(mesh);
     addFields(verb, command->request.import);
     addFields(verb, command->request.import_limits);
@@ -233,7 +233,7 @@ void addCheck(CLI::App& app, Action& action) {
     groupVerbOptions(
         verb, {{"Comparison with the mesh",
                 {"--mesh", "--max-error", "--samples", "--seed", "--min-part", "--heights", "--within"}},
-               {"Output", {"--html", "--json"}}});
+               {"Output", {"--page", "--json"}}});
     onVerb(verb, [command, &action] {
         action = [command](FileGuard& files) -> Result<void> {
             if (command->files.size() > 1 && !command->request.mesh.empty()) {

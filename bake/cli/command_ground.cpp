@@ -54,7 +54,7 @@ Result<void> checkOptions(const std::string& file, const WorldCheckCall& call) {
     ImportLimits of_mesh;
     of_mesh.triangles = call.request.import_limits.triangles;
     const std::string of_import = importOptionOf(call.request.import, of_mesh);
-    const std::string option = !call.html.empty()      ? "--html"
+    const std::string option = !call.html.empty()      ? "--page"
                                : call.request.min_part ? "--min-part"
                                                        : of_import;
     if (!option.empty()) {

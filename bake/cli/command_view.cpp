@@ -161,7 +161,7 @@ Result<std::string> preflightPage(const std::string& file, const std::string& me
     RELIEF_TRY(files.reads(file));
     RELIEF_TRY(files.reads(mesh));
     RELIEF_TRY(files.writes("-", "the report"));
-    RELIEF_TRY(files.writes(html, "--html"));
+    RELIEF_TRY(files.writes(html, "--page"));
     return namesWorld(file) ? playerPage(files) : "";
 }
 

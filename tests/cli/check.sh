@@ -17,7 +17,7 @@ json report.json 'len(d["worst_places"]) == 3 and all(0 < p["size"] < 0.6 and 0 
 
 # Equal seeds give equal numbers and pages. The page is that of `relief view` with the report.
 for i in 1 2; do
-    "$relief" check b.relief --mesh "$bunny" --samples 5000 --seed 7 --json --html $i.html | grep -v -e '"truth"' -e '"field"' >$i.json
+    "$relief" check b.relief --mesh "$bunny" --samples 5000 --seed 7 --json --page $i.html | grep -v -e '"truth"' -e '"field"' >$i.json
 done
 cmp 1.json 2.json && cmp 1.html 2.html || die "two runs give different results"
 "$relief" view b.relief -o view.html
@@ -105,9 +105,9 @@ json stdout 'not d["mesh"]["is_source"] and len(d["warnings"]) == 1'
 expect_error 3 'box.obj' "$relief" check b.relief --mesh "$models/OBJ/box.obj"
 expect_error 1 'max-error' "$relief" check b.relief --mesh "$bunny" --max-error few
 expect_error 6 'samples' "$relief" check b.relief --mesh "$bunny" --samples 99999999999
-expect_error 1 'html' "$relief" check b.relief --mesh "$bunny" --html -
-expect_error 2 'missing' "$relief" check b.relief --mesh "$bunny" --html missing/page.html
-for option in '--samples 5' '--seed 5' '--max-error 5' '--html page.html'; do
+expect_error 1 'page' "$relief" check b.relief --mesh "$bunny" --page -
+expect_error 2 'missing' "$relief" check b.relief --mesh "$bunny" --page missing/page.html
+for option in '--samples 5' '--seed 5' '--max-error 5' '--page page.html'; do
     # shellcheck disable=SC2086
     expect_error 1 '--mesh' "$relief" check b.relief $option
 done

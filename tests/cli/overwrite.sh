@@ -70,7 +70,7 @@ expect 0 "$relief" bake box.obj --world fresh/sub --budget 20kB --depfile fresh/
 
 # A page of a world, and the report next to a page.
 expect_kept "is the input" "$relief" view level/world.json -o "$(echo level/*.relief)"
-expect_kept "the report and --html would both write" "$relief" check box.relief --mesh box.obj --html /dev/stdout
+expect_kept "the report and --page would both write" "$relief" check box.relief --mesh box.obj --page /dev/stdout
 
 # Standard input and output are files, too.
 expect_kept "'points.csv' is the input standard input" sh -c "'$relief' query box.relief --points - -o points.csv <points.csv"
