@@ -188,7 +188,7 @@ Result<std::vector<std::byte>> writeChecked(const Collider& collider, const Cont
                         ? "the animated mesh takes more than the 16 MiB of a container's "
                           "metadata; simplify it, or bake fewer clips"
                     : !collider.materials.empty()
-                        ? "the materials do not fit into the container; bake with --materials none"
+                        ? "the materials do not fit into the container; bake with --materials drop"
                         : "the metadata does not fit into the container; use fewer maps");
     }
     header.file_size = end;

@@ -162,7 +162,7 @@ Result<ShapeOptions> shapeOptionsOf(const BakeRequest& request) {
     ShapeOptions options = RELIEF_TRY(parseShapeOptions(request.as));
     options.thickness_by_part = !request.thickness || request.thickness->by_part;
     options.thickness_by_texel = options.thickness_by_part && request.texel;
-    options.voids = request.voids.value_or(VoidsAs::kFull);
+    options.voids = request.voids.value_or(VoidsAs::kFill);
     return options;
 }
 
@@ -294,9 +294,9 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
            .must = "a length above 0 in object units",
            .recorded = true});
     visit("voids", request.voids,
-          {.help = "Fill cavities that several parts seal off together, such as a pot and its lid, or leave "
+          {.help = "Fill cavities that several parts seal off together, such as a pot and its lid, or keep "
                    "them hollow",
-           .fallback = "full",
+           .fallback = "fill",
            .recorded = true});
     visit("materials", request.materials,
           {.help = "Keep or drop the mesh's named materials, which responses and events use",

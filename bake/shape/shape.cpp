@@ -100,7 +100,7 @@ class Shaper {
         RELIEF_TRY(addSheets());
         PreparedMesh mesh = RELIEF_TRY(union_.finish(report_.thickness));
         std::vector<std::uint32_t> part_of = union_.takePartOf();
-        if (options_.voids == VoidsAs::kFull && hasSealingSheet()) {
+        if (options_.voids == VoidsAs::kFill && hasSealingSheet()) {
             mesh = RELIEF_TRY(fillVoids(std::move(mesh), part_of));
         }
         return ShapedMesh{std::move(mesh), report_, {std::move(collected_.parts()), std::move(part_of)}};

@@ -70,7 +70,7 @@ void fields(FieldVisitor& visit, const ShapeReport& report) {
           {"Walls of two open shells whose winding does not distinguish a lining from a clothed body"});
     visit("terrains", report.terrains, {"Height fields; they become the ground below them"});
     visit("voids", report.voids,
-          {"Voids that sheets and solids seal together; filled, except with --voids hollow"});
+          {"Voids that sheets and solids seal together; filled, except with --voids keep"});
     visit("coincident_triangles", report.coincident_triangles,
           {"Triangles dropped because they coincide with another triangle"});
     visit("near_copies", report.near_copies,

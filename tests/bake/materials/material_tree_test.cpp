@@ -260,7 +260,7 @@ TEST(MaterialTree, SingleMaterialNeedsNoTree) {
     request.no_check = true;
     const TriangleMesh named = halves("a", "b");
     const Collider kept = bake(request, {}, named)->baked.collider;
-    request.materials = MaterialsAs::kNone;
+    request.materials = MaterialsAs::kDrop;
     const Collider none = bake(request, {}, named)->baked.collider;
     EXPECT_EQ(kept.materials.list.size(), 2U);
     EXPECT_NEAR(double{kept.materials.list[0].area_fraction}, 0.5, 1e-6);

@@ -214,7 +214,7 @@ TEST(RecordedBake, RecordsWhetherVoidsAreFilled) {
         return required(check(check_request, std::move(collider), makeRooms())).shape.voids;
     };
     EXPECT_EQ(checkedVoids({}, false), 1U);
-    EXPECT_EQ(checkedVoids(VoidsAs::kHollow, false), 0U);
+    EXPECT_EQ(checkedVoids(VoidsAs::kKeep, false), 0U);
     EXPECT_EQ(checkedVoids({}, true), 0U);  // baked by an older version
 }
 
