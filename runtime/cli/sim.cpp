@@ -99,7 +99,7 @@ void addSimulation(CLI::App& app, SimCommand& command) {
              WordsFor<GlApi>{{"gl", GlApi::kGl33Core}, {"gles", GlApi::kGles30}},
              "Use OpenGL 3.3 (gl) or OpenGL ES 3.0 (gles) (default: gl)");
     addWords(
-        app, "--path", player.path,
+        app, "--shaders", player.path,
         WordsFor<StepPath>{
             {"auto", StepPath::kAuto}, {"fragment", StepPath::kFragment}, {"compute", StepPath::kCompute}},
         "Use fragment or compute shaders (OpenGL 4.3, OpenGL ES 3.1) for particles (default: auto, which "
@@ -222,10 +222,10 @@ void defineSim(CLI::App& app, SimCommand& command) {
                 "--quiet"}},
               {"Frames and pictures",
                {"--frames", "--size", "--dump-frames", "--first-frame", "--last-frame", "--steps-per-frame"}},
-              {"Simulation", {"--steps", "--seed", "--root", "--api", "--path", "--device"}},
+              {"Simulation", {"--steps", "--seed", "--root", "--api", "--shaders", "--device"}},
               {"Limits", {"--gpu-timeout", "--max-memory"}}});
     for (const char* played :
-         {"--frames", "--dump", "--dump-frames", "--events", "--path", "--device", "--gpu-timeout"}) {
+         {"--frames", "--dump", "--dump-frames", "--events", "--shaders", "--device", "--gpu-timeout"}) {
         check->excludes(played);
         page->excludes(played);
     }

@@ -17,7 +17,7 @@ std::string reportText(const PlayerReport& report) {
                   static_cast<unsigned long long>(report.counts.born),
                   static_cast<unsigned long long>(report.counts.died), report.counts.alive,
                   static_cast<unsigned long long>(report.counts.refused), report.frames_written);
-    return report.device + ", " + std::string(stepPathName(report.path)) + " path\n" + text;
+    return report.device + ", " + std::string(stepPathName(report.path)) + " shaders\n" + text;
 }
 
 GeneratedTexts playerSchemas() {
@@ -32,8 +32,8 @@ GeneratedTexts playerSchemas() {
 void fields(FieldVisitor& visit, const PlayerReport& report) {
     visit("settings", report.scene, {"Scene as simulated, with its own keys"});
     visit("device", report.device, {"OpenGL version, renderer and platform"});
-    visit("path", stepPathName(report.path),
-          {.help = "Path of the particle steps", .words = kWords<"fragment", "compute">});
+    visit("shaders", stepPathName(report.path),
+          {.help = "Shaders of the particle steps", .words = kWords<"fragment", "compute">});
     const auto collider = [&](FieldVisitor& visit_collider) {
         visit_collider("maps", report.collider_maps, {"Maps of all colliders"});
         visit_collider("gpu_bytes", report.collider_bytes, {"Size on the GPU", "bytes"});

@@ -82,11 +82,11 @@ cmp again.ply final.ply || die "the same seed gives a different run, or --dump -
 grep -q '25 steps' text || die "the summary is not on stderr with --dump -"
 "$relief_sim" scene.toml --dump other.ply --seed 4 -q
 ! cmp -s other.ply final.ply || die "another seed gives the same run"
-"$relief_sim" scene.toml --path compute --api gles --dump other.ply --seed 3 --json >stdout
-json stdout 'd["path"] == "compute" and d["particles"]["born"] > 0'
+"$relief_sim" scene.toml --shaders compute --api gles --dump other.ply --seed 3 --json >stdout
+json stdout 'd["shaders"] == "compute" and d["particles"]["born"] > 0'
 cmp other.ply final.ply || die "compute shaders give a different run"
-MESA_GL_VERSION_OVERRIDE=3.3 expect_error 5 'OpenGL 4\.3 or OpenGL ES 3\.1' "$relief_sim" scene.toml --path compute
-expect_error 1 '--path' "$relief_sim" scene.toml --check --path compute
+MESA_GL_VERSION_OVERRIDE=3.3 expect_error 5 'OpenGL 4\.3 or OpenGL ES 3\.1' "$relief_sim" scene.toml --shaders compute
+expect_error 1 '--shaders' "$relief_sim" scene.toml --check --shaders compute
 
 # Valid settings whose combination is too large: one line, and nothing is dumped.
 printf '[collider]\nfile = "bunny.relief"\nposition = [0.0, 1e9, 0.0]\nscale = 1e6\n' >moved.toml
