@@ -149,7 +149,7 @@ int relief_particles_step(relief_particles* particles, float seconds) {
 relief_counts relief_particles_counts(const relief_particles* particles) {
     return answer(__func__, relief_counts{}, [&](const Call& call) -> Result<relief_counts> {
         const ParticleCounts counts = RELIEF_TRY(call.object(particles, "particles"))->system.counts();
-        return relief_counts{counts.born, counts.died, counts.refused, counts.alive};
+        return relief_counts{counts.born, counts.died, counts.rejected, counts.alive};
     });
 }
 

@@ -246,7 +246,7 @@ typedef struct relief_particle {
 } relief_particle;
 
 typedef struct relief_counts {
-    uint64_t born, died, refused; /* refused: births rejected because the system was full */
+    uint64_t born, died, rejected; /* rejected: births without room */
     uint32_t alive;
 } relief_counts;
 

@@ -35,7 +35,7 @@ std::uint64_t Spawner::spawn(std::span<const ParticleEvent> events, std::span<co
     const float radius =
         types.empty() ? 0.0F : types[std::min<std::size_t>(settings_.type, types.size() - 1)].radius;
     std::uint64_t left = std::min<std::uint64_t>(room, settings_.max_per_step);
-    std::uint64_t refused = 0;
+    std::uint64_t rejected = 0;
     std::uint64_t used = 0;
     for (const ParticleEvent& event : events) {
         if (!matches(event)) {
@@ -43,7 +43,7 @@ std::uint64_t Spawner::spawn(std::span<const ParticleEvent> events, std::span<co
         }
         // No random numbers are drawn beyond `max_per_step`, so a shorter event list gives the same births.
         if (++used > settings_.max_per_step) {
-            refused += settings_.count_min;
+            rejected += settings_.count_min;
             continue;
         }
         const std::uint64_t due =
@@ -54,13 +54,13 @@ std::uint64_t Spawner::spawn(std::span<const ParticleEvent> events, std::span<co
             if (isValid(birth)) {
                 births.push_back(birth);
             } else {
-                ++refused;
+                ++rejected;
             }
         }
         left -= made;
-        refused += due - made;
+        rejected += due - made;
     }
-    return refused;
+    return rejected;
 }
 
 // The order of the random draws must not change, because seeded runs depend on it: direction, speed, lifetime.

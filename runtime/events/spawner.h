@@ -33,7 +33,7 @@ struct SpawnSettings {
     /// Births per event, uniform in [count_min, count_max].
     std::uint32_t count_min = 1;
     std::uint32_t count_max = 1;
-    std::uint32_t max_per_step = 10'000;  ///< births, ≥ 1; further births are refused
+    std::uint32_t max_per_step = 10'000;  ///< births, ≥ 1; further births are rejected
     float lifetime_min = 1.0F;            ///< seconds, > 0; uniform between both limits
     float lifetime_max = 1.0F;
 
@@ -59,11 +59,11 @@ class Spawner {
 
     /// Generates the births of a step's events, in order, with age 0. Births of hits touch the surface from outside.
     /// Only the first `max_per_step` matching events are used; each later one only adds its minimum number of births to
-    /// the number refused.
+    /// the number rejected.
     /// \param types   of the particle system, for their radii.
     /// \param room    maximum number of births to generate.
     /// \param births  receives the births at its end.
-    /// \return the number of births refused: no room, above `max_per_step`, or without a finite position or velocity,
+    /// \return the number of births rejected: no room, above `max_per_step`, or without a finite position or velocity,
     /// because the event has none.
     std::uint64_t spawn(std::span<const ParticleEvent> events, std::span<const ParticleType> types,
                         std::uint64_t room, std::vector<Birth>& births);

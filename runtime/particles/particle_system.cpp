@@ -271,7 +271,7 @@ Result<std::size_t> ParticleSystem::spawn(std::span<const Birth> births) {
         ++accepted;
     }
     born_ += accepted;
-    refused_ += births.size() - accepted;
+    rejected_ += births.size() - accepted;
     return accepted;
 }
 
@@ -397,7 +397,7 @@ void ParticleSystem::setEpochForward() {
 }
 
 ParticleCounts ParticleSystem::counts() const {
-    return {born_, died_, refused_, allocator_.liveCount(), allocator_.extent()};
+    return {born_, died_, rejected_, allocator_.liveCount(), allocator_.extent()};
 }
 
 bool isLost(const ParticleState& particle) {

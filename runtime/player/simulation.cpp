@@ -243,15 +243,15 @@ void Simulation::spawnFrom(const StepEvents& step) {
     // Several lists always mean one per spawner, even if the lists were replaced since.
     const bool several = step.lists.size() > 1;
     const bool each = several || list_each_;
-    refused_ += each || spawners_.empty() ? 0 : step.dropped;
+    rejected_ += each || spawners_.empty() ? 0 : step.dropped;
     for (std::size_t i = 0; i < spawners_.size(); ++i) {
         const bool own = i < step.lists.size();
         const std::uint64_t room =
             particles_->room() - std::min<std::uint64_t>(particles_->room(), spawned_.size());
         const std::uint64_t least = spawners_[i].settings().count_min;
-        refused_ += each && own ? least * step.lists[i].dropped : 0;
+        rejected_ += each && own ? least * step.lists[i].dropped : 0;
         if (own || !several) {
-            refused_ += spawners_[i].spawn(several ? step.of(i) : step.events, types_, room, spawned_);
+            rejected_ += spawners_[i].spawn(several ? step.of(i) : step.events, types_, room, spawned_);
         }
     }
 }
@@ -293,7 +293,7 @@ Result<void> Simulation::emitBirths(float dt) {
     sweep_.add(*scene_, births_);
     const std::uint64_t room =
         particles_->room() - std::min<std::uint64_t>(particles_->room(), births_.size());
-    refused_ += emitAll(emitters_, static_cast<double>(dt), room, births_, motions_, particles_->time());
+    rejected_ += emitAll(emitters_, static_cast<double>(dt), room, births_, motions_, particles_->time());
     [[maybe_unused]] const std::size_t accepted = RELIEF_TRY(particles_->spawn(births_));
     return {};
 }

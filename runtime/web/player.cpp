@@ -251,7 +251,7 @@ Json describePlayer(const Player& player) {
                 {"alive", counts.alive},
                 {"born", counts.born},
                 {"died", counts.died},
-                {"refused", counts.refused + player.simulation->refused()},
+                {"rejected", counts.rejected + player.simulation->rejected()},
                 {"extent", counts.extent},
                 {"capacity", particles.capacity()},
                 {"width", particles.textureWidth()},

@@ -280,7 +280,7 @@ export interface SystemInfo {
     born: number;
     died: number;
     /** Number of births rejected because the system was full. */
-    refused: number;
+    rejected: number;
     /** Texels 0 to extent - 1 of the state textures, row by row, may hold a particle. */
     extent: number;
     capacity: number;

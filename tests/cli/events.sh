@@ -57,4 +57,4 @@ expect_error 2 '/dev/full.*--events' "$relief_sim" drop.toml --events /dev/full
 sed '/^capacity/s/10/100/; s/^\[\[type/&]]\nname = "drop"\n#/' drop.toml >splash.toml
 printf '%s\n' '[[type]]' 'name = "splash"' '[[spawn]]' 'on = "collision"' 'parent = "drop"' 'type = "splash"' 'count = 5' 'lifetime = 40' >>splash.toml
 expect 0 "$relief_sim" splash.toml --json
-json stdout "(d['particles']['born'], d['particles']['refused']) == (24, 0)"
+json stdout "(d['particles']['born'], d['particles']['rejected']) == (24, 0)"

@@ -61,7 +61,7 @@ done
 
 play() { # NAME STEPS
     expect 0 "$relief_sim" "$1.toml" --steps "$2" --size 320x240 --frames "frames_$1" --dump "end_$1.ply" --json
-    json stdout "d['steps'] == $2 and d['particles']['refused'] == 0 and d['particles']['in_contact'] > 0"
+    json stdout "d['steps'] == $2 and d['particles']['rejected'] == 0 and d['particles']['in_contact'] > 0"
     json stdout "d['particles']['born'] == d['particles']['alive'] + d['particles']['died']"
     local colors
     colors=$(identify -format '%k' "frames_$1/frame_0000.png")

@@ -66,7 +66,7 @@ scene "${crowd[@]}" 'rate = 3000.0'
 warns ''
 expect 0 "$relief_sim" scene.toml --json
 grep -qE '^relief-sim: warning: 900 of 1000 births .*particles\.capacity' stderr || die "no warning: $(cat stderr)"
-json stdout 'len(d["warnings"]) == 1 and d["particles"]["refused"] == 900'
+json stdout 'len(d["warnings"]) == 1 and d["particles"]["rejected"] == 900'
 scene "${crowd[@]}" 'rate = 300.0'
 expect 0 "$relief_sim" scene.toml
 [ ! -s stderr ] || die "warned: $(cat stderr)"

@@ -118,11 +118,11 @@ TEST(Spawner, RefusedBirthsAreCounted) {
     for (const auto& [most, room] : {std::pair(10'000U, 1500U), std::pair(1234U, 50'000U)}) {
         settings.max_per_step = most;
         std::vector<Birth> some;
-        const std::uint64_t refused = Spawner(settings, 9).spawn(step, {}, room, some);
+        const std::uint64_t rejected = Spawner(settings, 9).spawn(step, {}, room, some);
         EXPECT_EQ(some.size(), std::min(most, room));
         EXPECT_EQ(some[77].position, all[77].position);
         EXPECT_EQ(some[77].velocity, all[77].velocity);
-        EXPECT_GT(refused, 2000U);
+        EXPECT_GT(rejected, 2000U);
     }
     settings.max_per_step = 10'000;
     settings.count_max = settings.count_min = 5;
@@ -154,8 +154,8 @@ TEST(Spawner, AFilteredListGivesTheSameBirths) {
         few.resize(options.max_per_step);
         std::vector<Birth> births;
         std::vector<Birth> same;
-        const std::uint64_t refused = by_all.spawn(stepOf(all), {}, 1000, births);
-        EXPECT_EQ(by_few.spawn(stepOf(few), {}, 1000, same) + dropped, refused);
+        const std::uint64_t rejected = by_all.spawn(stepOf(all), {}, 1000, births);
+        EXPECT_EQ(by_few.spawn(stepOf(few), {}, 1000, same) + dropped, rejected);
         ASSERT_EQ(births.size(), 20U);
         ASSERT_EQ(same.size(), births.size());
         for (std::size_t i = 0; i < births.size(); ++i) {
@@ -196,7 +196,7 @@ TEST(Spawner, DeathsOfAgeThrowInAllDirectionsOrAlongTheVelocity) {
     EXPECT_LT(glm::length(thrown() - glm::vec3(0.0F, 1.0F, 0.0F)), 1e-6F);
 }
 
-// A lost particle's event causes no births: they count as refused.
+// A lost particle's event causes no births: they count as rejected.
 TEST(Spawner, LostParticlesHaveNoChildren) {
     const SpawnSettings settings{
         .parent = {}, .material = {}, .count_min = 3, .count_max = 3, .inherit = 1.0F};
