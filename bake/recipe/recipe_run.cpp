@@ -117,7 +117,7 @@ class Runner {
         }
         for (AssetResult& asset : result_.assets) {
             if (asset.state == AssetState::kStale && !(run_.dry_run && result_.signal == 0)) {
-                asset.state = AssetState::kCancelled;
+                asset.state = AssetState::kCanceled;
                 notify(run_.ended, asset);
             }
         }
@@ -181,7 +181,7 @@ class Runner {
         std::size_t next = 0;
         Clock::time_point cached = Clock::now();
         while (children_.terminationSignal() == 0) {
-            while (children_.running() < run_.at_once) {
+            while (children_.running() < run_.jobs) {
                 while (next < result_.assets.size() && result_.assets[next].state != AssetState::kStale) {
                     ++next;
                 }
@@ -261,7 +261,7 @@ class Runner {
                                   "its bake was ended by signal " + std::to_string(end.signal) + " (" +
                                       ::strsignal(end.signal) + "); repair or simplify the mesh"});
             }
-            return;  // otherwise it is cancelled
+            return;  // otherwise it is canceled
         }
         if (end.exit_code != 0) {
             const bool known = end.exit_code <= static_cast<int>(ErrorCode::kDifference);

@@ -140,7 +140,7 @@ cp -r keys elsewhere
 expect 0 "$relief" bake --recipe keys/r.toml --dry-run --json
 keys >before
 grep -qE '^m.relief=[0-9a-f]{32} t.relief=[0-9a-f]{32}$' before || die "keys: $(cat before)"
-for _ in baked 'up to date'; do
+for _ in baked up_to_date; do
     expect 0 "$relief" bake --recipe keys/r.toml --json
     keys | cmp - before || die "the bake changes the keys: $(keys)"
 done

@@ -188,7 +188,7 @@ rm in/parts/secret.obj
 # A world can be in the output folder, or in the folder of its level.
 sed 's#w/world#world#' <(printf '%s\n' 'version = 1' '[[asset]]' "${yard[@]}") >in/root.toml
 printf '%s\n' 'version = 1' '[[asset]]' 'mesh = "parts/"' 'output = "{dir}/{stem}/world.json"' 'budget = "100kB"' 'compress = 1' >in/own.toml
-for state in baked 'up to date'; do
+for state in baked up_to_date; do
     expect 0 "$relief" bake --recipe in/root.toml -o root --json -q
     json stdout "[a['state'] for a in d['assets']] == ['$state']"
     expect 0 "$relief" bake --recipe in/own.toml --json -q
