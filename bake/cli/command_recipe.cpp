@@ -359,8 +359,10 @@ std::vector<RecipeKey> recipeKeys() {
 }
 
 void addRecipeOptions(CLI::App& verb, BakeRecipeOptions& options) {
-    OptionRef recipe =
-        addOption(verb, "--recipe", options.recipe, "Bake the assets of this TOML file that are out of date");
+    OptionRef recipe = addOption(verb, "--recipe", options.recipe,
+                                 withDetails("Bake the assets of this TOML file that are out of date",
+                                             "Each bake runs in a process of its own; -j sets how many run "
+                                             "at once. Options of the bakes are keys of the recipe."));
     recipe->valueText("FILE");
     addParsed(verb, "--shard", options.shard, parseShard, "K/N with 1 <= K <= N, such as 2/4",
               "Bake only part K of N of the recipe; the parts may run at the same time")
@@ -370,7 +372,9 @@ void addRecipeOptions(CLI::App& verb, BakeRecipeOptions& options) {
               "Write the events of the recipe's run as JSON lines; - for standard output")
         ->valueText("FILE")
         ->needs(recipe);
-    addOption(verb, "--stamp", options.stamp, "Write this file once all assets of the recipe are up to date")
+    addOption(verb, "--stamp", options.stamp,
+              withDetails("Write this file once all assets of the recipe are up to date",
+                          "--depfile names this file as its target."))
         ->valueText("FILE")
         ->needs(recipe);
     addFlag(verb, "--dry-run", options.dry_run, "Print what the recipe would bake and why, without baking")

@@ -98,9 +98,12 @@ Result<void> preflightWorld(const fs::path& folder, const WorldCall& call) {
 }
 
 void addWorldOption(CLI::App& verb, std::string& folder) {
-    addOption(
-        verb, "--world", folder,
-        "Bake a level into this folder: a collider for each distinct mesh, and world.json, which places them")
+    addOption(verb, "--world", folder,
+              withDetails("Bake a level into this folder: a collider for each distinct mesh, and world.json, "
+                          "which places them",
+                          "Each distinct mesh is baked once, however many nodes place it. Only what has "
+                          "changed is baked again. Options that choose maps, such as --map, --holes keep and "
+                          "--max-error, are for one mesh; the others apply to every mesh."))
         ->valueText("DIR")
         ->excludes("--recipe");
 }

@@ -60,7 +60,7 @@ GeneratedTexts bakeTexts() {
     std::ranges::move(fieldsOf(BakeOutputs()), std::back_inserter(options));
     std::list<std::string> meanings;  // the fields refer to them
     for (FieldWords& field : options) {
-        if (const std::string_view details = bakeDetails(field.name); !details.empty()) {
+        if (const std::string_view details = field.info.details; !details.empty()) {
             field.info.help =
                 meanings.emplace_back(std::string(field.info.help) + ". " + std::string(details));
         }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texts about the options of `relief` that are too long for --help. The manual pages, --manual and the README are built
-// from them.
+// The keys of --map and --heights for the manual pages, --manual and the README, and the headings of --help.
 #pragma once
 
 #include <string>
@@ -11,15 +10,12 @@
 
 namespace relief {
 
-/// Details of an option of `relief bake`; empty if its help is complete. \param name  "max_error"
-[[nodiscard]] std::string_view bakeDetails(std::string_view name);
-
 /// The keys of --map and --heights as tables of Markdown.
 [[nodiscard]] std::string mapKeyTable();
 [[nodiscard]] std::string heightsKeyTable();
 
-/// Adds its details to each option of `relief bake`.
-void addBakeDetails(CLI::App& verb);
+/// Adds the keys of --map and --heights to the details of these options.
+void addKeyDetails(CLI::App& verb);
 
 /// Sorts the options of `relief bake` under headings.
 void groupBakeOptions(CLI::App& verb);

@@ -9,7 +9,8 @@ void fields(FieldVisitor& visit, ImportOptions& options) {
            .fallback = "the file's, or no conversion",
            .words = kLengthUnits,
            .value = "UNIT",
-           .recorded = true});
+           .recorded = true,
+           .details = "If neither the option nor the file states a unit, lengths are not converted."});
     visit("up", options.up,
           {.help = "Up axis in the file, turned to +y: +x, -x, +y, -y, +z or -z",
            .fallback = "the file's, or +y",
