@@ -9,7 +9,7 @@ mesh=$models/OBJ/spider.obj
 expect 0 "$relief" bake "$mesh" -o default.relief --json
 cp stdout report.json
 json report.json 'd["settings"]["budget"] == d["patches"]["budget"] == 10**6 and 0.9e6 < d["patches"]["bytes"] == d["gpu_bytes"] <= 10**6'
-json report.json 'd["settings"]["maps"] == ["patches:bytes=1000000"] and d["settings"]["resolution"] is None and d["times_ms"]["fit"] > 0'
+json report.json 'd["settings"]["maps"] == ["patches:budget=1000000"] and d["settings"]["resolution"] is None and d["times_ms"]["fit"] > 0'
 expect 0 "$relief" bake "$mesh" -o budget.relief --budget 1MB
 cmp default.relief budget.relief || die "the default is not a budget of 1 MB"
 grep -qE '^patches for 1.0 MB' stderr && grep -qE 'ms: import [0-9].*fitting [0-9].*writing [0-9]' stderr ||

@@ -110,7 +110,7 @@ def test_maps_are_arrays():
 
 
 def test_patches_have_a_tree_but_no_depths(tmp_path):
-    one = relief.bake(*sphere(24, 24), maps="patches:bytes=8kB").maps[0]
+    one = relief.bake(*sphere(24, 24), maps="patches:budget=8kB").maps[0]
     assert one.format == "patches" and one.texels.dtype == np.uint16 and one.texels.shape == (1, one.height, one.width, 4)
     roots = one.texels[0, 0, 0, :3].astype(int)
     # The first texels are the header and the root records. At least one root must contain a part of the sphere.
