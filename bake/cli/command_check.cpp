@@ -174,7 +174,8 @@ void addCheck(CLI::App& app, Action& action) {
         app, command->common, "check",
         withDetails(
             "Check a container, or measure a collider against its mesh\n\n"
-            "Without --mesh, it lists the issues of each file, with their codes, and the parts of a damaged "
+            "Without --mesh, it lists the issues of each file, with their codes, and the sections of a "
+            "damaged "
             "file that are usable. With --mesh, it prints a verdict, the three worst places with their "
             "causes, and commands that may help.",
             "formats/README.md lists the codes.\n"

@@ -111,7 +111,7 @@ void colliderFields(FieldVisitor& visit, const Collider& collider, const Contain
                     const AnimatedMesh* animated) {
     visit("version", std::to_string(info.major) + "." + std::to_string(info.minor),
           {.help = "Version of the container format", .pattern = "^[0-9]+\\.[0-9]+$"});
-    visit("file_size", info.file_size, {"Size of the file", "bytes"});
+    visit("file_bytes", info.file_size, {"Size of the file", "bytes"});
     visit("bounds", collider.bounds, {"Bounds of the mesh"});
     visit("unit", collider.unit, {"Unit of lengths: m, or empty if unknown"});
     visit("gpu_bytes", collider.texelBytes(), {"Size of all maps on the GPU", "bytes"});

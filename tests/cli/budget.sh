@@ -25,7 +25,7 @@ for options in "" "--compress 9"; do
     # shellcheck disable=SC2086
     expect 0 "$relief" bake "$mesh" -o recorded.relief --budget 60kB $options --json
     json stdout '" --budget 60000" in d["provenance"]["options"] and 50000 < d["gpu_bytes"] <= 60000'
-    json stdout "d['file_size'] == $(stat -c %s recorded.relief)"
+    json stdout "d['file_bytes'] == $(stat -c %s recorded.relief)"
 done
 [ "$(stat -c %s recorded.relief)" -lt 60000 ] || die "the compressed file is larger than its maps on the GPU"
 
