@@ -74,7 +74,7 @@ flatbuffers::Offset<fb::Materials> addMaterials(flatbuffers::FlatBufferBuilder& 
     for (const Material& one : materials.list) {
         const auto name = builder.CreateString(one.name);
         list.push_back(fb::CreateMaterial(builder, name, one.restitution, one.friction, one.lifetime_loss,
-                                          one.area_share));
+                                          one.area_fraction));
     }
     std::vector<fb::MaterialSides> sides;
     for (const MaterialSides& pair : materials.sides) {
@@ -188,7 +188,7 @@ Result<std::vector<std::byte>> writeChecked(const Collider& collider, const Cont
                         ? "the animated mesh takes more than the 16 MiB of a container's "
                           "metadata; simplify it, or bake fewer clips"
                     : !collider.materials.empty()
-                        ? "the materials do not fit into the container; bake with --materials none"
+                        ? "the materials do not fit into the container; bake with --materials drop"
                         : "the metadata does not fit into the container; use fewer maps");
     }
     header.file_size = end;

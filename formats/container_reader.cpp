@@ -108,7 +108,7 @@ Result<Materials> readMaterials(const fb::Materials& stored) {
     }
     for (const fb::Material* one : *stored.list()) {
         materials.list.push_back({one->name()->str(), one->restitution(), one->friction(),
-                                  one->lifetime_loss(), one->area_share()});
+                                  one->lifetime_loss(), one->area_fraction()});
     }
     if (stored.sides() != nullptr) {
         for (const fb::MaterialSides* pair : *stored.sides()) {

@@ -78,7 +78,7 @@ class Inspector {
         return state;
     }
 
-    /// Downgrades sound parts with a warning to suspicious, and sound maps under damaged metadata to unverified.
+    /// Downgrades sound sections with a warning to suspicious, and sound maps under damaged metadata to unverified.
     void settleStates() {
         for (const Issue& issue : reader_.issues) {
             if (issue.map >= 0) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reports all problems of a container as numbered issues. readContainer rejects a file at any error; inspection
-// continues with everything that is still readable, adds warnings, and reports which parts of the file can be trusted.
+// continues with everything that is still readable, adds warnings, and reports which sections can be trusted.
 // README.md in this folder, "Validation", lists the codes; their meaning never changes.
 #pragma once
 

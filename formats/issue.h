@@ -80,7 +80,7 @@ struct Issue {
     }
 };
 
-/// How far a map or another part of the file can be trusted.
+/// How far a map or another section of the file can be trusted.
 enum class PartState : std::uint8_t {
     kSound,       ///< every check passed
     kSuspicious,  ///< every check passed, but there is a warning

@@ -32,7 +32,7 @@ std::string faultOfList(const Materials& materials) {
         if (!names.insert(one.name).second) {
             return place + " has the name '" + one.name + "' of an earlier one";
         }
-        if (!isShare(one.restitution) || !isShare(one.friction) || !isShare(one.area_share)) {
+        if (!isShare(one.restitution) || !isShare(one.friction) || !isShare(one.area_fraction)) {
             return place + " has a restitution, friction or area fraction that is not in 0...1";
         }
         if (!(one.lifetime_loss >= 0.0F && one.lifetime_loss <= kMaterialLossMax)) {

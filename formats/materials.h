@@ -29,7 +29,7 @@ struct Material {
     float restitution = 1.0F;    ///< 0…1, multiplies the particle's and the body's restitution
     float friction = 0.0F;       ///< 0…1; (1 − friction) multiplies the particle's 1 − friction
     float lifetime_loss = 0.0F;  ///< seconds of life lost in each step in contact, 0…kMaterialLossMax
-    float area_share = 0.0F;     ///< fraction of the mesh's surface area, 0…1
+    float area_fraction = 0.0F;  ///< fraction of the mesh's surface area, 0…1
 
     friend bool operator==(const Material&, const Material&) = default;
 };

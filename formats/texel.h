@@ -64,9 +64,9 @@ inline constexpr std::array<MapFormatInfo, kMapFormatCount> kMapFormats{{
     {"front-back", "unorm16", "FRONT_BACK_FIXED", 8, 4},
     {"patches", "unorm8", "PATCHES", 8, 0},
 }};
-/// The different names.
-inline constexpr std::array<std::string_view, 5> kMapFormatWords{"float", "fixed8", "front-back", "cube",
-                                                                 "patches"};
+/// The different names: front-back has two formats.
+inline constexpr std::array<std::string_view, 5> kMapFormatWords{
+    kMapFormats[0].name, kMapFormats[1].name, kMapFormats[2].name, kMapFormats[3].name, kMapFormats[5].name};
 
 /// Returns 0 for an unknown format.
 [[nodiscard]] constexpr std::size_t texelSize(MapFormat format) {

@@ -111,12 +111,12 @@ play() {
         done
     fi
     local every=()
-    [ -z "${RELIEF_QUIET-}" ] || every=(--frame-every 50)  # only the six of the sheet
+    [ -z "${RELIEF_QUIET-}" ] || every=(--steps-per-frame 50)  # only the six of the sheet
     "$bin/relief-sim" "$out/$name.toml" --frames "$out/frames" "${every[@]}" --json >"$out/report.json"
     sheet
     convert "$out/contact_sheet.png" -resize 1200x -define jpeg:extent=150kB "$out/contact_sheet.jpg"
     if [ "$name" = village ]; then
-        "$bin/relief-sim" "$out/$name.toml" --size 640x360 --frame-every 4 --frames "$out/film"
+        "$bin/relief-sim" "$out/$name.toml" --size 640x360 --steps-per-frame 4 --frames "$out/film"
         img2webp -loop 0 -lossy -q 40 -m 6 -d 67 "$out"/film/frame_*.png -o "$out/film.webp" >&2
     fi
     echo "Look at $out/contact_sheet.png"

@@ -106,7 +106,7 @@ Result<void> runMeshCommand(BakeCommand& command, FileGuard& files) {
         return fail(ErrorCode::kUsage, "MESH is required; name a mesh file, or see relief bake --help");
     }
     const Stopwatch total;
-    Progress progress({quotedPath(command.request.mesh), !command.common.quiet, command.request.time_limit});
+    Progress progress({quotedPath(command.request.mesh), !command.common.quiet, command.request.timeout});
     static_cast<void>(RELIEF_TRY(settingsOf(command.request)));
     RELIEF_TRY(preflightBake(command.request, command.output, command.outputs, files));
     command.request.repair.examine = command.outputs.json || !command.common.quiet;
@@ -167,15 +167,18 @@ void addBake(CLI::App& app, Action& action) {
     addOption(verb, "MESH", command->request.mesh,
               "Mesh file: OBJ, STL, PLY, OFF, glTF, FBX, COLLADA, 3DS and more; with --heights, a height map")
         ->typeName("");
-    addOption(verb, "-o,--output", command->output,
-              "Collider to write; - for standard output (default: MESH with the extension .relief, in the "
-              "current folder)")
+    addOption(
+        verb, "-o,--output", command->output,
+        withDetails(
+            "Collider to write; - for standard output (default: MESH with the extension .relief, in the "
+            "current folder)",
+            "With --recipe, it is the output folder, by default the recipe's folder."))
         ->valueText("OUT.relief");
     addFields(verb, command->request);
     addFields(verb, command->outputs);
     addRecipeOptions(verb, command->recipe);
     addWorldOption(verb, command->world);
-    addBakeDetails(verb);
+    addKeyDetails(verb);
     groupBakeOptions(verb);
     onVerb(verb, [command, &verb, &action] {
         action = [command, &verb](FileGuard& files) { return runBake(*command, verb, files); };

@@ -152,7 +152,7 @@ Result<void> runCheck(const CheckCommand& command, const std::string& file, File
     const bool passed = run.passes(command.max_error);
     if (!passed && run.original.accuracy.field.near.total() <= double{*command.max_error}) {
         return fail(ErrorCode::kDifference, *lostPartsWarning(run.part_accuracy, run.parts, run.collider) +
-                                                "; --detail LENGTH ignores shorter parts");
+                                                "; --min-part LENGTH ignores shorter parts");
     }
     if (!passed) {
         return fail(ErrorCode::kDifference,
@@ -174,7 +174,8 @@ void addCheck(CLI::App& app, Action& action) {
         app, command->common, "check",
         withDetails(
             "Check a container, or measure a collider against its mesh\n\n"
-            "Without --mesh, it lists the issues of each file, with their codes, and the parts of a damaged "
+            "Without --mesh, it lists the issues of each file, with their codes, and the sections of a "
+            "damaged "
             "file that are usable. With --mesh, it prints a verdict, the three worst places with their "
             "causes, and commands that may help.",
             "formats/README.md lists the codes.\n"
@@ -193,7 +194,7 @@ void addCheck(CLI::App& app, Action& action) {
         "relief check bunny.relief\n"
         "relief check *.relief\n"
         "relief check bunny.relief --mesh bunny.obj\n"
-        "relief check bunny.relief --mesh bunny.obj --html bunny.html\n"
+        "relief check bunny.relief --mesh bunny.obj --page bunny.html\n"
         "relief check bunny.relief --mesh bunny.obj --max-error 2 --json\n"
         "relief check level/world.json --mesh level.glb\n"
         "relief check ground/world.json --mesh heights.png");
@@ -222,18 +223,18 @@ void addCheck(CLI::App& app, Action& action) {
         ->valueText("LENGTH")
         ->range(1e-6, 1e15)
         ->needs(mesh);
-    addOption(verb, "--html", command->html,
+    addOption(verb, "--page", command->html,
               "Also write the page of relief view with the verdict, the worst places and the remedies")
-        ->valueText("OUT")
+        ->valueText("OUT.html")
         ->needs(mesh);
     addFields(verb, command->request.import);
     addFields(verb, command->request.import_limits);
     addMemoryOption(verb, command->limits);
     addFlag(verb, "--json", command->json, "Print the report as JSON");
-    groupVerbOptions(verb,
-                     {{"Comparison with the mesh",
-                       {"--mesh", "--max-error", "--samples", "--seed", "--detail", "--heights", "--within"}},
-                      {"Output", {"--html", "--json"}}});
+    groupVerbOptions(
+        verb, {{"Comparison with the mesh",
+                {"--mesh", "--max-error", "--samples", "--seed", "--min-part", "--heights", "--within"}},
+               {"Output", {"--page", "--json"}}});
     onVerb(verb, [command, &action] {
         action = [command](FileGuard& files) -> Result<void> {
             if (command->files.size() > 1 && !command->request.mesh.empty()) {

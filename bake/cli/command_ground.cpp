@@ -54,7 +54,9 @@ Result<void> checkOptions(const std::string& file, const WorldCheckCall& call) {
     ImportLimits of_mesh;
     of_mesh.triangles = call.request.import_limits.triangles;
     const std::string of_import = importOptionOf(call.request.import, of_mesh);
-    const std::string option = !call.html.empty() ? "--html" : call.request.detail ? "--detail" : of_import;
+    const std::string option = !call.html.empty()      ? "--page"
+                               : call.request.min_part ? "--min-part"
+                                                       : of_import;
     if (!option.empty()) {
         return fail(ErrorCode::kUsage, option + " has no effect with a height map; remove it");
     }
@@ -130,7 +132,7 @@ Result<void> runGroundCommand(const std::string& folder, const WorldCall& call) 
     const Stopwatch total;
     static_cast<void>(RELIEF_TRY(settingsOf(call.request)));
     RELIEF_TRY(preflightGround(folder, call));
-    Progress progress({quotedPath(call.request.mesh), !call.common.quiet, call.request.time_limit});
+    Progress progress({quotedPath(call.request.mesh), !call.common.quiet, call.request.timeout});
     progress.begin("baking the ground");
     const GroundResult result = RELIEF_TRY(bakeGroundOf(
         call.request, {{}, folder, call.outputs.compress, [&](double share) { progress.set(share); }}));

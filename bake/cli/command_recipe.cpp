@@ -122,7 +122,7 @@ Result<RecipeRun> runOf(const BakeRecipeOptions& options, const RecipeCall& call
     run.recipe = options.recipe;
     run.output_folder = call.output.empty() ? recipeFolder(options.recipe) : fs::path(call.output);
     run.dry_run = options.dry_run;
-    run.at_once = call.threads.value_or(std::max(1U, std::thread::hardware_concurrency()));
+    run.jobs = call.threads.value_or(std::max(1U, std::thread::hardware_concurrency()));
     if (call.output == "-") {
         return fail(ErrorCode::kUsage,
                     "--output is a folder with --recipe, and cannot be standard output; name a folder");
@@ -194,8 +194,8 @@ Result<RecipeWork> plan(const BakeRecipeOptions& options, const RecipeCall& call
                          [&](const RecipeJob& job) { return inShard(job.output, shard); });
     RELIEF_TRY(preflight(options, call, work.run, work.files));
     const auto cores = std::max(1U, std::thread::hardware_concurrency());
-    work.run.threads = std::max(
-        1U, cores / std::max(1U, std::min(work.run.at_once, static_cast<unsigned>(work.jobs.size()))));
+    work.run.threads =
+        std::max(1U, cores / std::max(1U, std::min(work.run.jobs, static_cast<unsigned>(work.jobs.size()))));
     return work;
 }
 
@@ -359,8 +359,10 @@ std::vector<RecipeKey> recipeKeys() {
 }
 
 void addRecipeOptions(CLI::App& verb, BakeRecipeOptions& options) {
-    OptionRef recipe =
-        addOption(verb, "--recipe", options.recipe, "Bake the assets of this TOML file that are out of date");
+    OptionRef recipe = addOption(verb, "--recipe", options.recipe,
+                                 withDetails("Bake the assets of this TOML file that are out of date",
+                                             "Each bake runs in a process of its own; -j sets how many run "
+                                             "at once. Options of the bakes are keys of the recipe."));
     recipe->valueText("FILE");
     addParsed(verb, "--shard", options.shard, parseShard, "K/N with 1 <= K <= N, such as 2/4",
               "Bake only part K of N of the recipe; the parts may run at the same time")
@@ -370,7 +372,9 @@ void addRecipeOptions(CLI::App& verb, BakeRecipeOptions& options) {
               "Write the events of the recipe's run as JSON lines; - for standard output")
         ->valueText("FILE")
         ->needs(recipe);
-    addOption(verb, "--stamp", options.stamp, "Write this file once all assets of the recipe are up to date")
+    addOption(verb, "--stamp", options.stamp,
+              withDetails("Write this file once all assets of the recipe are up to date",
+                          "--depfile names this file as its target."))
         ->valueText("FILE")
         ->needs(recipe);
     addFlag(verb, "--dry-run", options.dry_run, "Print what the recipe would bake and why, without baking")
@@ -384,7 +388,7 @@ Result<void> runRecipeCommand(const BakeRecipeOptions& options, const RecipeCall
     if (!options.events.empty()) {
         RELIEF_TRY(events.open(options.events));
     }
-    events.write(RecipeStart{options.recipe, work.jobs.size(), options.shard, work.run.at_once});
+    events.write(RecipeStart{options.recipe, work.jobs.size(), options.shard, work.run.jobs});
     RecipeResult result = RELIEF_TRY(bakeAll(work, !call.common.quiet && !options.dry_run, events));
     if (options.dry_run && call.json) {
         RELIEF_TRY(addKeys(result.assets, work.run));

@@ -135,8 +135,8 @@ Result<void> runView(const ViewCommand& command, FileGuard& files) {
                         shellQuoted(command.file) + " --page " +
                         shellQuoted(fs::path(command.file).replace_extension(".html").string()));
     }
-    if (world && !command.check.mesh.empty() && command.check.detail) {
-        return fail(ErrorCode::kUsage, "--detail has no effect on worlds; remove it");
+    if (world && !command.check.mesh.empty() && command.check.min_part) {
+        return fail(ErrorCode::kUsage, "--min-part has no effect on worlds; remove it");
     }
     const std::string output = RELIEF_TRY(outputOf(command));
     RELIEF_TRY(files.reads(command.file));
@@ -161,7 +161,7 @@ Result<std::string> preflightPage(const std::string& file, const std::string& me
     RELIEF_TRY(files.reads(file));
     RELIEF_TRY(files.reads(mesh));
     RELIEF_TRY(files.writes("-", "the report"));
-    RELIEF_TRY(files.writes(html, "--html"));
+    RELIEF_TRY(files.writes(html, "--page"));
     return namesWorld(file) ? playerPage(files) : "";
 }
 
@@ -219,7 +219,7 @@ void addView(CLI::App& app, Action& action) {
               "Page to write; - for standard output (default: FILE with the extension .html)")
         ->valueText("OUT");
     groupVerbOptions(verb, {{"Output", {"--output"}},
-                            {"Comparison with the mesh", {"--mesh", "--samples", "--seed", "--detail"}}});
+                            {"Comparison with the mesh", {"--mesh", "--samples", "--seed", "--min-part"}}});
     onVerb(verb,
            [command, &action] { action = [command](FileGuard& files) { return runView(*command, files); }; });
 }

@@ -14,13 +14,13 @@
 
 namespace relief {
 
-/// Checks, before the long work, that a page can be made and written. \param html  the value of --html; empty: no page
+/// Checks, before the long work, that a page can be made and written. \param html  the value of --page; empty: no page
 /// \return the player page for a world, otherwise empty
 /// Errors: kUsage; kUnsupported if there is no player; kInvalidInput if the player has no place for data; those of FileGuard.
 [[nodiscard]] Result<std::string> preflightPage(const std::string& file, const std::string& mesh,
                                                 const std::string& html, FileGuard& files);
 
-/// Makes the page of `relief check --html` from a finished check.
+/// Makes the page of `relief check --page` from a finished check.
 /// \param name  name of the collider \param bytes  size of its file
 /// Errors: kLimit if the data is larger than a page may hold; those of gpuImage.
 [[nodiscard]] Result<std::string> makeCheckPage(const std::string& name, std::size_t bytes,

@@ -98,9 +98,12 @@ Result<void> preflightWorld(const fs::path& folder, const WorldCall& call) {
 }
 
 void addWorldOption(CLI::App& verb, std::string& folder) {
-    addOption(
-        verb, "--world", folder,
-        "Bake a level into this folder: a collider for each distinct mesh, and world.json, which places them")
+    addOption(verb, "--world", folder,
+              withDetails("Bake a level into this folder: a collider for each distinct mesh, and world.json, "
+                          "which places them",
+                          "Each distinct mesh is baked once, however many nodes place it. Only what has "
+                          "changed is baked again. Options that choose maps, such as --map, --holes keep and "
+                          "--max-error, are for one mesh; the others apply to every mesh."))
         ->valueText("DIR")
         ->excludes("--recipe");
 }
@@ -110,7 +113,7 @@ Result<void> runWorldCommand(const std::string& folder_name, const WorldCall& ca
     const fs::path folder = folder_name;
     RELIEF_TRY(checkWorldRequest(call.request));
     RELIEF_TRY(preflightWorld(folder, call));
-    Progress progress({quotedPath(call.request.mesh), !call.common.quiet, call.request.time_limit});
+    Progress progress({quotedPath(call.request.mesh), !call.common.quiet, call.request.timeout});
     WorldWatcher watcher;
     watcher.begin = [&](const char* stage) { progress.begin(stage); };
     watcher.ended = [&](std::size_t done, std::size_t all) {
@@ -145,8 +148,8 @@ Result<void> writePage(const std::string& file, const WorldCheckCall& call, cons
 }  // namespace
 
 Result<void> runWorldCheck(const std::string& file, const WorldCheckCall& call) {
-    if (call.request.detail) {
-        return fail(ErrorCode::kUsage, "--detail has no effect on worlds; remove it");
+    if (call.request.min_part) {
+        return fail(ErrorCode::kUsage, "--min-part has no effect on worlds; remove it");
     }
     const std::string player = RELIEF_TRY(preflightPage(file, call.request.mesh, call.html, call.files));
     const WorldField field(RELIEF_TRY(loadWorld(file, call.limits)));
@@ -170,7 +173,7 @@ Result<void> runWorldCheck(const std::string& file, const WorldCheckCall& call) 
             const LostParts& first = accuracy->lost.front();
             return fail(ErrorCode::kDifference, "mesh '" + first.mesh + "': " + first.text);
         }
-        const bool floats = accuracy->places.front().cause == WorldCause::kFloats;  // at the worst body
+        const bool floats = accuracy->places.front().cause == WorldCause::kPrecision;  // at the worst body
         return fail(ErrorCode::kDifference,
                     shortNumber(accuracy->all.total()) +
                         " % of the points near the surface are on the wrong side, more than "

@@ -35,7 +35,7 @@ struct WorldCheckCall {
     std::optional<float> within;
     const ContainerLimits& limits;
     std::optional<float> max_error;  ///< percent
-    const std::string& html;         ///< the value of --html; empty: no page
+    const std::string& html;         ///< the value of --page; empty: no page
     bool json;
     FileGuard& files;
 };

@@ -56,7 +56,7 @@ GeneratedTexts bakeTexts() {
         schemaFile("check", "relief check --mesh --json", "A collider measured against its mesh.",
                    MeshCheckReport{}),
         schemaFile("check-file", "relief check FILE --json",
-                   "Issues of a container, and its usable parts. formats/README.md lists the codes.",
+                   "Issues of a container, and its usable sections. formats/README.md lists the codes.",
                    InspectionReport{}),
         schemaFile("info", "relief info --json", "The contents of a collider.",
                    ColliderReport<ColliderMapReport>{}),

@@ -11,76 +11,6 @@
 namespace relief {
 namespace {
 
-struct OptionDetails {
-    std::string_view name;
-    std::string_view text;
-};
-
-constexpr std::array kBakeDetails = std::to_array<OptionDetails>({
-    {"map",
-     "A map covers the whole mesh from one view. It can be drawn and inspected as an image, but has more "
-     "errors than patches of the same size. --map excludes --paper, --budget, --texel and --max-error."},
-    {"decode",
-     "plane measures the distance to a plane that is fitted to the whole texel. projected measures along the "
-     "ray, to a flat texel."},
-    {"depth", "unorm16 is 16-bit fixed point; half is half floats."},
-    {"paper", "The maps have the keys depth=half and decode=projected."},
-    {"resolution",
-     "Applies to --paper, --holes keep, --animated, and to each --map without the key size. It has no effect "
-     "on patches."},
-    {"budget",
-     "The file is a few hundred bytes larger, or smaller with --compress. With --max-error and --texel, the "
-     "budget is an upper limit. With --world, it is shared by all colliders, and its default is 16MB."},
-    {"texel",
-     "A cell is split while its patch is off by more than a quarter of the texel and its side is longer than "
-     "two texels; all patches take at most 134 MB. With --budget, the texel grows until the patches fit, and "
-     "a warning states its length. "
-     "With --world, the length is in units of the level, and each mesh is baked for its largest scale."},
-    {"max_error",
-     "Tries budgets from 32kB to 64MB, or up to --budget, and measures each as `relief check` does, with "
-     "50000 points. If none is accurate enough, the exit code is 7 and nothing is written. It excludes "
-     "--texel."},
-    {"quality",
-     "fast fits each plane to 1 ray per texel, normal to 16 and best to 36. Higher settings also try more "
-     "lines and cells for patches."},
-    {"prefer",
-     "inside keeps particles out of walls, outside keeps free space free. Each removes most errors of one "
-     "kind and adds errors of the other kind."},
-    {"threads", "Results do not depend on it."},
-    {"holes",
-     "keep uses three front-back maps along the axes, or the maps of --map or --paper. An open surface has "
-     "no inside, so it cannot be baked into patches."},
-    {"no_check",
-     "A bake of patches otherwise ends with a verdict from 4000 points. It warns, with remedies, if more "
-     "than 1 % of them are wrong or a part is lost."},
-    {"unit", "If neither the option nor the file states a unit, lengths are not converted."},
-    {"strict", "With --repair, it rejects a repaired mesh that is still open."},
-    {"as",
-     "auto classifies each part by casting rays. solid closes holes. shell makes a wall with two sides. "
-     "terrain is solid below the surface. NAME is a node and everything below it, a mesh, an OBJ group or a "
-     "material. If several names match, the last option counts."},
-    {"materials",
-     "The collider stores which material covers each part of its surface, in at most 6 % of its bytes, or 4 "
-     "KiB if that is more."},
-    {"animated",
-     "The runtime poses the collider. Three front-back maps along the axes, with --resolution texels a side, "
-     "store its rest pose. Besides the options of its output, only --clips, --resolution, --quality, "
-     "--prefer, --unit, --up and limits apply."},
-    {"heights",
-     "Heights go along +y, columns along +x and rows along +z. A PNG is grey, of 8 or 16 bits. An EXR image "
-     "has one channel of heights in metres; NaN marks holes. Raw samples are files .raw, .r16 or .hgt. "
-     "Squares with a hole at a corner have no ground. Besides the options of its output, only limits apply."},
-    {"output", "With --recipe, it is the output folder, by default the recipe's folder."},
-    {"recipe",
-     "Each bake runs in a process of its own; -j sets how many run at once. Options of the bakes are keys of "
-     "the recipe."},
-    {"stamp", "--depfile names this file as its target."},
-    {"world",
-     "Each distinct mesh is baked once, however many nodes place it. Only what has changed is baked again. "
-     "Options that choose maps, such as --map, --holes keep and --max-error, are for one mesh; the others "
-     "apply to every mesh."},
-});
-
 struct MapKey {
     std::string_view key;
     std::string_view formats;
@@ -88,8 +18,8 @@ struct MapKey {
 };
 
 constexpr std::array kMapKeys = std::to_array<MapKey>({
-    {"bytes", "patches", "size on the GPU, 1MB by default"},
-    {"texel", "patches", "texel length as in --texel; bytes is then an upper limit"},
+    {"budget", "patches", "size limit on the GPU as in --budget, 1MB by default"},
+    {"texel", "patches", "texel length as in --texel; budget is then an upper limit"},
     {"dir", "float, fixed8, front-back", "view direction: +x, -x, +y, -y, +z, -z or a vector a/b/c"},
     {"up", "float, fixed8, front-back", "up direction of the image, as in dir"},
     {"size", "all but patches", "texels: N, or WxH for all but cube"},
@@ -138,7 +68,7 @@ std::string heightsKeyLines() {
 const std::vector<OptionGroup>& sharedGroups() {
     static const std::vector<OptionGroup> kGroups = {
         {"Limits",
-         {"--threads", "--time-limit", "--import-memory", "--import-time", "--max-triangles",
+         {"--threads", "--timeout", "--max-import-memory", "--import-timeout", "--max-triangles",
           "--max-memory"}},
         {"Help and messages", {"--help", "--manual", "--quiet", "--verbose", "--warnings-only"}}};
     return kGroups;
@@ -152,13 +82,9 @@ std::vector<OptionGroup> withShared(std::vector<OptionGroup> groups) {
 
 }  // namespace
 
-void addBakeDetails(CLI::App& verb) {
-    for (const OptionDetails& option : kBakeDetails) {
-        const std::string keys = option.name == "map"       ? mapKeyLines()
-                                 : option.name == "heights" ? heightsKeyLines()
-                                                            : "";
-        addDetails(verb, optionName(option.name), std::string(option.text) + keys);
-    }
+void addKeyDetails(CLI::App& verb) {
+    addDetails(verb, "--map", mapKeyLines());
+    addDetails(verb, "--heights", heightsKeyLines());
 }
 
 void groupBakeOptions(CLI::App& verb) {

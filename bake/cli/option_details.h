@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texts about the options of `relief` that are too long for --help. --manual and the manual pages print them.
+// The keys of --map and --heights for --manual and the manual pages, and the headings of --help.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace relief {
 
-/// Adds its details to each option of `relief bake`.
-void addBakeDetails(CLI::App& verb);
+/// Adds the keys of --map and --heights to the details of these options.
+void addKeyDetails(CLI::App& verb);
 
 /// Sorts the options of `relief bake` under headings.
 void groupBakeOptions(CLI::App& verb);

@@ -166,7 +166,7 @@ class GroundChecker {
 
     Result<GroundAccuracy> run() {
         const Stopwatch watch;
-        result_.map = map_.name();
+        result_.height_map = map_.name();
         result_.hash = map_.hash();
         result_.columns = map_.columns();
         result_.rows = map_.rows();
@@ -181,8 +181,8 @@ class GroundChecker {
         if (seam_squares_ > 0) {
             result_.seams = seams_.result();
         }
-        result_.anywhere = {percent(false_inside_, result_.anywhere_points),
-                            percent(false_outside_, result_.anywhere_points)};
+        result_.uniform = {percent(false_inside_, result_.uniform_points),
+                           percent(false_outside_, result_.uniform_points)};
         result_.seconds = watch.seconds();
         return std::move(result_);
     }
@@ -460,7 +460,7 @@ class GroundChecker {
 
     void count(const Probe& probe, const Outcome& outcome) {
         if (probe.kind == Kind::kAnywhere) {
-            ++result_.anywhere_points;
+            ++result_.uniform_points;
             false_inside_ += outcome.inside && !outcome.truth ? 1 : 0;
             false_outside_ += !outcome.inside && outcome.truth ? 1 : 0;
             return;
@@ -481,8 +481,8 @@ class GroundChecker {
             return;
         }
         const auto isClose = [&](const GroundWorstPlace& other) {
-            return std::max(std::abs(double{other.place.x} - double{probe.x}),
-                            std::abs(double{other.place.z} - double{probe.z})) < kApart * spacing();
+            return std::max(std::abs(double{other.position.x} - double{probe.x}),
+                            std::abs(double{other.position.z} - double{probe.z})) < kApart * spacing();
         };
         if (std::ranges::any_of(worst, [&](const GroundWorstPlace& other) {
                 return isClose(other) && badness(other) >= badness(place);

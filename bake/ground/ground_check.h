@@ -50,15 +50,15 @@ struct GroundNear {
 };
 
 struct GroundWorstPlace {
-    glm::vec3 place{0.0F};  ///< on the surface of the height map, world space
-    /// The body at that place; empty for a single collider, or if there is none.
+    glm::vec3 position{0.0F};  ///< on the surface of the height map, world space
+    /// The body at that position; empty for a single collider, or if there is none.
     std::string node;
     std::optional<double> error;  ///< along y, metres; nullopt: no surface within range
     double rise = 0.0;            ///< height range of the square, relative to its side
 };
 
 struct GroundAccuracy {
-    std::string map;  ///< file name, without the folder
+    std::string height_map;  ///< file name, without the folder
     std::string hash;
     std::uint32_t columns = 0;
     std::uint32_t rows = 0;
@@ -68,8 +68,8 @@ struct GroundAccuracy {
     double within = 0.0;
     GroundNear near;
     std::optional<GroundNear> seams;  ///< within a leaf of a seam between tiles; nullopt: no seams
-    std::uint64_t anywhere_points = 0;
-    WrongShare anywhere;                  ///< including holes and the sides
+    std::uint64_t uniform_points = 0;
+    WrongShare uniform;                   ///< including holes and the sides
     std::vector<GroundWorstPlace> worst;  ///< ten places at least four leaves apart, worst first
     std::vector<std::string> warnings;    ///< one line each
     double seconds = 0.0;

@@ -9,7 +9,8 @@ void fields(FieldVisitor& visit, ImportOptions& options) {
            .fallback = "the file's, or no conversion",
            .words = kLengthUnits,
            .value = "UNIT",
-           .recorded = true});
+           .recorded = true,
+           .details = "If neither the option nor the file states a unit, lengths are not converted."});
     visit("up", options.up,
           {.help = "Up axis in the file, turned to +y: +x, -x, +y, -y, +z or -z",
            .fallback = "the file's, or +y",
@@ -20,12 +21,12 @@ void fields(FieldVisitor& visit, ImportOptions& options) {
 }
 
 void fields(FieldVisitor& visit, ImportLimits& limits) {
-    visit("import_memory", limits.memory,
+    visit("max_import_memory", limits.memory,
           {.help = "Memory limit for reading the file",
            .unit = "bytes",
            .range = {64e6, 1e12},  // a small mesh needs less
            .must = "64MB to 1000GB"});
-    visit("import_time", limits.seconds,
+    visit("import_timeout", limits.seconds,
           {.help = "Time limit for reading the file, in seconds",
            .unit = "s",
            .range = {1.0, 86'400.0},

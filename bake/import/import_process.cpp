@@ -117,7 +117,7 @@ Result<void> ImportProcess::start(const std::string& path, std::string_view kind
 
 tl::unexpected<Error> ImportProcess::timeIsUp() const {
     return fail(ErrorCode::kLimit, "the importer did not end within " + std::to_string(limits_.seconds) +
-                                       " s; " + smaller_ + " or raise --import-time");
+                                       " s; " + smaller_ + " or raise --import-timeout");
 }
 
 Result<void> ImportProcess::await(int pipe, short events) {
@@ -149,14 +149,14 @@ Result<void> ImportProcess::finish(bool begun) {
             return {};
         case kImportExitMemory:
             return fail(ErrorCode::kLimit, "the importer needs more than " + std::to_string(limits_.memory) +
-                                               " bytes; " + smaller_ + ", or raise --import-memory");
+                                               " bytes; " + smaller_ + ", or raise --max-import-memory");
         case kImportExitArguments:
             return fail(ErrorCode::kFailure,
                         "the importer was started by another version, or lost its parent; reinstall Relief");
         case kImportExitTooLarge:
             return fail(ErrorCode::kLimit, std::string("the ") + noun_ + " is too large to transfer; " +
                                                smaller_ +
-                                               ", or raise --import-memory and this process's file size "
+                                               ", or raise --max-import-memory and this process's file size "
                                                "limit (ulimit -f)");
         default:
             return end.exit_code > kImportExitErrno

@@ -508,7 +508,7 @@ Result<std::size_t> idOf(const SurfaceName& name, const TriangleMesh& mesh,
                             shortest(one.restitution) + " and friction " + shortest(one.friction) +
                             " in one place, and " + shortest(name.restitution) + " and " +
                             shortest(name.friction) + " at '" + name.node +
-                            "'; give them different names, or bake with --materials none");
+                            "'; give them different names, or bake with --materials drop");
     }
     return found->second;
 }
@@ -548,10 +548,10 @@ Result<MaterialSource> materialSource(const TriangleMesh& mesh, bool single) {
         return fail(ErrorCode::kLimit, mesh.name + ": it has " + std::to_string(source.list.size()) +
                                            " materials, but a collider stores at most " +
                                            std::to_string(kMaterialsMax) +
-                                           "; merge some, or bake with --materials none");
+                                           "; merge some, or bake with --materials drop");
     }
     for (std::size_t i = 0; i < shares.size(); ++i) {
-        source.list[i].area_share = static_cast<float>(std::min(shares[i], 1.0));
+        source.list[i].area_fraction = static_cast<float>(std::min(shares[i], 1.0));
     }
     source.positions = mesh.positions;
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {

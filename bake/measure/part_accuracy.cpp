@@ -66,12 +66,12 @@ class PartTriangles {
 class PartMeter {
   public:
     PartMeter(const MeshQuery& query, const SurfaceParts& parts, const Field& field,
-              const PartOptions& options, double detail)
+              const PartOptions& options, double min_part)
         : query_(query),
           parts_(parts),
           field_(field),
           options_(options),
-          detail_(detail),
+          min_part_(min_part),
           triangles_(query.mesh(), parts) {}
 
     [[nodiscard]] PartAccuracy measure(std::uint32_t part, std::uint32_t points) const {
@@ -101,9 +101,9 @@ class PartMeter {
              ++k) {
             found = judgeAt(part, points, std::max(0.5 * found.accuracy.sigma, least));
         }
-        const double excess = kNoticeableExcess * detail_;
+        const double excess = kNoticeableExcess * min_part_;
         const auto noticed = [&] {
-            return size >= detail_ &&
+            return size >= min_part_ &&
                    (found.absent() || found.accuracy.sigma >= excess || judgeAt(part, points, excess).lost());
         };
         if (found.lost() && !noticed()) {
@@ -158,7 +158,7 @@ class PartMeter {
         found.state = found.points < kExposed * points ? PartVerdict::kHidden
                       : wrong > kPartLost              ? PartVerdict::kLost
                       : wrong > kPartCoarse            ? PartVerdict::kCoarse
-                                                       : PartVerdict::kHeld;
+                                                       : PartVerdict::kKept;
         return judged;
     }
 
@@ -166,7 +166,7 @@ class PartMeter {
     const SurfaceParts& parts_;
     const Field& field_;
     const PartOptions& options_;
-    double detail_;
+    double min_part_;
     PartTriangles triangles_;
 };
 
@@ -215,7 +215,7 @@ class Groups {
     std::map<std::pair<std::uint64_t, std::string>, Sum> sums_;
 };
 
-/// The order is lost, coarse, minor, held, then the others.
+/// The order is lost, coarse, minor, kept, then the others.
 int rankOf(PartVerdict state) {
     constexpr std::array<int, kPartVerdicts> kRanks = {3, 1, 0, 4, 2, 5};
     return kRanks[static_cast<std::size_t>(state)];
@@ -241,7 +241,7 @@ double minorMissed(const PartsAccuracy& all, const SurfaceParts& parts) {
 
 }  // namespace
 
-double defaultDetail(const SurfaceParts& parts, const std::string& unit, double scale) {
+double defaultMinPart(const SurfaceParts& parts, const std::string& unit, double scale) {
     if (parts.parts.empty()) {
         return 0.0;
     }
@@ -252,42 +252,42 @@ double defaultDetail(const SurfaceParts& parts, const std::string& unit, double 
             addBounds(box, part.bounds);
         }
     }
-    const double detail = kNoticeableShare * glm::length(glm::dvec3(box.size()));
-    return unit == "m" ? std::min(detail, kNoticeableMetres / scale) : detail;
+    const double min_part = kNoticeableShare * glm::length(glm::dvec3(box.size()));
+    return unit == "m" ? std::min(min_part, kNoticeableMetres / scale) : min_part;
 }
 
 void IgnoredParts::add(const IgnoredParts& other, double scale) {
     parts += other.parts;
     lost += other.lost;
     size = std::max(size, scale * other.size);
-    thick += other.thick;
+    thickened += other.thickened;
     unmeasured += other.unmeasured;
 }
 
 PartsAccuracy measureParts(const MeshQuery& query, const SurfaceParts& parts, const Field& field,
                            const PartOptions& options) {
     PartsAccuracy all;
-    all.detail = options.detail.value_or(defaultDetail(parts, query.mesh().unit, options.scale));
+    all.min_part = options.min_part.value_or(defaultMinPart(parts, query.mesh().unit, options.scale));
     all.parts.resize(parts.parts.size());
     std::vector<std::uint32_t> order(parts.parts.size());
     std::iota(order.begin(), order.end(), 0U);
     const auto size = [&](std::uint32_t i) { return parts.parts[i].size(); };
     std::ranges::stable_sort(order, std::greater<>(), size);
     for (const std::uint32_t i : order) {
-        all.parts[i] = {.part = i, .state = PartVerdict::kRest, .points = 0, .wrong = {}, .sigma = 0.0};
+        all.parts[i] = {.part = i, .state = PartVerdict::kUnmeasured, .points = 0, .wrong = {}, .sigma = 0.0};
     }
     order.resize(std::min(order.size(), options.parts_max));
     const auto large = static_cast<std::size_t>(
-        std::ranges::partition_point(order, [&](std::uint32_t i) { return size(i) >= all.detail; }) -
+        std::ranges::partition_point(order, [&](std::uint32_t i) { return size(i) >= all.min_part; }) -
         order.begin());
     const auto each = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(
         options.points_all / std::max<std::size_t>(large, 1), options.points_min, options.points));
-    const PartMeter meter(query, parts, field, options, all.detail);
+    const PartMeter meter(query, parts, field, options, all.min_part);
     tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t k) {
         all.parts[order[k]] = meter.measure(order[k], k < large ? each : std::min(options.points_min, each));
     });
     all.minor_counts = minorMissed(all, parts) > kGoodPercent;
-    if (all.minor_counts && !options.detail) {
+    if (all.minor_counts && !options.min_part) {
         for (PartAccuracy& one : all.parts) {
             one.state = one.state == PartVerdict::kMinor && isMissing(one) ? PartVerdict::kLost : one.state;
         }
@@ -305,8 +305,8 @@ PartsAccuracy measureParts(const MeshQuery& query, const SurfaceParts& parts, co
         }
     }
     all.ignored.parts = all.parts.size();
-    all.ignored.thick = all.countOf(PartVerdict::kMinor) - all.ignored.lost;
-    all.ignored.unmeasured = all.countOf(PartVerdict::kRest);
+    all.ignored.thickened = all.countOf(PartVerdict::kMinor) - all.ignored.lost;
+    all.ignored.unmeasured = all.countOf(PartVerdict::kUnmeasured);
     nodes.addTo(all.groups);
     materials.addTo(all.groups);
     // Also weighted by size: a large part that is half wrong is worse than a small part that is all wrong.

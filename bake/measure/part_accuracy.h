@@ -21,31 +21,31 @@ struct PartOptions {
     std::size_t parts_max = 10'000;      ///< only the largest parts are measured
     std::uint64_t seed = 1;
     double sigma_share = 0.005;  ///< as in AccuracyOptions, in units of the part's longest side
-    /// Longest side of the smallest part that counts, object units; nullopt: defaultDetail.
-    std::optional<double> detail = {};
-    double scale = 1.0;  ///< of the object in its world, for defaultDetail
+    /// Longest side of the smallest part that counts, object units; nullopt: defaultMinPart.
+    std::optional<double> min_part = {};
+    double scale = 1.0;  ///< of the object in its world, for defaultMinPart
 };
 
 /// Returns kNoticeableShare of the diagonal of the parts without outliers. If `unit` is metres, at most
 /// kNoticeableMetres in the world.
-[[nodiscard]] double defaultDetail(const SurfaceParts& parts, const std::string& unit, double scale = 1.0);
+[[nodiscard]] double defaultMinPart(const SurfaceParts& parts, const std::string& unit, double scale = 1.0);
 
 enum class PartVerdict : std::uint8_t {
-    kHeld,    ///< at most kPartCoarse
+    kKept,    ///< at most kPartCoarse
     kCoarse,  ///< at most kPartLost
     kLost,
-    kHidden,  ///< inside other parts, where nothing can collide
-    kMinor,   ///< lost, but too small to lower the grade
-    kRest,    ///< beyond parts_max; not measured
+    kHidden,      ///< inside other parts, where nothing can collide
+    kMinor,       ///< lost, but too small to lower the grade
+    kUnmeasured,  ///< beyond parts_max; not measured
 };
 template <>
-inline constexpr std::array<std::string_view, 6> kWordsOf<PartVerdict>{"held",   "coarse", "lost",
-                                                                       "hidden", "minor",  "rest"};
+inline constexpr std::array<std::string_view, 6> kWordsOf<PartVerdict>{"kept",   "coarse", "lost",
+                                                                       "hidden", "minor",  "unmeasured"};
 inline constexpr std::size_t kPartVerdicts = kWordsOf<PartVerdict>.size();
 
 struct PartAccuracy {
     std::uint32_t part = 0;  ///< index into SurfaceParts::parts
-    PartVerdict state = PartVerdict::kHeld;
+    PartVerdict state = PartVerdict::kKept;
     std::uint32_t points = 0;  ///< number near the part's exposed surface
     WrongShare wrong;          ///< percent of them
     double sigma = 0.0;        ///< standard deviation of their distance from the part, object units
@@ -66,15 +66,15 @@ struct IgnoredParts {
     std::uint64_t parts = 0;       ///< total
     std::uint64_t lost = 0;        ///< PartVerdict::kMinor, mostly classified as outside
     double size = 0.0;             ///< longest side of the largest lost part
-    std::uint64_t thick = 0;       ///< PartVerdict::kMinor, mostly classified as inside
-    std::uint64_t unmeasured = 0;  ///< PartVerdict::kRest
+    std::uint64_t thickened = 0;   ///< PartVerdict::kMinor, mostly classified as inside
+    std::uint64_t unmeasured = 0;  ///< PartVerdict::kUnmeasured
 
     /// Adds the parts of another mesh. \param scale  factor for its sizes.
     void add(const IgnoredParts& other, double scale);
 };
 
 struct PartsAccuracy {
-    double detail = 0.0;  ///< object units
+    double min_part = 0.0;  ///< object units
     std::vector<PartAccuracy>
         parts;  ///< by state: lost, coarse, and so on; within a state by wrong points times size
     /// Nodes, then materials, with a name and several parts; least accurate first.
@@ -94,8 +94,8 @@ struct PartsAccuracy {
 /// except that a shell ends at its right_thickness. If fewer than 256 points classify a part as lost, it is measured
 /// again with 256.
 ///
-/// A lost part is minor if it is shorter than the detail. It is also minor if it is not missing, and points at
-/// kNoticeableExcess of the detail are on the right side. Exception: if PartsAccuracy::minor_counts is set and the detail
+/// A lost part is minor if it is shorter than `min_part`. It is also minor if it is not missing, and points at
+/// kNoticeableExcess of `min_part` are on the right side. Exception: if PartsAccuracy::minor_counts is set and `min_part`
 /// is the default, missing minor parts are lost.
 /// The result does not depend on the number of threads.
 /// \param query  of the solid of `parts`.

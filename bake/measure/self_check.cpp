@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint32_t kPoints = 4000;
 /// At least a quarter of a lost part's points are wrong.
 const PartOptions kParts{
-    .points = 64, .points_min = 16, .points_all = 16'384, .parts_max = 1024, .detail = {}};
+    .points = 64, .points_min = 16, .points_all = 16'384, .parts_max = 1024, .min_part = {}};
 
 }  // namespace
 

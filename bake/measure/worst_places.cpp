@@ -201,8 +201,8 @@ WorstPlace describe(const std::vector<std::uint32_t>& points, const std::vector<
     }
     const auto [map, of_map] = mostFrequent(by_map);
     place.points = points.size();
-    place.share_percent = percent(points.size(), wrong.size());
-    place.inside_percent = percent(inside, points.size());
+    place.contribution_percent = percent(points.size(), wrong.size());
+    place.false_inside_percent = percent(inside, points.size());
     place.map = static_cast<int>(map) - 1;
     place.map_percent = percent(of_map, points.size());
     return place;

@@ -31,13 +31,13 @@ inline constexpr std::size_t kWrongCauses = kWordsOf<WrongCause>.size();
 
 /// A region of the surface with many nearby points on the wrong side.
 struct WorstPlace {
-    glm::vec3 position{0.0F};     ///< a typical wrong point
-    Bounds box;                   ///< of its wrong points
-    std::uint64_t points = 0;     ///< number of wrong points
-    double share_percent = 0.0;   ///< of all wrong points near the surface
-    double inside_percent = 0.0;  ///< of its points: wrongly classified as inside
-    int map = -1;                 ///< the map that decides most of them; −1: no map votes
-    double map_percent = 0.0;     ///< of its points: decided by that map
+    glm::vec3 position{0.0F};           ///< a typical wrong point
+    Bounds box;                         ///< of its wrong points
+    std::uint64_t points = 0;           ///< number of wrong points
+    double contribution_percent = 0.0;  ///< of all wrong points near the surface
+    double false_inside_percent = 0.0;  ///< of its points: wrongly classified as inside
+    int map = -1;                       ///< the map that decides most of them; −1: no map votes
+    double map_percent = 0.0;           ///< of its points: decided by that map
     /// Longer side of that map's texels at `position`, object units; 0 without a map.
     double texel = 0.0;
     WrongCause cause = WrongCause::kTexel;  ///< the cause of most of them

@@ -15,7 +15,7 @@ namespace relief {
 /// kSurface: baked unchanged; ray parity decides what is inside.
 enum class PartKind : std::uint8_t { kSolid, kSolidWithHoles, kSheet, kTerrain, kSurface };
 template <>
-inline constexpr std::array<std::string_view, 5> kWordsOf<PartKind>{"solid", "solid with holes", "sheet",
+inline constexpr std::array<std::string_view, 5> kWordsOf<PartKind>{"solid", "solid_with_holes", "sheet",
                                                                     "terrain", "surface"};
 
 struct SurfacePart {

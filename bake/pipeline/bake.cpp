@@ -79,7 +79,7 @@ BakeRequest recordOf(const BakeRequest& request, const BakeSettings& settings, c
     record.thickness = thicknessOf(solid.shape);
     record.texel = request.texel;
     record.materials = request.materials;
-    record.voids = solid.shape.voids > 0 ? VoidsAs::kFull : request.voids;
+    record.voids = solid.shape.voids > 0 ? VoidsAs::kFill : request.voids;
     return record;
 }
 

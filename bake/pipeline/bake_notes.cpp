@@ -77,7 +77,7 @@ std::vector<std::string> noticesOf(const SolidMesh& solid, std::size_t nodes) {
                           " inside another one, with rims too far apart to join: the space inside is solid; "
                           "to make it hollow, close the gap between the rims in the mesh");
     }
-    if (const std::uint64_t walls = solid.shape.unclear_walls; walls > 0) {
+    if (const std::uint64_t walls = solid.shape.ambiguous_walls; walls > 0) {
         notices.push_back(
             countText(walls, "wall") +
             " made of two open shells; their winding does not distinguish a lining from a body: the "

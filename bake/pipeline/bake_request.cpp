@@ -48,8 +48,8 @@ Result<MapSource> sourceOf(const BakeRequest& request) {
 
 /// Returns an error if an option for meshes is set.
 std::string otherThanHeights(const BakeRequest& request) {
-    constexpr std::array<std::string_view, 5> kAllowed = {"heights", "threads", "time_limit", "import_memory",
-                                                          "import_time"};
+    constexpr std::array<std::string_view, 5> kAllowed = {"heights", "threads", "timeout",
+                                                          "max_import_memory", "import_timeout"};
     for (const FieldWords& field : changedFields(request)) {
         if (std::ranges::find(kAllowed, field.name) == kAllowed.end()) {
             return optionName(field.name) + " has no effect with --heights; remove it";
@@ -61,8 +61,8 @@ std::string otherThanHeights(const BakeRequest& request) {
 /// Returns an error if an option is set that --animated does not support.
 std::string otherThanAnimated(const BakeRequest& request) {
     constexpr std::array<std::string_view, 12> kAllowed = {
-        "animated", "clips", "resolution",    "quality",     "prefer",        "threads",
-        "unit",     "up",    "import_memory", "import_time", "max_triangles", "time_limit"};
+        "animated", "clips", "resolution",        "quality",        "prefer",        "threads",
+        "unit",     "up",    "max_import_memory", "import_timeout", "max_triangles", "timeout"};
     for (const FieldWords& field : changedFields(request)) {
         if (std::ranges::find(kAllowed, field.name) == kAllowed.end()) {
             return optionName(field.name) + " has no effect with --animated; remove one of them";
@@ -162,7 +162,7 @@ Result<ShapeOptions> shapeOptionsOf(const BakeRequest& request) {
     ShapeOptions options = RELIEF_TRY(parseShapeOptions(request.as));
     options.thickness_by_part = !request.thickness || request.thickness->by_part;
     options.thickness_by_texel = options.thickness_by_part && request.texel;
-    options.voids = request.voids.value_or(VoidsAs::kFull);
+    options.voids = request.voids.value_or(VoidsAs::kFill);
     return options;
 }
 
@@ -227,24 +227,40 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
         "Bake this map instead of patches: FORMAT[:KEY=VALUE,...] with FORMAT " +
         listed(std::span(kMapFormatWords).first(kMapFormatWords.size() - 1)) + " or " +
         std::string(kMapFormatWords.back()) + "; repeatable";
-    visit("map", request.map, {.help = kMapHelp, .value = "SPEC", .recorded = true});
+    visit("map", request.map,
+          {.help = kMapHelp,
+           .value = "SPEC",
+           .recorded = true,
+           .details = "A map covers the whole mesh from one view. It can be drawn and inspected as an image, "
+                      "but has more errors than patches of the same size. --map excludes --paper, --budget, "
+                      "--texel and --max-error."});
     visit("decode", request.decode,
-          {.help = "Default of the key decode of --map; the paper uses projected", .fallback = "plane"});
-    visit(
-        "depth", request.depth,
-        {.help = "Default of the key depth of --map front-back; the paper uses half", .fallback = "unorm16"});
+          {.help = "Default of the key decode of --map; the paper uses projected",
+           .fallback = "plane",
+           .details = "plane measures the distance to a plane that is fitted to the whole texel. projected "
+                      "measures along the ray, to a flat texel."});
+    visit("depth", request.depth,
+          {.help = "Default of the key depth of --map front-back; the paper uses half",
+           .fallback = "unorm16",
+           .details = "unorm16 is 16-bit fixed point; half is half floats."});
     visit("paper", request.paper,
-          {.help = "Bake the maps of the original paper: front-back along -x, -y and -z, and a cube"});
+          {.help = "Bake the maps of the original paper: front-back along -x, -y and -z, and a cube",
+           .details = "The maps have the keys depth=half and decode=projected."});
     visit("resolution", request.resolution,
           {.help = "Texels along each side of a map whose size is not set",
            .fallback = "512; 256 with --holes keep or --animated",
-           .recorded = true});
+           .recorded = true,
+           .details = "Applies to --paper, --holes keep, --animated, and to each --map without the key size. "
+                      "It has no effect on patches."});
     visit("budget", request.budget,
           {.help = "Size limit of the patches on the GPU, such as 256kB or 4MB",
            .unit = "bytes",
            .range = {1.0},
            .fallback = "1MB",
-           .recorded = true});
+           .recorded = true,
+           .details = "The file is a few hundred bytes larger, or smaller with --compress. With --max-error "
+                      "and --texel, the budget is an upper limit. With --world, it is shared by all "
+                      "colliders, and its default is 16MB."});
     visit(
         "texel", request.texel,
         {.help = "Texel length of the patches, in object units or as 1cm; without --budget, their size is "
@@ -254,39 +270,59 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
          .value = "LENGTH",
          .must = "a length above 0 in object units (with --world, units of the level); if these are metres, "
                  "mm, cm or m may follow the number",
-         .recorded = true});
+         .recorded = true,
+         .details = "A cell is split while its patch is off by more than a quarter of the texel and its side "
+                    "is longer than two texels; all patches take at most 134 MB. With --budget, the texel "
+                    "grows until the patches fit, and a warning states its length. With --world, the length "
+                    "is in units of the level, and each mesh is baked for its largest scale."});
     visit(
         "max_error", request.max_error,
         {.help =
              "Bake the smallest patches that misclassify at most this percentage of points near the surface",
          .unit = "%",
-         .range = {0.0}});
+         .range = {0.0},
+         .details = "Tries budgets from 32kB to 64MB, or up to --budget, and measures each as `relief check` "
+                    "does, with 50000 points. If none is accurate enough, the exit code is 7 and nothing is "
+                    "written. It excludes --texel."});
     visit("quality", request.quality,
           {.help = "Effort spent on fitting maps to the surface; best is the slowest",
            .fallback = "normal",
-           .recorded = true});
+           .recorded = true,
+           .details = "fast fits each plane to 1 ray per texel, normal to 16 and best to 36. Higher settings "
+                      "also try more lines and cells for patches."});
     visit("prefer", request.prefer,
           {.help = "Classify doubtful space for the fewest errors, as inside, or as outside",
            .fallback = "neither",
-           .recorded = true});
+           .recorded = true,
+           .details = "inside keeps particles out of walls, outside keeps free space free. Each removes most "
+                      "errors of one kind and adds errors of the other kind."});
     visit("threads", request.threads,
           {.help = "Number of worker threads; with --recipe, of simultaneous bakes",
            .range = {1.0, 1024.0},
            .fallback = "all cores",
-           .letter = 'j'});
+           .letter = 'j',
+           .details = "Results do not depend on it."});
     visit("holes", request.holes,
           {.help = "Close the mesh's parts into solids (see --as), or bake the open surface as it is",
-           .recorded = true});
+           .recorded = true,
+           .details = "keep uses three front-back maps along the axes, or the maps of --map or --paper. An "
+                      "open surface has no inside, so it cannot be baked into patches."});
     visit("no_check", request.no_check,
-          {.help = "Skip the check of the result, which takes a few percent of the bake time"});
+          {.help = "Skip the check of the result, which takes a few percent of the bake time",
+           .details = "A bake of patches otherwise ends with a verdict from 4000 points. It warns, with "
+                      "remedies, if more than 1 % of them are wrong or a part is lost."});
     fields(visit, request.import);
     fields(visit, request.import_limits);
     fields(visit, request.repair);
-    visit("as", request.as,
-          {.help = "Kind of the mesh's parts, or of those named NAME in the file; repeatable",
-           .fallback = "auto",
-           .value = "[NAME=]auto|solid|shell|terrain",
-           .recorded = true});
+    visit(
+        "as", request.as,
+        {.help = "Kind of the mesh's parts, or of those named NAME in the file; repeatable",
+         .fallback = "auto",
+         .value = "[NAME=]auto|solid|shell|terrain",
+         .recorded = true,
+         .details = "auto classifies each part by casting rays. solid closes holes. shell makes a wall with "
+                    "two sides. terrain is solid below the surface. NAME is a node and everything below it, "
+                    "a mesh, an OBJ group or a material. If several names match, the last option counts."});
     visit("thickness", request.thickness,
           {.help = "Thickness of shells, in object units",
            .unit = "object units",
@@ -295,17 +331,25 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
            .must = "a length above 0 in object units",
            .recorded = true});
     visit("voids", request.voids,
-          {.help = "Fill cavities that several parts seal off together, such as a pot and its lid, or leave "
+          {.help = "Fill cavities that several parts seal off together, such as a pot and its lid, or keep "
                    "them hollow",
-           .fallback = "full",
+           .fallback = "fill",
            .recorded = true});
     visit("materials", request.materials,
           {.help = "Keep or drop the mesh's named materials, which responses and events use",
            .fallback = "keep if there are several",
-           .recorded = true});
-    visit("animated", request.animated,
-          {.help = "Bake an animated glTF file with its skins, morph targets, moving nodes and clips",
-           .recorded = true});
+           .recorded = true,
+           .details = "The collider stores which material covers each part of its surface, in at most 6 % of "
+                      "its bytes, or 4 KiB if that is more."});
+    visit(
+        "animated", request.animated,
+        {.help = "Bake an animated glTF file with its skins, morph targets, moving nodes and clips",
+         .recorded = true,
+         .details =
+             "The runtime poses the collider. Three front-back maps along the axes, with --resolution texels "
+             "a side, "
+             "store its rest pose. Besides the options of its output, only --clips, --resolution, --quality, "
+             "--prefer, --unit, --up and limits apply."});
     visit("clips", request.clips,
           {.help = "With --animated: add the animations of this glTF file, matched by node name; repeatable",
            .value = "FILE"});
@@ -313,8 +357,12 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
           {.help = "Bake ground from a height map (PNG, EXR or raw samples) instead of a mesh: KEY=VALUE,... "
                    "such as spacing=1,low=0,high=500",
            .value = "SPEC",
-           .recorded = true});
-    visit("time_limit", request.time_limit,
+           .recorded = true,
+           .details = "Heights go along +y, columns along +x and rows along +z. A PNG is grey, of 8 or 16 "
+                      "bits. An EXR image has one channel of heights in metres; NaN marks holes. Raw samples "
+                      "are files .raw, .r16 or .hgt. Squares with a hole at a corner have no ground. Besides "
+                      "the options of its output, only limits apply."});
+    visit("timeout", request.timeout,
           {.help = "Time limit of the whole bake, in seconds; beyond it, exit with code 6 and write nothing",
            .unit = "s",
            .range = {double{0.001F}, 1e7},

@@ -50,7 +50,7 @@ class Advisor {
         if (patches_.thickness && patches_.thickness->by_part) {
             patches_.thickness.reset();
         }
-        if (patches_.voids == VoidsAs::kFull) {
+        if (patches_.voids == VoidsAs::kFill) {
             patches_.voids.reset();  // the default
         }
     }
@@ -125,20 +125,20 @@ class Advisor {
     }
 
     /// Tries a bake, and adds it to the advice if the trial succeeded or was too large.
-    void attempt(const BakeRequest& request, const char* about, std::uint64_t bytes, bool same_solid) {
+    void attempt(const BakeRequest& request, const char* description, std::uint64_t bytes, bool same_solid) {
         const std::string command = commandLine(request, output_);
         const std::string too_much = tooMuch(bytes);
         if (!too_much.empty()) {
-            advice_.push_back({command, about, std::nullopt, too_much, false});
+            advice_.push_back({command, description, std::nullopt, too_much, false});
         } else if (const Result<double> wrong = same_solid ? wrongOf(request) : wrongOfSolid(request)) {
-            advice_.push_back({command, about, *wrong, "", *wrong <= kHelps * run_.wrongPercent()});
+            advice_.push_back({command, description, *wrong, "", *wrong <= kHelps * run_.wrongPercent()});
         }
     }
 
-    void tryBudget(std::uint64_t budget, const char* about) {
+    void tryBudget(std::uint64_t budget, const char* description) {
         BakeRequest request = patches_;
         request.budget = budget;
-        attempt(request, about, budget, !(run_.shape.default_thickness > 0.0) || repaired());
+        attempt(request, description, budget, !(run_.shape.default_thickness > 0.0) || repaired());
     }
 
     /// Tries a bake without --holes keep.

@@ -140,8 +140,8 @@ Result<void> measure(const CheckRequest& request, MeshCheck& run) {
     PartOptions part_options;
     part_options.seed = request.seed;
     part_options.points_all = request.samples;
-    if (request.detail) {
-        part_options.detail = double{*request.detail};
+    if (request.min_part) {
+        part_options.min_part = double{*request.min_part};
     }
     run.part_accuracy = measureParts(*run.query, run.parts, fieldOf(run.collider), part_options);
     const Sights sights(run.collider.maps, *run.query);
@@ -195,7 +195,7 @@ void measurementFields(FieldVisitor& visit, CheckRequest& request) {
            .range = {1.0},
            .must = "a whole number of at least 1"});
     visit("seed", request.seed, {.help = "Seed of the sample points", .value = "S"});
-    visit("detail", request.detail,
+    visit("min_part", request.min_part,
           {.help = "Shortest lost part of the mesh that lowers the grade, in object units",
            .unit = "object units",
            .range = {0.0, double{1e15F}},

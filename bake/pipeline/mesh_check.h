@@ -26,7 +26,7 @@ struct CheckRequest {
     std::string mesh;  ///< a file
     std::uint64_t samples = 200'000;
     std::uint64_t seed = 1;
-    std::optional<float> detail;  ///< smaller parts are ignored, object units
+    std::optional<float> min_part;  ///< smaller parts are ignored, object units
     ImportOptions import;
     ImportLimits import_limits;
 };

@@ -123,7 +123,7 @@ Result<T> interruptible(Work work, std::optional<float> seconds = {}) {
         if (late) {
             return fail(ErrorCode::kLimit,
                         "the bake did not end within " + shortest(*seconds) +
-                            " s; simplify the mesh, lower the budget or resolution, or raise --time-limit");
+                            " s; simplify the mesh, lower the budget or resolution, or raise --timeout");
         }
     }
     if (state->thrown) {

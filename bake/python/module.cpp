@@ -268,7 +268,7 @@ py::tuple bakeGround(const BakeRequest& request) {
         [request](const auto& checkpoint) -> Result<GroundResult> {
             return bakeGroundOf(request, {{}, {}, 0, [&](double) { checkpoint(); }});
         },
-        request.time_limit));
+        request.timeout));
     return py::make_tuple(std::make_shared<Collider>(need(readContainer(baked.container))),
                           textsOf(baked.warnings));
 }
@@ -284,7 +284,7 @@ py::tuple bake(BakeRequest request, std::optional<TriangleMesh> mesh) {
         need(files.reads(clips));
     }
     request.repair.examine = false;
-    const std::optional<float> seconds = request.time_limit;
+    const std::optional<float> seconds = request.timeout;
     const BakeResult baked = need(interruptible<BakeResult>(
         [request = std::move(request), files = std::move(files),
          mesh = std::move(mesh)](const auto& checkpoint) mutable -> Result<BakeResult> {
@@ -307,8 +307,8 @@ py::list placesOf(const std::vector<WorstPlace>& found) {
     for (const WorstPlace& place : found) {
         places.append(py::dict(
             py::arg("position") = py::make_tuple(place.position.x, place.position.y, place.position.z),
-            py::arg("size") = place.size(), py::arg("share_percent") = place.share_percent,
-            py::arg("inside_percent") = place.inside_percent, py::arg("map") = place.map,
+            py::arg("size") = place.size(), py::arg("contribution_percent") = place.contribution_percent,
+            py::arg("false_inside_percent") = place.false_inside_percent, py::arg("map") = place.map,
             py::arg("cause") = std::string(wordOf(place.cause))));
     }
     return places;
@@ -326,12 +326,14 @@ py::tuple check(const SharedCollider& collider, const CheckRequest& request,
     const py::dict measured(
         py::arg("false_inside_percent") = accuracy.near.false_inside,
         py::arg("false_outside_percent") = accuracy.near.false_outside,
-        py::arg("distance_mean") = accuracy.distance_mean, py::arg("distance_p99") = accuracy.distance_p99,
-        py::arg("normal_mean") = accuracy.normal_mean, py::arg("unknown_percent") = accuracy.unknown_percent,
+        py::arg("distance_error_mean") = accuracy.distance_mean,
+        py::arg("distance_error_p99") = accuracy.distance_p99,
+        py::arg("normal_error_mean") = accuracy.normal_mean,
+        py::arg("unknown_percent") = accuracy.unknown_percent,
         py::arg("lost_parts") = run.part_accuracy.countOf(PartVerdict::kLost),
         py::arg("ignored_parts") = run.part_accuracy.countOf(PartVerdict::kMinor),
         py::arg("grade") = verdictOf(run.wrongPercent(), run.part_accuracy, run.collider.unit).grade,
-        py::arg("places") = placesOf(run.places));
+        py::arg("worst_places") = placesOf(run.places));
     return py::make_tuple(measured, textsOf(run.warnings));
 }
 

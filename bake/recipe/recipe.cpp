@@ -27,7 +27,7 @@ constexpr std::array<std::string_view, 8> kMapChoice = {"map",       "paper",  "
 constexpr std::size_t kChoosers = 5;
 
 /// Defaults that apply to an asset with its own height map; all others are for meshes.
-constexpr std::array<std::string_view, 2> kOfHeights = {"compress", "time-limit"};
+constexpr std::array<std::string_view, 2> kOfHeights = {"compress", "timeout"};
 
 /// Thrown if a recipe exceeds a limit.
 struct BeyondLimit {

@@ -117,7 +117,7 @@ class Runner {
         }
         for (AssetResult& asset : result_.assets) {
             if (asset.state == AssetState::kStale && !(run_.dry_run && result_.signal == 0)) {
-                asset.state = AssetState::kCancelled;
+                asset.state = AssetState::kCanceled;
                 notify(run_.ended, asset);
             }
         }
@@ -181,7 +181,7 @@ class Runner {
         std::size_t next = 0;
         Clock::time_point cached = Clock::now();
         while (children_.terminationSignal() == 0) {
-            while (children_.running() < run_.at_once) {
+            while (children_.running() < run_.jobs) {
                 while (next < result_.assets.size() && result_.assets[next].state != AssetState::kStale) {
                     ++next;
                 }
@@ -229,8 +229,8 @@ class Runner {
         const std::vector<std::string>& own = asset.job.arguments;
         arguments.insert(arguments.end(), own.begin(), own.end());
         if (std::ranges::none_of(own,
-                                 [](const std::string& word) { return word.starts_with("--time-limit"); })) {
-            arguments.emplace_back("--time-limit=3600");  // a hanging bake must not block the others
+                                 [](const std::string& word) { return word.starts_with("--timeout"); })) {
+            arguments.emplace_back("--timeout=3600");  // a hanging bake must not block the others
         }
         if (const Result<void> started = children_.startSelf(arguments, index); !started) {
             failAsset(asset, started.error());
@@ -261,7 +261,7 @@ class Runner {
                                   "its bake was ended by signal " + std::to_string(end.signal) + " (" +
                                       ::strsignal(end.signal) + "); repair or simplify the mesh"});
             }
-            return;  // otherwise it is cancelled
+            return;  // otherwise it is canceled
         }
         if (end.exit_code != 0) {
             const bool known = end.exit_code <= static_cast<int>(ErrorCode::kDifference);

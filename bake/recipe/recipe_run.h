@@ -19,13 +19,13 @@ namespace relief {
 enum class AssetState : std::uint8_t {
     kStale,  ///< to be baked
     kUpToDate,
-    kBaked,      ///< its output is new
-    kFailed,     ///< its output is unchanged
-    kCancelled,  ///< not started or not finished before the run ended
+    kBaked,     ///< its output is new
+    kFailed,    ///< its output is unchanged
+    kCanceled,  ///< not started or not finished before the run ended
 };
 template <>
-inline constexpr std::array<std::string_view, 5> kWordsOf<AssetState>{"stale", "up to date", "baked",
-                                                                      "failed", "cancelled"};
+inline constexpr std::array<std::string_view, 5> kWordsOf<AssetState>{"stale", "up_to_date", "baked",
+                                                                      "failed", "canceled"};
 
 struct AssetResult {
     RecipeJob job;
@@ -47,12 +47,12 @@ struct AssetResult {
 struct RecipeRun {
     std::filesystem::path recipe;
     std::filesystem::path output_folder;  ///< exists, unless dry_run
-    unsigned at_once = 1;                 ///< at least 1
+    unsigned jobs = 1;                    ///< at least 1
     unsigned threads = 1;                 ///< per bake; neither number affects results
     bool dry_run = false;                 ///< only determines what is stale
     // Called between bakes; may be empty.
     std::function<void(const AssetResult&)> started;
-    std::function<void(const AssetResult&)> ended;  ///< up to date, baked, failed or cancelled
+    std::function<void(const AssetResult&)> ended;  ///< up to date, baked, failed or canceled
     std::function<void(const std::string&)> warn;
 };
 

@@ -192,14 +192,14 @@ Result<void> requireSolid(const MeshHealth& health, const std::string& mesh_name
         return {};
     }
     return fail(ErrorCode::kInvalidInput, mesh_name + ": not a closed solid: " + faultsText(health) +
-                                              "; the first is " + health.first_fault->what + " at " +
-                                              shortest(health.first_fault->at) +
+                                              "; the first is " + health.first_fault->description + " at " +
+                                              shortest(health.first_fault->position) +
                                               "; repair the mesh, try --repair, or leave out --strict");
 }
 
 void fields(FieldVisitor& visit, const MeshFault& fault) {
-    visit("what", fault.what, {"Description"});
-    visit("at", fault.at, {"Middle of the edge or triangle, or the vertex", "object units"});
+    visit("description", fault.description, {"Description"});
+    visit("position", fault.position, {"Middle of the edge or triangle, or the vertex", "object units"});
 }
 
 void fields(FieldVisitor& visit, const MeshHealth& health) {

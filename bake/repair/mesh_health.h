@@ -16,8 +16,8 @@ namespace relief {
 
 /// The first fault of a kind, by lowest vertex or triangle.
 struct MeshFault {
-    std::string what;    ///< with its article: "a boundary edge"
-    glm::vec3 at{0.0F};  ///< object space: the vertex, or the middle of the edge or triangle
+    std::string description;   ///< with its article: "a boundary edge"
+    glm::vec3 position{0.0F};  ///< object space: the vertex, or the middle of the edge or triangle
 };
 
 void fields(FieldVisitor& visit, const MeshFault& fault);

@@ -69,7 +69,8 @@ Result<RepairedMesh> repairMesh(PreparedMesh mesh, const RepairOptions& options)
 
 void fields(FieldVisitor& visit, RepairOptions& options) {
     visit("strict", options.strict,
-          {.help = "Reject a mesh that is not a closed solid with outward winding (exit code 3)"});
+          {.help = "Reject a mesh that is not a closed solid with outward winding (exit code 3)",
+           .details = "With --repair, it rejects a repaired mesh that is still open."});
     visit("repair", options.method,
           {.help = "Bake a closed surface wrapped around the mesh, which spans gaps up to ALPHA times its "
                    "longest side (default: 0.01)",

@@ -29,7 +29,7 @@ class LineWriter : public FieldVisitor {
 
   private:
     void add(std::string_view name, const MeshFault& fault) {
-        add(name, fault.what + " at " + shortest(fault.at));
+        add(name, fault.description + " at " + shortest(fault.position));
     }
     void add(std::string_view name, const std::string& value) {
         std::string words(name);
@@ -85,8 +85,8 @@ std::string patchesLine(const PatchesReport& report, const std::string& unit) {
         " apart";
     if (report.max_error) {
         line += "; " + shortNumber(report.wrong_percent) +
-                " % of the points near the surface are on the wrong side, found by " +
-                countText(report.tries.size(), "try", "tries");
+                " % of the points near the surface are on the wrong side, found in " +
+                countText(report.tries.size(), "trial");
     }
     return line + "\n";
 }
@@ -116,8 +116,8 @@ std::string shapeText(const ShapeReport& report, const std::string& unit) {
         return text;
     }
     if (report.thickness > 0.0) {
-        const bool alike = report.thickness_least == report.thickness;
-        text += "; sheets are " + (alike ? "" : shortNumber(report.thickness_least) + " to ") +
+        const bool alike = report.thickness_min == report.thickness;
+        text += "; sheets are " + (alike ? "" : shortNumber(report.thickness_min) + " to ") +
                 shortNumber(report.thickness) + " " + unitText(unit) + " thick";
     }
     if (report.coincident_triangles > 0) {
@@ -194,7 +194,7 @@ void fields(FieldVisitor& visit, const PatchesReport& report) {
                      {"--max-error", "%", kFromZero});
         visit_search("wrong_percent", report.wrong_percent,
                      {"Points near the surface that are on the wrong side", "%", kPercentRange});
-        visit_search("tries", report.tries, {"Trials, in order"});
+        visit_search("trials", report.tries, {"Trials, in order"});
     };
     visit("search", groupIf(report.max_error.has_value(), search),
           {"Search for the smallest budget; null without --max-error"});
@@ -207,7 +207,7 @@ void fields(FieldVisitor& visit, const RepairReport& care) {
         visit_repair("mesh_health", care.repaired, {"Health of the repaired mesh"});
     };
     visit("repair", groupIf(!care.repair.empty(), repair), {"Results of --repair; null without it"});
-    visit("turned_triangles", care.turned, {"Triangles turned to face outwards"});
+    visit("flipped_triangles", care.turned, {"Triangles flipped to face outwards"});
 }
 
 void fields(FieldVisitor& visit, const InputFile& input) {

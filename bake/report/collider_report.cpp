@@ -9,7 +9,7 @@ std::string materialsText(const Materials& materials) {
     for (const Material& one : materials.list) {
         rows.push_back({one.name.empty() ? "-" : one.name, shortNumber(double{one.restitution}),
                         shortNumber(double{one.friction}), shortNumber(double{one.lifetime_loss}),
-                        shortNumber(100.0 * double{one.area_share}) + " %"});
+                        shortNumber(100.0 * double{one.area_fraction}) + " %"});
     }
     return countText(materials.list.size(), "material") + " in " + bytesText(materials.bytes()) + "\n" +
            table(rows);
@@ -81,7 +81,7 @@ void fields(FieldVisitor& visit, const ColliderMapReport& report) {
 
 void fields(FieldVisitor& visit, const MeshClip& clip) {
     visit("name", clip.name, {"Name, unique among the clips"});
-    visit("seconds", clip.seconds, {"Length", "s", kFromZero});
+    visit("duration", clip.seconds, {"Length", "s", kFromZero});
 }
 
 void fields(FieldVisitor& visit, const AnimatedMesh& mesh) {
@@ -103,7 +103,7 @@ void fields(FieldVisitor& visit, const Material& material) {
           {"1 − friction is a factor of the particles' own 1 − friction", {}, kShareRange});
     visit("lifetime_loss", material.lifetime_loss,
           {"Lifetime lost per step in contact", "s", {0.0, double{kMaterialLossMax}}});
-    visit("area_percent", 100.0 * double{material.area_share},
+    visit("area_percent", 100.0 * double{material.area_fraction},
           {"Fraction of the mesh's surface", "%", kPercentRange});
 }
 
@@ -111,10 +111,10 @@ void colliderFields(FieldVisitor& visit, const Collider& collider, const Contain
                     const AnimatedMesh* animated) {
     visit("version", std::to_string(info.major) + "." + std::to_string(info.minor),
           {.help = "Version of the container format", .pattern = "^[0-9]+\\.[0-9]+$"});
-    visit("file_size", info.file_size, {"Size of the file", "bytes"});
+    visit("file_bytes", info.file_size, {"Size of the file", "bytes"});
     visit("bounds", collider.bounds, {"Bounds of the mesh"});
     visit("unit", collider.unit, {"Unit of lengths: m, or empty if unknown"});
-    visit("texel_bytes", collider.texelBytes(), {"Size of all maps on the GPU", "bytes"});
+    visit("gpu_bytes", collider.texelBytes(), {"Size of all maps on the GPU", "bytes"});
     visit("maps", maps, {.help = "Maps, in the order of the file", .items = kFromOne});
     visit("materials", collider.materials.list, {"Materials of the surface, by id; empty if it has none"});
     visit("material_bytes", collider.materials.bytes(), {"Size of the materials", "bytes"});

@@ -84,7 +84,7 @@ void fields(FieldVisitor& visit, const GroundJson& report) {
 
 std::string groundCheckText(const GroundAccuracy& accuracy, const std::string& name) {
     std::string text =
-        name + ": ground of " + accuracy.map + ", " + std::to_string(accuracy.columns) + "x" +
+        name + ": ground of " + accuracy.height_map + ", " + std::to_string(accuracy.columns) + "x" +
         std::to_string(accuracy.rows) + " samples; " + countText(accuracy.squares, "square") +
         " with ground, " + std::to_string(accuracy.steep) + " of them steep, " +
         std::to_string(accuracy.holes) + " without\n" + percentText(accuracy.near.wrong.total()) +
@@ -98,13 +98,13 @@ std::string groundCheckText(const GroundAccuracy& accuracy, const std::string& n
     if (accuracy.seams) {
         rows.push_back(nearRow("near seams", *accuracy.seams));
     }
-    rows.push_back({"anywhere", std::to_string(accuracy.anywhere_points),
-                    percentText(accuracy.anywhere.total()), percentText(accuracy.anywhere.false_inside),
-                    percentText(accuracy.anywhere.false_outside), "", "", "", "", ""});
+    rows.push_back({"anywhere", std::to_string(accuracy.uniform_points),
+                    percentText(accuracy.uniform.total()), percentText(accuracy.uniform.false_inside),
+                    percentText(accuracy.uniform.false_outside), "", "", "", "", ""});
     text += table(rows) + "\n";
     rows = {{"worst place", "tile", "error>", "rise of its square, in sides>"}};
     for (const GroundWorstPlace& place : accuracy.worst) {
-        rows.push_back({positionText(place.place), place.node.empty() ? "-" : place.node,
+        rows.push_back({positionText(place.position), place.node.empty() ? "-" : place.node,
                         place.error ? millimetres(*place.error) : "no surface", shortNumber(place.rise)});
     }
     return text + table(rows);
@@ -124,7 +124,7 @@ void fields(FieldVisitor& visit, const GroundNear& near) {
 }
 
 void fields(FieldVisitor& visit, const GroundWorstPlace& place) {
-    visit("place", place.place, {"On the surface of the height map", "[x, y, z]"});
+    visit("position", place.position, {"On the surface of the height map", "[x, y, z]"});
     visit("node", place.node, {"Tile at the place; empty for a single collider"});
     visit("error", place.error,
           {"Distance along y to the collider's surface; null if none is within range", "m"});
@@ -135,7 +135,7 @@ void fields(FieldVisitor& visit, const GroundCheckJson& report) {
     const GroundAccuracy& a = report.accuracy;
     toolField(visit);
     visit("file", report.file, {"File of the collider or the world"});
-    visit("map", a.map, {"File of the height map"});
+    visit("height_map", a.height_map, {"File of the height map"});
     visit("hash", a.hash, {.help = "XXH3-128 of the height map's file", .pattern = kHashPattern});
     sourceFields(visit, report.heights, a.columns, a.rows);
     visit("squares", a.squares, {"Squares with ground", {}, kFromOne});
@@ -146,12 +146,12 @@ void fields(FieldVisitor& visit, const GroundCheckJson& report) {
     visit("seams", a.seams,
           {"Of these, points within a leaf (four squares) of a seam between tiles; null if there are no "
            "seams"});
-    const auto anywhere = [&](FieldVisitor& inner) {
-        inner("points", a.anywhere_points, {"Points"});
-        fields(inner, a.anywhere);
+    const auto uniform = [&](FieldVisitor& inner) {
+        inner("points", a.uniform_points, {"Points"});
+        fields(inner, a.uniform);
     };
-    visit("anywhere", group(anywhere),
-          {"Points in the map's box and one square around it, down to the required solid depth, "
+    visit("uniform", group(uniform),
+          {"Points in the height map's box and one square around it, down to the required solid depth, "
            "including holes and edges"});
     visit("worst", a.worst, {"At most ten places, worst first"});
     visit("max_error_percent", report.max_error, {"--max-error; null without it", "%", kPercentRange});

@@ -110,7 +110,7 @@ void fields(FieldVisitor& visit, const MapInspectionReport& report) {
 void fields(FieldVisitor& visit, const InspectionReport& report) {
     const Inspection& all = report.inspection;
     visit("file", report.name, {"File name without its folder, or standard input"});
-    visit("file_size", all.file_size, {"Size of the file", "bytes"});
+    visit("file_bytes", all.file_size, {"Size of the file", "bytes"});
     visit("version", onlyIf(all.major != 0, std::to_string(all.major) + "." + std::to_string(all.minor)),
           {.help = "Version of the container format; null if the header is unreadable",
            .pattern = "^[0-9]+\\.[0-9]+$"});

@@ -13,7 +13,7 @@ namespace relief {
 /// Returns "sound", "suspicious" or "damaged".
 [[nodiscard]] std::string_view inspectionVerdict(const Inspection& inspection);
 
-/// Returns a line for the verdict, a line per issue, a table of the maps, and the intact parts.
+/// Returns a line for the verdict, a line per issue, a table of the maps, and the intact sections.
 /// \param name  of the file, as shown to people
 [[nodiscard]] std::string inspectionText(const Inspection& inspection, const std::string& name);
 

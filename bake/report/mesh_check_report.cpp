@@ -26,10 +26,10 @@ void fields(FieldVisitor& visit, const MeshCheckReport& report) {
         visit_mesh("name", run.mesh->name, {"File name"});
         visit_mesh("hash", run.mesh->content_hash, {.help = "XXH3-128 of the file", .pattern = kHashPattern});
         visit_mesh("triangles", run.mesh->sourceTriangles(), {"Triangles of the mesh"});
-        visit_mesh("watertight", run.watertight, {"Whether the mesh is closed"});
+        visit_mesh("closed", run.watertight, {"Whether the mesh is closed"});
         visit_mesh("shape", madeShapes(run.shape),
                    {"Treatment of the parts of the mesh; null if it was baked with --holes keep"});
-        visit_mesh("baked_from_it", run.same_file, {"Whether the collider was baked from exactly this file"});
+        visit_mesh("is_source", run.same_file, {"Whether the collider was baked from exactly this file"});
     };
     visit("mesh", group(mesh), {"Mesh that the collider is measured against"});
     visit("unit", run.collider.unit, {"Unit of lengths; may be empty"});

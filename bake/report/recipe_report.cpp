@@ -79,7 +79,7 @@ std::string recipeSummary(const RecipeCounts& counts, double ms) {
     add(AssetState::kBaked, "baked");
     add(AssetState::kUpToDate, "up to date");
     add(AssetState::kFailed, "failed");
-    add(AssetState::kCancelled, "not baked");
+    add(AssetState::kCanceled, "not baked");
     return assets + text + "; " + bytesText(counts.bytes) + "; " + seconds(ms);
 }
 
@@ -258,7 +258,7 @@ void fields(FieldVisitor& visit, const RecipeCounts& counts) {
     visit("baked", counts.of(AssetState::kBaked), {"Assets baked"});
     visit("up_to_date", counts.of(AssetState::kUpToDate), {"Assets that were already up to date"});
     visit("failed", counts.of(AssetState::kFailed), {"Assets that failed"});
-    visit("cancelled", counts.of(AssetState::kCancelled), {"Assets not baked because the run ended early"});
+    visit("canceled", counts.of(AssetState::kCanceled), {"Assets not baked because the run ended early"});
     visit("bytes", counts.bytes, {"Size of all outputs that are up to date", "bytes"});
 }
 
@@ -272,17 +272,17 @@ void fields(FieldVisitor& visit, const RecipeJson& report) {
 }
 
 void fields(FieldVisitor& visit, const RecipeStart& start) {
-    visit("event", "start", {.help = "The first line", .words = kWords<"start">});
+    visit("event", "run_started", {.help = "The first line", .words = kWords<"run_started">});
     toolField(visit);
     visit("recipe", start.recipe, {"Recipe, as on the command line"});
     visit("assets", start.assets, {"Number of assets"});
     visit("shard", shardText(start.shard), kShardField);
-    visit("at_once", start.at_once, {"Assets baked at the same time", {}, kFromOne});
+    visit("jobs", start.jobs, {"Assets baked at the same time", {}, kFromOne});
 }
 
 void fields(FieldVisitor& visit, const AssetEvent& event) {
     static constexpr auto kEvents =
-        kWords<"started", "skipped", "done", "failed", "cancelled">;  // as in AssetState
+        kWords<"started", "skipped", "done", "failed", "canceled">;  // as in AssetState
     const auto& word = kEvents[static_cast<std::size_t>(event.asset.asset.state)];
     visit("event", word, {.help = "Kind of event", .words = {&word, 1}});
     fields(visit, event.asset);

@@ -67,7 +67,7 @@ struct RecipeStart {
     std::string recipe;
     std::size_t assets = 0;
     std::optional<Shard> shard;
-    unsigned at_once = 1;
+    unsigned jobs = 1;
 };
 
 void fields(FieldVisitor& visit, const RecipeStart& start);

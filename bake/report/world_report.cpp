@@ -144,7 +144,7 @@ std::string WorldPlaceReport::advice() const {
     switch (place().cause) {
         case WorldCause::kMoved:
             return "its pose in the world differs from the level: bake the level again";
-        case WorldCause::kFloats:
+        case WorldCause::kPrecision:
             return "floats are coarse this far from the origin of its mesh: move the mesh to the origin, and "
                    "its node back";
         case WorldCause::kTexel:
@@ -188,7 +188,7 @@ std::string worldCheckText(const WorldField& field, const std::string& name, con
         const BodyAccuracy& body = accuracy->bodies[accuracy->worst[i]];
         const WorldPlace& place = accuracy->places[i];
         rows.push_back({std::to_string(accuracy->worst[i]), body.node, body.mesh,
-                        percentText(body.wrong.total()), positionText(body.place),
+                        percentText(body.wrong.total()), positionText(body.position),
                         lengthText(place.distance, unit),
                         place.texel > 0.0 ? lengthText(place.texel, unit) : "-"});
     }
@@ -205,7 +205,7 @@ void fields(FieldVisitor& visit, const WorldPlaceReport& report) {
     visit("mesh", body.mesh, {"Name of its mesh"});
     visit("wrong_percent", body.wrong.total(),
           {"Points near it that are on the wrong side", "%", kPercentRange});
-    visit("position", body.place, {"A typical point on the wrong side, world space", "[x, y, z]"});
+    visit("position", body.position, {"A typical point on the wrong side, world space", "[x, y, z]"});
     visit("normal", place.normal, {"Normal of the nearest surface, outwards", "[x, y, z]"});
     visit("distance", place.distance, {"Distance from that surface", "world units", kFromZero});
     visit("texel", place.texel,
@@ -232,7 +232,7 @@ void fields(FieldVisitor& visit, const BodyAccuracy& body) {
     visit("tiles", body.tiles,
           {"Consecutive bodies of the world: several for a mesh in tiles; 0 for all "
            "if the level has different nodes"});
-    visit("place", body.place,
+    visit("position", body.position,
           {"A typical point on the wrong side, world space; the body's position if there is none",
            "[x, y, z]"});
 }

@@ -100,7 +100,7 @@ class Shaper {
         RELIEF_TRY(addSheets());
         PreparedMesh mesh = RELIEF_TRY(union_.finish(report_.thickness));
         std::vector<std::uint32_t> part_of = union_.takePartOf();
-        if (options_.voids == VoidsAs::kFull && hasSealingSheet()) {
+        if (options_.voids == VoidsAs::kFill && hasSealingSheet()) {
             mesh = RELIEF_TRY(fillVoids(std::move(mesh), part_of));
         }
         return ShapedMesh{std::move(mesh), report_, {std::move(collected_.parts()), std::move(part_of)}};
@@ -295,7 +295,7 @@ class Shaper {
                 add(solid);
                 ++report_.solids_with_holes;
                 joined[wall.outer] = joined[wall.inner] = true;
-                report_.unclear_walls += isUnclear(wall, candidates, mesh_, turned_) ? 1 : 0;
+                report_.ambiguous_walls += isAmbiguous(wall, candidates, mesh_, turned_) ? 1 : 0;
             }
         }
         return joined;
@@ -368,8 +368,8 @@ class Shaper {
                     piece.right_thickness = right;
                 }
                 report_.thickness = std::max(report_.thickness, thickness);
-                report_.thickness_least =
-                    report_.sheets == 0 ? thickness : std::min(report_.thickness_least, thickness);
+                report_.thickness_min =
+                    report_.sheets == 0 ? thickness : std::min(report_.thickness_min, thickness);
                 ++report_.sheets;
             } else if (part.role.kind == OpenKind::kTerrain) {
                 addTerrain(part.sheet, part.role.axis);

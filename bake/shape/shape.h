@@ -40,7 +40,7 @@ struct ShapeReport {
     std::uint64_t closable_sheets = 0;  ///< large sheets that would be solids if their holes were closed
     std::uint64_t unjoined_shells =
         0;  ///< open shells within another shell, with nearly facing mouths; their space is filled
-    std::uint64_t unclear_walls =
+    std::uint64_t ambiguous_walls =
         0;  ///< walls of two joined shells whose winding does not distinguish a lining from a body
     std::uint64_t terrains = 0;
     std::uint64_t voids = 0;  ///< sealed by sheets, and filled
@@ -49,7 +49,7 @@ struct ShapeReport {
     /// Closed parts dropped in favour of a larger part (near_copies.h).
     std::uint64_t near_copies = 0;
     double thickness = 0.0;          ///< of the thickest shell, object units; 0: no shells
-    double thickness_least = 0.0;    ///< of the thinnest shell
+    double thickness_min = 0.0;      ///< of the thinnest shell
     double default_thickness = 0.0;  ///< the base of each part's thickness; 0: --thickness was given
 
     /// "2 solids, 1 sheet"; empty if no shapes were made.

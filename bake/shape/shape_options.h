@@ -18,9 +18,9 @@ template <>
 inline constexpr std::array<std::string_view, 4> kWordsOf<ShapeAs>{"auto", "solid", "shell", "terrain"};
 
 /// The treatment of free space that sheets and solids seal together (sealed_voids.h).
-enum class VoidsAs : std::uint8_t { kFull, kHollow };
+enum class VoidsAs : std::uint8_t { kFill, kKeep };
 template <>
-inline constexpr std::array<std::string_view, 2> kWordsOf<VoidsAs>{"full", "hollow"};
+inline constexpr std::array<std::string_view, 2> kWordsOf<VoidsAs>{"fill", "keep"};
 
 /// The thickness of shells: "0.01", or "auto=0.01" for a default that each sheet adapts to its size.
 struct Thickness {
@@ -50,7 +50,7 @@ struct ShapeOptions {
     bool thickness_by_part = false;
     /// The default is derived from --texel. Adapting it to a part then does not make the shell thicker.
     bool thickness_by_texel = false;
-    VoidsAs voids = VoidsAs::kFull;
+    VoidsAs voids = VoidsAs::kFill;
 
     [[nodiscard]] std::vector<std::string> names() const;  ///< of `named`, in order
 };

@@ -66,21 +66,21 @@ void fields(FieldVisitor& visit, const ShapeReport& report) {
     visit("closable_sheets", report.closable_sheets,
           {"Sheets of at least a quarter of the mesh's longest side that would be solids with closed holes: "
            "vessels, or bodies for --as solid"});
-    visit("unclear_walls", report.unclear_walls,
+    visit("ambiguous_walls", report.ambiguous_walls,
           {"Walls of two open shells whose winding does not distinguish a lining from a clothed body"});
     visit("terrains", report.terrains, {"Height fields; they become the ground below them"});
     visit("voids", report.voids,
-          {"Voids that sheets and solids seal together; filled, except with --voids hollow"});
+          {"Voids that sheets and solids seal together; filled, except with --voids keep"});
     visit("coincident_triangles", report.coincident_triangles,
           {"Triangles dropped because they coincide with another triangle"});
     visit("near_copies", report.near_copies,
           {"Closed parts dropped because they lie within a ten-thousandth of their longest side of a larger "
            "one"});
-    visit("thickness", length(report.thickness),
+    visit("thickness_max", length(report.thickness),
           {"Thickness of the thickest shell; null without shells", "object units", kAboveZero});
-    visit("thickness_least", length(report.thickness_least),
+    visit("thickness_min", length(report.thickness_min),
           {"Thickness of the thinnest shell; null without shells", "object units", kAboveZero});
-    visit("thickness_asked", report.thickness > 0.0 && report.default_thickness == 0.0,
+    visit("thickness_given", report.thickness > 0.0 && report.default_thickness == 0.0,
           {"--thickness was given; otherwise each shell's thickness depends on the size of its part"});
 }
 

@@ -84,8 +84,8 @@ ShellWalls wallsAmong(const std::vector<WallCandidate>& candidates, const std::s
     return walls;
 }
 
-bool isUnclear(const ShellWall& wall, const std::vector<WallCandidate>& candidates, const TriangleMesh& mesh,
-               const std::vector<bool>& turned) {
+bool isAmbiguous(const ShellWall& wall, const std::vector<WallCandidate>& candidates,
+                 const TriangleMesh& mesh, const std::vector<bool>& turned) {
     const std::optional<bool> outer = turnedSinceImport(*candidates[wall.outer].sheet, mesh, turned);
     const std::optional<bool> inner = turnedSinceImport(*candidates[wall.inner].sheet, mesh, turned);
     return !outer || !inner || wall.alike != (outer != inner);

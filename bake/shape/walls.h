@@ -26,7 +26,7 @@ struct WallCandidate {
 /// Whether the two shells of a wall have the same winding in the file, or one of them has an inconsistent winding.
 /// \param mesh    the mesh of the candidates.
 /// \param turned  per triangle of it: flipped relative to the file.
-[[nodiscard]] bool isUnclear(const ShellWall& wall, const std::vector<WallCandidate>& candidates,
-                             const TriangleMesh& mesh, const std::vector<bool>& turned);
+[[nodiscard]] bool isAmbiguous(const ShellWall& wall, const std::vector<WallCandidate>& candidates,
+                               const TriangleMesh& mesh, const std::vector<bool>& turned);
 
 }  // namespace relief

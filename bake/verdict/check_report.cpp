@@ -90,8 +90,8 @@ std::string accuracyText(const ColliderAccuracy& accuracy, const TruthSamples& s
 }
 
 std::string placeText(const WorstPlace& place, const std::string& unit) {
-    return lengthText(place.size(), unit) + " across: " + percentText(place.share_percent) +
-           " of the wrong points, " + sideText(place.inside_percent);
+    return lengthText(place.size(), unit) + " across: " + percentText(place.contribution_percent) +
+           " of the wrong points, " + sideText(place.false_inside_percent);
 }
 
 std::string mapWords(const Collider& collider, int map) {
@@ -159,13 +159,14 @@ std::string adviceText(std::span<const Advice> advice, double wrong_percent) {
     std::string vain;
     for (const Advice& one : advice) {
         if (one.wrong_percent && !one.helps) {
-            vain += (vain.empty() ? "" : ", ") + one.about + " (" + percentText(*one.wrong_percent) + ")";
+            vain +=
+                (vain.empty() ? "" : ", ") + one.description + " (" + percentText(*one.wrong_percent) + ")";
             continue;
         }
-        commands += "  " + one.command + "\n     " + one.about + "; ";
+        commands += "  " + one.command + "\n     " + one.description + "; ";
         commands += one.wrong_percent ? "tried: " + percentText(*one.wrong_percent) + " wrong instead of " +
                                             percentText(wrong_percent)
-                                      : "not tried: " + one.untried;
+                                      : "not tried: " + one.untried_reason;
         commands += "\n";
     }
     return (commands.empty() ? "" : "What to do:\n" + commands) +
@@ -249,9 +250,9 @@ void fields(FieldVisitor& visit, const WorstPlaceReport& report) {
     visit("size", place.size(),
           {"Longest side of the box of its points on the wrong side", "object units", kFromZero});
     visit("points", place.points, {"Points near the surface on the wrong side", {}, kFromOne});
-    visit("share_percent", place.share_percent,
+    visit("contribution_percent", place.contribution_percent,
           {"Fraction of all wrong points near the surface", "%", kPercentRange});
-    visit("false_inside_percent", place.inside_percent,
+    visit("false_inside_percent", place.false_inside_percent,
           {"Fraction of its points that are classified as inside", "%", kPercentRange});
     visit("map", onlyIf(has_map, place.map),
           {"Index of the map that decides most of its points; null if no map votes", {}, kFromZero});
@@ -262,19 +263,20 @@ void fields(FieldVisitor& visit, const WorstPlaceReport& report) {
           {"Fraction of the examined points with this cause", "%", kPercentRange});
     visit("texel", onlyIf(has_map, place.texel),
           {"Side of the map's texels at the position; null if no map votes", "object units", kFromZero});
-    visit("why", causeText(place, report.collider), {"Explanation in one line"});
+    visit("explanation", causeText(place, report.collider), {"Explanation in one line"});
 }
 
 void fields(FieldVisitor& visit, const Advice& advice) {
     visit("command", advice.command, {"One line for a shell"});
-    visit("about", advice.about, {"Description of the command"});
+    visit("description", advice.description, {"Description of the command"});
     visit("tried", advice.wrong_percent.has_value(), {"Whether the command was tried in memory"});
     visit("wrong_percent", advice.wrong_percent,
           {"Points, out of at most 50000 near the surface, that the trial left on the wrong side; null if "
            "not tried",
            "%", kPercentRange});
     visit("helps", advice.helps, {"Whether the trial left at most nine tenths of the wrong points"});
-    visit("untried", nonEmpty(advice.untried), {"Reason why the command was not tried; null if it was"});
+    visit("untried_reason", nonEmpty(advice.untried_reason),
+          {"Reason why the command was not tried; null if it was"});
 }
 
 }  // namespace relief

@@ -43,12 +43,12 @@ namespace relief {
 
 /// A suggested command.
 struct Advice {
-    std::string command;  ///< one line for a shell
-    std::string about;    ///< "twice the bytes"
+    std::string command;      ///< one line for a shell
+    std::string description;  ///< "twice the bytes"
     /// Percentage of misclassified points near the surface in a trial in memory; nullopt: not tried.
     std::optional<double> wrong_percent;
-    std::string untried;  ///< reason for not trying it; empty if tried
-    bool helps = false;   ///< in the trial, at most 90 % of the wrong points remained
+    std::string untried_reason;  ///< reason for not trying it; empty if tried
+    bool helps = false;          ///< in the trial, at most 90 % of the wrong points remained
 };
 
 /// Lists the commands, best first, then those that did not help; "" without advice.

@@ -60,10 +60,11 @@ std::string partSideText(const PartAccuracy& accuracy) {
 
 /// Returns a text like "27 of 82 parts are lost".
 std::string countOfMeasured(std::uint64_t count, const PartsAccuracy& accuracy, const char* what) {
-    const std::uint64_t rest = accuracy.countOf(PartVerdict::kRest);
-    const std::uint64_t measured = accuracy.parts.size() - rest - accuracy.countOf(PartVerdict::kHidden);
-    return std::to_string(count) + " of " + (rest == 0 ? "" : "the largest ") + countText(measured, "part") +
-           (count == 1 ? " is " : " are ") + what;
+    const std::uint64_t unmeasured = accuracy.countOf(PartVerdict::kUnmeasured);
+    const std::uint64_t measured =
+        accuracy.parts.size() - unmeasured - accuracy.countOf(PartVerdict::kHidden);
+    return std::to_string(count) + " of " + (unmeasured == 0 ? "" : "the largest ") +
+           countText(measured, "part") + (count == 1 ? " is " : " are ") + what;
 }
 
 std::string groupsText(const PartsAccuracy& accuracy, bool materials, const std::string& unit) {
@@ -95,7 +96,7 @@ std::string ignoredText(const IgnoredParts& ignored, const std::string& unit) {
     add(ignored.lost,
         std::to_string(ignored.lost) + of_all + ", at most " + lengthText(ignored.size, unit) + " long,",
         "not represented");
-    add(ignored.thick, std::to_string(ignored.thick) + of_all, "thicker than in the mesh");
+    add(ignored.thickened, std::to_string(ignored.thickened) + of_all, "thicker than in the mesh");
     add(ignored.unmeasured, "the smallest " + countText(ignored.unmeasured, "part"), "not measured");
     return text;
 }
@@ -206,9 +207,9 @@ std::string partsText(const PartsAccuracy& accuracy, const SurfaceParts& parts, 
     }
     text += groupsText(accuracy, false, collider.unit) + groupsText(accuracy, true, collider.unit);
     if (accuracy.countOf(PartVerdict::kMinor) > 0) {
-        text += "Parts shorter than " + lengthText(accuracy.detail, collider.unit) +
-                ", or off by less than " + lengthText(kNoticeableExcess * accuracy.detail, collider.unit) +
-                ", do not lower the grade; --detail LENGTH changes that\n";
+        text += "Parts shorter than " + lengthText(accuracy.min_part, collider.unit) +
+                ", or off by less than " + lengthText(kNoticeableExcess * accuracy.min_part, collider.unit) +
+                ", do not lower the grade; --min-part LENGTH changes that\n";
     }
     return text;
 }
@@ -303,7 +304,7 @@ void fields(FieldVisitor& visit, const IgnoredParts& ignored) {
           {"Parts that are not represented, but too small to lower the grade: more than 25 % of the points "
            "near each are wrong, most of them classified as outside"});
     visit("size", ignored.size, {"Longest side of the largest ignored part", "object units", kFromZero});
-    visit("thick", ignored.thick,
+    visit("thickened", ignored.thickened,
           {"Parts that are thicker than in the mesh, but too small or too slightly off to lower the grade: "
            "more than 25 % of the "
            "points near each are wrong, most of them classified as inside"});
@@ -319,8 +320,9 @@ void fields(FieldVisitor& visit, const PartReport& report) {
     visit("material", part.material, {"Name of its material in the file; may be empty"});
     visit("kind", part.kind, {"Treatment of the part; a surface is baked unchanged"});
     visit("state", accuracy.state,
-          {"held: at most 10 % of the points near it are wrong; coarse: at most 25 %; lost: more; hidden: "
-           "inside other parts; minor: more, but too small to be noticed; rest: not measured because there "
+          {"kept: at most 10 % of the points near it are wrong; coarse: at most 25 %; lost: more; hidden: "
+           "inside other parts; minor: more, but too small to be noticed; unmeasured: not measured because "
+           "there "
            "are too "
            "many parts"});
     visit("size", part.size(), {"Longest side of its box", "object units", kFromZero});
@@ -335,8 +337,8 @@ void fields(FieldVisitor& visit, const PartReport& report) {
     visit("texel", partTexel(part, collider),
           {"Side of the finest texels at its center, or of the finest patches in its box", "object units",
            kFromZero});
-    visit("cure", wants ? std::optional(partCure(part, collider)) : std::nullopt,
-          {"How to keep it; null unless coarse, lost or minor"});
+    visit("fix", wants ? std::optional(partCure(part, collider)) : std::nullopt,
+          {"How to keep the part; null unless coarse, lost or minor"});
 }
 
 void fields(FieldVisitor& visit, const GroupAccuracy& group) {
@@ -360,7 +362,7 @@ void fields(FieldVisitor& visit, const PartsReport& report) {
         "Parts with more that are too small to be noticed",
         "Parts not measured"};
     const PartsAccuracy& accuracy = report.accuracy;
-    visit("detail", accuracy.detail,
+    visit("min_part", accuracy.min_part,
           {"Parts shorter than this do not lower the grade", "object units", kFromZero});
     visit("count", accuracy.parts.size(), {"Parts of the mesh"});
     for (std::size_t i = 0; i < kPartVerdicts; ++i) {

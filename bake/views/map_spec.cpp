@@ -17,7 +17,7 @@ namespace relief {
 namespace {
 
 constexpr std::array<std::string_view, 10> kKeys = {"dir", "up",    "size",   "compare", "center",
-                                                    "box", "depth", "decode", "bytes",   "texel"};
+                                                    "box", "depth", "decode", "budget",  "texel"};
 
 /// Minimum sine of the angle between up and dir: below it, rounding could turn the image.
 constexpr double kUpSineMin = 1e-4;
@@ -109,7 +109,7 @@ class MapSpecBuilder {
     Result<void> setWord(std::string_view key, std::string_view value);
     Result<void> setSize(std::string_view value);
     Result<void> setBox(std::string_view value);
-    Result<void> setBytes(std::string_view value);
+    Result<void> setBudget(std::string_view value);
     Result<void> setTexel(std::string_view value);
 
     MapSpecDefaults defaults_;
@@ -154,18 +154,18 @@ Result<void> MapSpecBuilder::set(std::string_view key, std::string_view value) {
         }
         spec_.center = glm::vec3(n[0], n[1], n[2]);
     } else {
-        return key == "size"    ? setSize(value)
-               : key == "box"   ? setBox(value)
-               : key == "bytes" ? setBytes(value)
-               : key == "texel" ? setTexel(value)
-                                : setWord(key, value);
+        return key == "size"     ? setSize(value)
+               : key == "box"    ? setBox(value)
+               : key == "budget" ? setBudget(value)
+               : key == "texel"  ? setTexel(value)
+                                 : setWord(key, value);
     }
     return {};
 }
 
 /// Returns why a key has no effect for the format and how to fix it; empty if it has an effect.
 std::string MapSpecBuilder::whyIneffective(std::string_view key) const {
-    const bool of_patches = key == "bytes" || key == "texel";
+    const bool of_patches = key == "budget" || key == "texel";
     if (of_patches != (spec_.format == MapFormat::kPatches)) {
         return of_patches ? " applies only to patches; set size" : " does not apply to patches; remove it";
     }
@@ -214,11 +214,11 @@ Result<void> MapSpecBuilder::setSize(std::string_view value) {
     return {};
 }
 
-Result<void> MapSpecBuilder::setBytes(std::string_view value) {
+Result<void> MapSpecBuilder::setBudget(std::string_view value) {
     const std::optional<std::uint64_t> bytes = parseByteCount(value);
     if (!bytes || *bytes < kPatchBytesMin || *bytes > kPatchBytesMax) {
         return badValue(
-            "bytes", value,
+            "budget", value,
             std::to_string(kPatchBytesMin) + " to " + std::to_string(kPatchBytesMax) + ", or as 1MB");
     }
     spec_.bytes = *bytes;
@@ -305,7 +305,7 @@ std::string toString(const MapSpec& spec) {
     };
     if (spec.format == MapFormat::kPatches) {
         if (spec.bytes > 0) {
-            add("bytes", std::to_string(spec.bytes));
+            add("budget", std::to_string(spec.bytes));
         }
         if (spec.texel > 0.0F) {
             add("texel", shortest(spec.texel));

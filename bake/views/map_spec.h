@@ -5,14 +5,14 @@
 //     fixed8:dir=-y,size=1024x512               from above, 1024 texels wide
 //     front-back:dir=1/1/1,box=-1/-1/-1/1/1/1   both surfaces along a diagonal, of a part of the object
 //     cube:center=0/0.1/0,compare=less          all around a point in free space
-//     patches:bytes=1MB                         small depth maps in an octree: formats/patch_tree.h
+//     patches:budget=1MB                        small depth maps in an octree: formats/patch_tree.h
 //     patches:texel=0.01                        the same, with a uniform texel size
 //
 // clang-format off
 //     key      value               formats             meaning
-//     bytes    1MB, 250000         patches             maximum size of the tree
+//     budget   1MB, 250000         patches             maximum size of the tree
 //     texel    0.01                patches             texel size, object units, for a tree of any size; with
-//                                                      `bytes`, the size grows until the tree fits. Patches have
+//                                                      `budget`, the size grows until the tree fits. Patches have
 //                                                      no other keys.
 //     dir      +x -x … -z, a/b/c   all but cube        view direction; -y looks down
 //     up       +x -x … -z, a/b/c   all but cube        direction that points up in the image, projected

@@ -96,7 +96,7 @@ class WorldBaker {
         names_ = RELIEF_TRY(parseShapeOptions(request_.bake.as)).names();
         ImportOptions options = request_.bake.import;
         options.names = names_;
-        options.materials = request_.bake.materials != MaterialsAs::kNone;
+        options.materials = request_.bake.materials != MaterialsAs::kDrop;
         level_ = RELIEF_TRY(importLevel(request_.bake.mesh, options, request_.bake.import_limits));
         for (std::size_t i = 0; i < level_.dependencies.size(); ++i) {
             if (watcher_.files != nullptr) {

@@ -17,8 +17,8 @@ namespace relief {
 namespace {
 
 /// Options that affect how a bake runs, but not its bytes.
-constexpr std::array<std::string_view, 6> kWithoutEffect = {"threads",       "time_limit",  "no_check",
-                                                            "import_memory", "import_time", "max_triangles"};
+constexpr std::array<std::string_view, 6> kWithoutEffect = {
+    "threads", "timeout", "no_check", "max_import_memory", "import_timeout", "max_triangles"};
 constexpr std::size_t kKeyDigits = 16;
 /// Prefix of a cache option that lists the tiles of a mesh.
 constexpr std::string_view kTilesWord = "--tiles=";

@@ -217,7 +217,7 @@ class WorldChecker {
         for (const std::size_t i : worst) {
             const BodyAccuracy& body = result_.bodies[i];
             result_.places.push_back(worldPlace(
-                {placed_, field_, i, body.place, moved_[i], body.wrong.total()}, request_.pictures));
+                {placed_, field_, i, body.position, moved_[i], body.wrong.total()}, request_.pictures));
         }
     }
 
@@ -304,7 +304,7 @@ class WorldChecker {
             const glm::dvec3 from = glm::dvec3(positions[i]) - sum / static_cast<double>(wrong);
             if (verdicts[i] != kRight && glm::dot(from, from) < nearest) {
                 nearest = glm::dot(from, from);
-                body.place = positions[i];
+                body.position = positions[i];
             }
         }
         result_.bodies.push_back(std::move(body));

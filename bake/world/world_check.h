@@ -19,7 +19,7 @@
 namespace relief {
 
 struct WorldCheckRequest {
-    /// `mesh` is the level; `samples` are distributed among its bodies; `detail` is unused.
+    /// `mesh` is the level; `samples` are distributed among its bodies; `min_part` is unused.
     CheckRequest check;
     std::optional<float> within;  ///< world units; nullopt: as `relief check` for a single collider
     bool pictures = false;        ///< adds slices through the worst places
@@ -33,7 +33,7 @@ struct BodyAccuracy {
     WrongShare wrong;
     std::size_t tiles =
         1;  ///< consecutive bodies of the world: several for a mesh in tiles; 0: the level differs
-    glm::vec3 place{0.0F};  ///< world space: a typical misclassified point, or the position of the body
+    glm::vec3 position{0.0F};  ///< world space: a typical misclassified point, or the position of the body
 };
 
 /// Parts of one mesh of the level that are missing from its collider, judged relative to their own size

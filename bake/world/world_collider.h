@@ -30,7 +30,7 @@ struct WorldRequest {
 
 enum class WorldColliderState : std::uint8_t { kBaked, kUpToDate, kFailed };
 template <>
-inline constexpr std::array<std::string_view, 3> kWordsOf<WorldColliderState>{"baked", "up to date",
+inline constexpr std::array<std::string_view, 3> kWordsOf<WorldColliderState>{"baked", "up_to_date",
                                                                               "failed"};
 
 /// A collider of the world, and its share of the budget.

@@ -56,7 +56,7 @@ WorldPlace worldPlace(const WorldPlaceQuery& question, bool picture) {
                                     texelAt(collider.maps[static_cast<std::size_t>(map)], at);
     }
     place.cause = question.moved                                   ? WorldCause::kMoved
-                  : floatsLimit(own.query->mesh(), question.wrong) ? WorldCause::kFloats
+                  : floatsLimit(own.query->mesh(), question.wrong) ? WorldCause::kPrecision
                   : place.distance <= kTexelsOff * place.texel     ? WorldCause::kTexel
                                                                    : WorldCause::kMesh;
     if (picture) {

@@ -16,13 +16,13 @@
 namespace relief {
 
 enum class WorldCause : std::uint8_t {
-    kMoved,   ///< the world has the node at another pose
-    kFloats,  ///< floatsLimit(): the mesh is too far from its origin
-    kTexel,   ///< the point is less than kTexelsOff texels from the surface
-    kMesh,    ///< it is farther away: intersecting faces, open edges, or a lost part
+    kMoved,      ///< the world has the node at another pose
+    kPrecision,  ///< floatsLimit(): the mesh is too far from its origin
+    kTexel,      ///< the point is less than kTexelsOff texels from the surface
+    kMesh,       ///< it is farther away: intersecting faces, open edges, or a lost part
 };
 template <>
-inline constexpr std::array<std::string_view, 4> kWordsOf<WorldCause>{"moved", "floats", "texel", "mesh"};
+inline constexpr std::array<std::string_view, 4> kWordsOf<WorldCause>{"moved", "precision", "texel", "mesh"};
 
 inline constexpr double kTexelsOff = 1.5;
 

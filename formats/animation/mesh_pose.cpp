@@ -281,7 +281,7 @@ PoseExtent poseExtent(const AnimatedMesh& mesh) {
         const Bounds box = bounds.of(pose);
         extent.box.add(box.min);
         extent.box.add(box.max);
-        extent.room = glm::max(extent.room, (1.0F + kRoom) * box.size());
+        extent.box_size = glm::max(extent.box_size, (1.0F + kRoom) * box.size());
     };
     add(firstPose(mesh));
     double seconds = 0.0;

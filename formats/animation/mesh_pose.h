@@ -57,8 +57,8 @@ class PoseBounds {
 /// The space that a mesh occupies, from samples of all clips 1/240 s apart plus a margin of 2 %. Clips of hours are
 /// sampled more coarsely.
 struct PoseExtent {
-    Bounds box;            ///< of all poses, object space
-    glm::vec3 room{0.0F};  ///< size of the smallest box that fits any single pose
+    Bounds box;                ///< of all poses, object space
+    glm::vec3 box_size{0.0F};  ///< size of the smallest box that fits any single pose
 };
 /// Uses the rest pose, where arms are often spread, only if there is no clip.
 [[nodiscard]] PoseExtent poseExtent(const AnimatedMesh& mesh);

@@ -81,7 +81,7 @@ typedef enum relief_status {
     RELIEF_OK = 0,
     RELIEF_CANNOT_READ,     /* the file does not exist, or cannot be read */
     RELIEF_NOT_A_CONTAINER, /* the signature of a .relief file is missing */
-    RELIEF_OTHER_VERSION,   /* not version 2 */
+    RELIEF_WRONG_VERSION,   /* not version 2 */
     RELIEF_DAMAGED,         /* truncated, longer than stated, or a checksum does not match */
     RELIEF_INVALID,         /* violates the format, or has values of a later version */
     RELIEF_UNSUPPORTED,     /* a valid format, but not one map of patches */
@@ -1149,7 +1149,7 @@ static relief_status rlf_read_header(rlf_metadata* m, const unsigned char* bytes
         return RELIEF_DAMAGED;
     }
     if (rlf_u16(bytes + 12) != 2) {
-        return RELIEF_OTHER_VERSION;
+        return RELIEF_WRONG_VERSION;
     }
     if (rlf_u64(bytes + 56) != rlf_xxh3(bytes, 56) || rlf_u64(bytes + 24) != size) {
         return RELIEF_DAMAGED;
@@ -1356,7 +1356,7 @@ const char* relief_message(relief_status status) {
             return "the file cannot be read";
         case RELIEF_NOT_A_CONTAINER:
             return "it is not a .relief container; bake a mesh: relief bake MESH -o FILE.relief";
-        case RELIEF_OTHER_VERSION:
+        case RELIEF_WRONG_VERSION:
             return "it is not a container of version 2; bake the mesh again, or use the relief.h of a newer "
                    "Relief";
         case RELIEF_DAMAGED:

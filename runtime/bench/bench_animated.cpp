@@ -20,7 +20,8 @@ Result<Json> benchAnimated(const Bench& bench) {
     const MeshClip& clip = mesh->clips.front();
     Json tables = Json::array();
     for (const std::uint32_t resolution : {384U, 512U}) {
-        auto animated = RELIEF_TRY(AnimatedCollider::create(mesh, {.resolution = resolution, .room = {}}));
+        auto animated =
+            RELIEF_TRY(AnimatedCollider::create(mesh, {.resolution = resolution, .box_size = {}}));
         ColliderBody body;
         body.collider = &animated.frames();
         body.pose = animated.placed({});

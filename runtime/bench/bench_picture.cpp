@@ -106,7 +106,7 @@ Result<Json> benchSize(const Bench& bench, const BenchScene& scene, BenchSystem&
     const auto draw = [&](ParticleRenderer& renderer, bool soft, bool ordered,
                           Sprite sprite = Sprite::kPoint) {
         ParticleStyle style{.diameter = diameter, .fade_in = 0.0F, .fade_out = 0.0F};
-        style.soft = soft ? 0.02F * scene.side : 0.0F;
+        style.soft_distance = soft ? 0.02F * scene.side : 0.0F;
         style.sprite = sprite;
         const ParticleOrder order =
             ordered ? ParticleOrder{&sorter.order(), sorter.count()} : ParticleOrder{};

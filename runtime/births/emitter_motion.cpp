@@ -58,7 +58,7 @@ std::uint64_t carryFiltered(const EmitterMotion& motion, double time, const Emit
     std::vector<glm::vec3> velocities;
     carry(motion, time, made, emitter.placeVelocities(), &velocities);
     const std::vector<bool> stays = motion.filter(made, velocities, time);
-    std::uint64_t refused = 0;
+    std::uint64_t rejected = 0;
     std::size_t kept = 0;
     for (std::size_t i = 0; i < made.size(); ++i) {
         if (!stays[i]) {
@@ -67,32 +67,32 @@ std::uint64_t carryFiltered(const EmitterMotion& motion, double time, const Emit
         if (kept < room) {
             made[kept++] = made[i];
         } else {
-            ++refused;
+            ++rejected;
         }
     }
     births.resize(first + kept);
-    return refused;
+    return rejected;
 }
 
 }  // namespace
 
 std::uint64_t emitAll(std::span<Emitter> emitters, double dt, std::uint64_t room, std::vector<Birth>& births,
                       std::span<const EmitterMotion> motions, double time) {
-    std::uint64_t refused = 0;
+    std::uint64_t rejected = 0;
     for (std::size_t i = 0; i < emitters.size(); ++i) {
         const std::size_t before = births.size();
         if (i < motions.size() && motions[i].filter) {
-            refused += emitters[i].emit(dt, kFilteredMax, births);
-            refused += carryFiltered(motions[i], time, emitters[i], room, before, births);
+            rejected += emitters[i].emit(dt, kFilteredMax, births);
+            rejected += carryFiltered(motions[i], time, emitters[i], room, before, births);
         } else {
-            refused += emitters[i].emit(dt, room, births);
+            rejected += emitters[i].emit(dt, room, births);
             if (i < motions.size()) {
                 carry(motions[i], time, std::span(births).subspan(before), emitters[i].placeVelocities());
             }
         }
         room -= births.size() - before;
     }
-    return refused;
+    return rejected;
 }
 
 }  // namespace relief

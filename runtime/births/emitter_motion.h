@@ -20,7 +20,7 @@ namespace relief {
 /// \param time        start of the step, the `time` of carry().
 using BirthFilter = std::function<std::vector<bool>(std::span<const Birth> births,
                                                     std::span<const glm::vec3> velocities, double time)>;
-/// Maximum births per step of an emitter with a filter; the rest are refused.
+/// Maximum births per step of an emitter with a filter; the rest are rejected.
 inline constexpr std::uint64_t kFilteredMax = std::uint64_t{1} << 20;
 
 /// The trajectory of an emitter. Its points are in emitter space; `keys` transform them into the space of a body, and

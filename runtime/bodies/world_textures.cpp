@@ -40,7 +40,7 @@ Result<WorldTextures> WorldTextures::create(const Collider& collider) {
     RELIEF_TRY(result.uploadMaterials(std::span(&materials, 1)));
     RELIEF_TRY(
         checkAllocated("the collider's " + std::to_string(result.material_bytes_) + " bytes of materials",
-                       "bake it with --materials none"));
+                       "bake it with --materials drop"));
     return result;
 }
 
@@ -229,7 +229,7 @@ Result<void> WorldTextures::uploadMaterials(std::span<const Materials* const> bo
     const std::size_t width = std::size_t{1} << materials_.log2_width;
     const std::size_t height = materials_.texels.size() / width;
     RELIEF_TRY(checkTextureSize(width, height, "the materials of these colliders",
-                                "bake some with --materials none"));
+                                "bake some with --materials drop"));
     material_texture_ = makeTexture2D(GL_RGBA32UI, static_cast<GLsizei>(width), static_cast<GLsizei>(height),
                                       GL_RGBA_INTEGER, GL_UNSIGNED_INT, materials_.texels.data());
     material_bytes_ = materials_.texels.size() * sizeof(glm::uvec4);

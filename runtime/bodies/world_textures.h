@@ -34,7 +34,7 @@ struct ColliderBody {
     /// ν, 0…1: (1 − ν) multiplies the particle's own factor on tangential speed.
     float friction = 0.0F;
     bool live = false;  ///< the collider's maps have no texels yet; they are rendered later
-    /// Bit of ParticleType::collides for this body, 0 to 7. nullopt: the index of the body, at most 7.
+    /// Bit of ParticleType::collides_with for this body, 0 to 7. nullopt: the index of the body, at most 7.
     std::optional<std::uint32_t> group = {};
 };
 

@@ -76,7 +76,7 @@ const char* relief_animation_clip_name(const relief_animation* animation, size_t
     });
 }
 
-float relief_animation_clip_seconds(const relief_animation* animation, size_t clip) {
+float relief_animation_clip_duration(const relief_animation* animation, size_t clip) {
     return answer(__func__, kNan, [&](const Call& call) -> Result<float> {
         const AnimatedMesh& mesh = *RELIEF_TRY(call.object(animation, "animation"))->mesh;
         RELIEF_TRY(index(call, clip, mesh.clips.size(), "clip"));
@@ -111,7 +111,7 @@ relief_world* relief_world_create(void) {
 }
 
 int64_t relief_world_add(relief_world* world, const relief_animation* animation, const relief_pose* pose,
-                         uint32_t resolution, const float room[3]) {
+                         uint32_t resolution, const float box_size[3]) {
     return answer(__func__, int64_t{-1}, [&](const Call& call) -> Result<int64_t> {
         WorldObject& to = *RELIEF_TRY(call.object(world, "world"));
         AddedBody added{.animation = *RELIEF_TRY(call.object(animation, "animation"))};
@@ -123,14 +123,14 @@ int64_t relief_world_add(relief_world* world, const relief_animation* animation,
                                std::to_string(kResolutionMin) + " to 4096, or 0 for 512");
         }
         added.options.resolution = resolution > 0 ? resolution : added.options.resolution;
-        added.options.room = added.animation.extent.room;
-        if (room != nullptr) {
+        added.options.box_size = added.animation.extent.box_size;
+        if (box_size != nullptr) {
             glm::vec3 sides;
             for (std::size_t i = 0; i < 3; ++i) {
-                RELIEF_TRY(call.number(room[i], kLifetime, {"room", i}));
-                sides[static_cast<int>(i)] = room[i];
+                RELIEF_TRY(call.number(box_size[i], kLifetime, {"box_size", i}));
+                sides[static_cast<int>(i)] = box_size[i];
             }
-            added.options.room = sides;
+            added.options.box_size = sides;
         }
         const std::size_t body = to.field.world().bodies.size() + to.added.size();
         if (body >= kWorldBodiesMax) {
@@ -141,8 +141,8 @@ int64_t relief_world_add(relief_world* world, const relief_animation* animation,
     });
 }
 
-int relief_textures_play(relief_textures* animated_textures, uint32_t body, const char* clip,
-                         double seconds) {
+int relief_textures_set_clip(relief_textures* animated_textures, uint32_t body, const char* clip,
+                             double seconds) {
     return answer(__func__, -1, [&](const Call& call) -> Result<int> {
         AnimatedBody& of = *RELIEF_TRY(animatedOf(call, animated_textures, body));
         RELIEF_TRY(call.context());

@@ -61,7 +61,7 @@ struct ParticlesObject {
     std::vector<Birth> births;  // scratch memory of a call
 };
 
-struct PictureObject {
+struct RendererObject {
     std::shared_ptr<const TexturesObject> textures;  // may be null
     ParticleRenderer renderer;
     float diameter = 0.01F;
@@ -103,10 +103,10 @@ struct HandleType<relief_particles> {
     static constexpr const char* kName = "relief_particles";
 };
 template <>
-struct HandleType<relief_picture> {
-    using Object = PictureObject;
+struct HandleType<relief_renderer> {
+    using Object = RendererObject;
     static constexpr HandleKind kKind = HandleKind::kPicture;
-    static constexpr const char* kName = "relief_picture";
+    static constexpr const char* kName = "relief_renderer";
 };
 template <>
 struct HandleType<relief_world> {

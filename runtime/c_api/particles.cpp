@@ -54,11 +54,11 @@ Result<Birth> birthOf(const Call& call, const relief_birth& birth, std::size_t i
     return Birth{vec(birth.position), vec(birth.velocity), birth.lifetime, birth.type};
 }
 
-Result<ParticleStyle> styleOf(const Call& call, const relief_picture_options* given,
-                              const PictureObject& picture) {
-    relief_picture_options all{};
+Result<ParticleStyle> styleOf(const Call& call, const relief_renderer_options* given,
+                              const RendererObject& picture) {
+    relief_renderer_options all{};
     if (given != nullptr) {
-        all = RELIEF_TRY(call.structure(given, "options", "relief_picture_options"));
+        all = RELIEF_TRY(call.structure(given, "options", "relief_renderer_options"));
     }
     const auto name = [](const char* field) { return NumberName{.argument = "options", .field = field}; };
     RELIEF_TRY(call.number(all.diameter, kNotNegative, name("diameter")));
@@ -149,17 +149,17 @@ int relief_particles_step(relief_particles* particles, float seconds) {
 relief_counts relief_particles_counts(const relief_particles* particles) {
     return answer(__func__, relief_counts{}, [&](const Call& call) -> Result<relief_counts> {
         const ParticleCounts counts = RELIEF_TRY(call.object(particles, "particles"))->system.counts();
-        return relief_counts{counts.born, counts.died, counts.refused, counts.alive};
+        return relief_counts{counts.born, counts.died, counts.rejected, counts.alive};
     });
 }
 
-int64_t relief_particles_read(const relief_particles* particles, relief_particle* out, size_t room) {
+int64_t relief_particles_read(const relief_particles* particles, relief_particle* out, size_t capacity) {
     return answer(__func__, int64_t{-1}, [&](const Call& call) -> Result<int64_t> {
         const ParticlesObject& of = *RELIEF_TRY(call.object(particles, "particles"));
-        RELIEF_TRY(call.array(out, "out", room, "room"));
+        RELIEF_TRY(call.array(out, "out", capacity, "capacity"));
         RELIEF_TRY(call.context());
         const auto states = RELIEF_TRY(of.system.readState());
-        for (std::size_t i = 0; i < std::min(room, states.size()); ++i) {
+        for (std::size_t i = 0; i < std::min(capacity, states.size()); ++i) {
             const ParticleState& from = states[i];
             out[i].id = from.id;
             put(from.position, out[i].position);
@@ -173,41 +173,42 @@ int64_t relief_particles_read(const relief_particles* particles, relief_particle
     });
 }
 
-// --- pictures
+// --- renderers
 
-relief_picture* relief_picture_create(const relief_textures* textures, const relief_collider* collider) {
-    return create<relief_picture>(__func__, [&](const Call& call) -> Result<std::shared_ptr<PictureObject>> {
-        const auto among = RELIEF_TRY(call.optional(textures, "textures"));
-        const auto field = RELIEF_TRY(call.optional(collider, "collider"));
-        const bool world = among && among->world;
-        if (world && field) {
-            return call.reject("collider must be NULL for textures of a world");
-        }
-        if (!world && (among == nullptr) != (field == nullptr)) {
-            return call.reject(std::string(among ? "collider" : "textures") +
-                               " is NULL; pass the textures and their collider, or NULL for both");
-        }
-        RELIEF_TRY(call.context());
-        std::optional<ColliderView> view;
-        float diameter = 0.01F;
-        if (among) {
-            view = world ? ColliderView{&among->textures(), *among->world, among->texel}
-                         : ColliderView{&among->textures(), field->bounds, finestTexel(*field)};
-            diameter = 0.01F * view->bounds.longestSide();
-        }
-        auto renderer = RELIEF_TRY(ParticleRenderer::create(view));
-        return std::make_shared<PictureObject>(PictureObject{among, std::move(renderer), diameter});
-    });
+relief_renderer* relief_renderer_create(const relief_textures* textures, const relief_collider* collider) {
+    return create<relief_renderer>(
+        __func__, [&](const Call& call) -> Result<std::shared_ptr<RendererObject>> {
+            const auto among = RELIEF_TRY(call.optional(textures, "textures"));
+            const auto field = RELIEF_TRY(call.optional(collider, "collider"));
+            const bool world = among && among->world;
+            if (world && field) {
+                return call.reject("collider must be NULL for textures of a world");
+            }
+            if (!world && (among == nullptr) != (field == nullptr)) {
+                return call.reject(std::string(among ? "collider" : "textures") +
+                                   " is NULL; pass the textures and their collider, or NULL for both");
+            }
+            RELIEF_TRY(call.context());
+            std::optional<ColliderView> view;
+            float diameter = 0.01F;
+            if (among) {
+                view = world ? ColliderView{&among->textures(), *among->world, among->texel}
+                             : ColliderView{&among->textures(), field->bounds, finestTexel(*field)};
+                diameter = 0.01F * view->bounds.longestSide();
+            }
+            auto renderer = RELIEF_TRY(ParticleRenderer::create(view));
+            return std::make_shared<RendererObject>(RendererObject{among, std::move(renderer), diameter});
+        });
 }
 
-void relief_picture_free(relief_picture* picture) {
-    release(__func__, picture, "picture");
+void relief_renderer_free(relief_renderer* renderer) {
+    release(__func__, renderer, "renderer");
 }
 
-int relief_picture_draw(relief_picture* picture, const relief_particles* particles,
-                        const relief_picture_options* options, const relief_view* view) {
+int relief_renderer_draw(relief_renderer* renderer, const relief_particles* particles,
+                         const relief_renderer_options* options, const relief_view* view) {
     return answer(__func__, -1, [&](const Call& call) -> Result<int> {
-        PictureObject& by = *RELIEF_TRY(call.object(picture, "picture"));
+        RendererObject& by = *RELIEF_TRY(call.object(renderer, "renderer"));
         const ParticlesObject& shown = *RELIEF_TRY(call.object(particles, "particles"));
         RELIEF_TRY(call.context());
         const ParticleStyle style = RELIEF_TRY(styleOf(call, options, by));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The C API of Relief: colliders on the CPU and the GPU, particles, and pictures of both.
+/* The C API of Relief: colliders on the CPU and the GPU, particles, and renderers of both.
  *
  * librelief.so exports only these functions; librelief_c.a contains the same ones. No C++ exception leaves them.
  *
@@ -11,7 +11,7 @@
  *
  * Handles. A handle is looked up at each call, in a few nanoseconds; values are never reused. NULL, a freed handle, a
  * handle of another type and an arbitrary value are errors. Free each handle once, with the free function of its type,
- * in any order: particles and pictures keep their textures alive. Freeing NULL does nothing. A NULL returned by a
+ * in any order: particles and renderers keep their textures alive. Freeing NULL does nothing. A NULL returned by a
  * failed call carries its error: relief_textures_create(relief_collider_load(path)) fails with the error of the load.
  * Some functions accept NULL, such as for the textures of particles. After a failed creation, such a NULL still counts
  * as that failure, until the thread calls relief_error() or creates an object of that type.
@@ -140,7 +140,7 @@ void relief_animation_free(relief_animation* animation);
 size_t relief_animation_clip_count(const relief_animation* animation);
 /* Names of clips and joints are valid until the animation is freed. */
 const char* relief_animation_clip_name(const relief_animation* animation, size_t clip);
-float relief_animation_clip_seconds(const relief_animation* animation, size_t clip);
+float relief_animation_clip_duration(const relief_animation* animation, size_t clip);
 /* Joints as in a glTF skin; the only joint of a mesh without a skin is its node. */
 size_t relief_animation_joint_count(const relief_animation* animation);
 const char* relief_animation_joint_name(const relief_animation* animation, size_t joint);
@@ -149,10 +149,10 @@ size_t relief_animation_weight_count(const relief_animation* animation);
 
 /* Appends an animated body to the world and returns its number. relief_world_query() ignores animated bodies. The
  * animation may be freed afterwards. `pose`: pose of the mesh's origin. `resolution`: texels of its three maps along
- * the longest side, 16 to 4096; 0: 512. `room`: the sides of a box that contains the body in every pose; NULL: the
+ * the longest side, 16 to 4096; 0: 512. `box_size`: the sides of a box that contains the body in every pose; NULL: the
  * extent of its clips. */
 int64_t relief_world_add(relief_world* world, const relief_animation* animation, const relief_pose* pose,
-                         uint32_t resolution, const float room[3]);
+                         uint32_t resolution, const float box_size[3]);
 
 /* --- colliders, on the GPU (GL) --- */
 
@@ -173,28 +173,29 @@ int relief_textures_set_poses(relief_textures* world_textures, const uint32_t* b
  * relief_textures_set_poses() applies it. After a jump, such as a change of clip, call relief_textures_set_poses()
  * twice; otherwise the jump counts as motion and pushes particles. `body`: a number returned by relief_world_add().
  * Since 1.2. */
-int relief_textures_play(relief_textures* animated_textures, uint32_t body, const char* clip, double seconds);
-/* Like relief_textures_play(), with your own pose. `matrices`: 16 floats per joint, the glTF joint matrix (the joint's
- * transform times its inverse bind matrix). `weights`: one weight per morph target. The counts must match those of the
- * animation. Since 1.2. */
+int relief_textures_set_clip(relief_textures* animated_textures, uint32_t body, const char* clip,
+                             double seconds);
+/* Like relief_textures_set_clip(), with your own pose. `matrices`: 16 floats per joint, the glTF joint matrix (the
+ * joint's transform times its inverse bind matrix). `weights`: one weight per morph target. The counts must match those
+ * of the animation. Since 1.2. */
 int relief_textures_set_joints(relief_textures* animated_textures, uint32_t body, const float* matrices,
                                size_t joint_count, const float* weights, size_t weight_count);
 /* Streams a world: keeps full-detail colliders within a budget of `gpu_bytes`, 1 to 2^40; 268435456 is a good value.
  * Coarse versions replace colliders that are not loaded. A background thread reads the files. Since 1.2. */
 relief_textures* relief_textures_stream_world(const char* world_path, uint64_t gpu_bytes);
 
-typedef struct relief_ball {
+typedef struct relief_sphere {
     float center[3]; /* world units */
     float radius;    /* world units; > 0 */
-} relief_ball;
+} relief_sphere;
 
 /* Updates a streamed world. Call it before each step with the places that need full detail, such as the camera and the
- * emitters. Colliders that intersect the balls are loaded; the least recently needed ones are evicted. `waits` 0:
- * uploads a little per call and never blocks. `waits` 1: blocks until everything that fits is loaded, for reproducible
- * runs. Does nothing for textures that are not streamed. Returns the number of colliders in the balls without full
+ * emitters. Colliders that intersect the spheres are loaded; the least recently needed ones are evicted. `wait` 0:
+ * uploads a little per call and never blocks. `wait` 1: blocks until everything that fits is loaded, for reproducible
+ * runs. Does nothing for textures that are not streamed. Returns the number of colliders in the spheres without full
  * detail, including those that failed to load; -1 on error. Since 1.2. */
-int64_t relief_textures_stream(relief_textures* world_textures, const relief_ball* balls, size_t count,
-                               int waits);
+int64_t relief_textures_stream(relief_textures* world_textures, const relief_sphere* spheres, size_t count,
+                               int wait);
 /* Returns one line about a collider that failed to load, once per collider; "" if there is none. Valid until the next
  * call of this function. Since 1.2. */
 const char* relief_textures_warning(relief_textures* world_textures);
@@ -245,7 +246,7 @@ typedef struct relief_particle {
 } relief_particle;
 
 typedef struct relief_counts {
-    uint64_t born, died, refused; /* refused: births rejected because the system was full */
+    uint64_t born, died, rejected; /* rejected: births without room */
     uint32_t alive;
 } relief_counts;
 
@@ -260,9 +261,9 @@ size_t relief_particles_spawn(relief_particles* particles, const relief_birth* b
 /* Advances the particles. `seconds`: above 0, up to 1e9. */
 int relief_particles_step(relief_particles* particles, float seconds);
 relief_counts relief_particles_counts(const relief_particles* particles);
-/* Reads the particles back, which waits for the GPU. Writes at most `room` particles, in index order. Returns the
+/* Reads the particles back, which waits for the GPU. Writes at most `capacity` particles, in index order. Returns the
  * number of live particles, or -1 on error. */
-int64_t relief_particles_read(const relief_particles* particles, relief_particle* out, size_t room);
+int64_t relief_particles_read(const relief_particles* particles, relief_particle* out, size_t capacity);
 
 /* --- births on the surface of characters, machines and colliders. Since 1.2 --- */
 
@@ -301,16 +302,16 @@ void relief_emitter_free(relief_emitter* emitter);
 int64_t relief_particles_emit(relief_particles* particles, relief_emitter* emitter, relief_textures* textures,
                               uint32_t body, float seconds);
 
-/* --- pictures (GL) --- */
+/* --- renderers (GL) --- */
 
-typedef struct relief_picture relief_picture;
+typedef struct relief_renderer relief_renderer;
 
-typedef struct relief_picture_options {
+typedef struct relief_renderer_options {
     size_t size;
     float diameter; /* of a particle; 0: 1/100 of the collider's longest side, or 0.01 without a collider */
     float color[3]; /* sRGB, 0…1; all 0: white */
     float opacity;  /* 0…1; 0: 0.95 */
-} relief_picture_options;
+} relief_renderer_options;
 
 typedef struct relief_view {
     size_t size;
@@ -324,11 +325,11 @@ typedef struct relief_view {
 /* Creates a renderer of particles that the collider shades. `textures` and `collider`: of the same collider, or both
  * NULL for no shading. For textures of a world, `collider` must be NULL; shading then covers the initial bounds of the
  * bodies. The collider may be freed afterwards. */
-relief_picture* relief_picture_create(const relief_textures* textures, const relief_collider* collider);
-void relief_picture_free(relief_picture* picture);
+relief_renderer* relief_renderer_create(const relief_textures* textures, const relief_collider* collider);
+void relief_renderer_free(relief_renderer* renderer);
 /* Draws the particles over the framebuffer's contents, with its depth test. `options`: NULL for all 0. */
-int relief_picture_draw(relief_picture* picture, const relief_particles* particles,
-                        const relief_picture_options* options, const relief_view* view);
+int relief_renderer_draw(relief_renderer* renderer, const relief_particles* particles,
+                         const relief_renderer_options* options, const relief_view* view);
 
 #ifdef __cplusplus
 }

@@ -262,23 +262,23 @@ relief_textures* relief_textures_stream_world(const char* world_path, uint64_t g
         });
 }
 
-int64_t relief_textures_stream(relief_textures* world_textures, const relief_ball* balls, size_t count,
-                               int waits) {
+int64_t relief_textures_stream(relief_textures* world_textures, const relief_sphere* spheres, size_t count,
+                               int wait) {
     return answer(__func__, int64_t{-1}, [&](const Call& call) -> Result<int64_t> {
         TexturesObject& to = *RELIEF_TRY(call.object(world_textures, "world_textures"));
-        RELIEF_TRY(call.array(balls, "balls", count, "count"));
-        RELIEF_TRY(call.number(waits, {0.0, 1.0}, {"waits"}));
+        RELIEF_TRY(call.array(spheres, "spheres", count, "count"));
+        RELIEF_TRY(call.number(wait, {0.0, 1.0}, {"wait"}));
         std::vector<PointOfInterest> points;
         for (std::size_t i = 0; i < count; ++i) {
-            RELIEF_TRY(call.number(balls[i].center, kAny, {"balls", i, "center"}));
-            RELIEF_TRY(call.number(balls[i].radius, kLifetime, {"balls", i, "radius"}));
-            points.push_back({vec(balls[i].center), balls[i].radius});
+            RELIEF_TRY(call.number(spheres[i].center, kAny, {"spheres", i, "center"}));
+            RELIEF_TRY(call.number(spheres[i].radius, kLifetime, {"spheres", i, "radius"}));
+            points.push_back({vec(spheres[i].center), spheres[i].radius});
         }
         RELIEF_TRY(call.context());
         if (!to.stream) {
             return 0;
         }
-        RELIEF_TRY(waits != 0 ? to.stream->finish(points) : to.stream->update(points));
+        RELIEF_TRY(wait != 0 ? to.stream->finish(points) : to.stream->update(points));
         const StreamCounts counts = to.stream->counts();
         return static_cast<int64_t>(counts.wanted - counts.present);
     });

@@ -67,15 +67,16 @@ void addFrames(CLI::App& app, SimCommand& command) {
               "Write the particles of each frame as particles_0000.ply and so on to this folder")
         ->valueText("DIR");
     addOption(app, "--first-frame", player.overrides.first_frame,
-              "Step of the first frame; 0: before the first step (default: render.first of the scene)")
+              "Step of the first frame; 0: before the first step (default: render.first_frame of the scene)")
         ->valueText("N")
         ->transform(wholeNumber(0, kStepsMax));
-    addOption(app, "--last-frame", player.overrides.last_frame,
-              "Step of the last frame; the run continues to its end (default: render.last of the scene)")
+    addOption(
+        app, "--last-frame", player.overrides.last_frame,
+        "Step of the last frame; the run continues to its end (default: render.last_frame of the scene)")
         ->valueText("N")
         ->transform(wholeNumber(0, kStepsMax));
-    addOption(app, "--frame-every", player.overrides.frame_every,
-              "Number of steps from frame to frame (default: render.every of the scene)")
+    addOption(app, "--steps-per-frame", player.overrides.steps_per_frame,
+              "Number of steps per frame (default: render.steps_per_frame of the scene)")
         ->valueText("N")
         ->transform(wholeNumber(1, kStepsMax));
 }
@@ -98,7 +99,7 @@ void addSimulation(CLI::App& app, SimCommand& command) {
              WordsFor<GlApi>{{"gl", GlApi::kGl33Core}, {"gles", GlApi::kGles30}},
              "Use OpenGL 3.3 (gl) or OpenGL ES 3.0 (gles) (default: gl)");
     addWords(
-        app, "--path", player.path,
+        app, "--shaders", player.path,
         WordsFor<StepPath>{
             {"auto", StepPath::kAuto}, {"fragment", StepPath::kFragment}, {"compute", StepPath::kCompute}},
         "Use fragment or compute shaders (OpenGL 4.3, OpenGL ES 3.1) for particles (default: auto, which "
@@ -119,10 +120,10 @@ Result<void> checkTogether(const SimCommand& command) {
         return fail(ErrorCode::kUsage,
                     "name a scene (.toml), a collider (.relief) or a world.json; see relief-sim --help");
     }
-    if ((scene.first_frame || scene.last_frame || scene.frame_every) && player.frames.empty() &&
+    if ((scene.first_frame || scene.last_frame || scene.steps_per_frame) && player.frames.empty() &&
         player.dump_frames.empty()) {
         return fail(ErrorCode::kUsage,
-                    "--first-frame, --last-frame and --frame-every need --frames or "
+                    "--first-frame, --last-frame and --steps-per-frame need --frames or "
                     "--dump-frames; add --frames DIR");
     }
     if (scene.first_frame && scene.last_frame && *scene.first_frame > *scene.last_frame) {
@@ -220,11 +221,11 @@ void defineSim(CLI::App& app, SimCommand& command) {
                {"--dump", "--dump-format", "--events", "--events-min-speed", "--check", "--json", "--page",
                 "--quiet"}},
               {"Frames and pictures",
-               {"--frames", "--size", "--dump-frames", "--first-frame", "--last-frame", "--frame-every"}},
-              {"Simulation", {"--steps", "--seed", "--root", "--api", "--path", "--device"}},
+               {"--frames", "--size", "--dump-frames", "--first-frame", "--last-frame", "--steps-per-frame"}},
+              {"Simulation", {"--steps", "--seed", "--root", "--api", "--shaders", "--device"}},
               {"Limits", {"--gpu-timeout", "--max-memory"}}});
     for (const char* played :
-         {"--frames", "--dump", "--dump-frames", "--events", "--path", "--device", "--gpu-timeout"}) {
+         {"--frames", "--dump", "--dump-frames", "--events", "--shaders", "--device", "--gpu-timeout"}) {
         check->excludes(played);
         page->excludes(played);
     }

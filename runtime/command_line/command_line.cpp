@@ -326,7 +326,7 @@ void groupOptions(CLI::App& app, const std::vector<OptionGroup>& groups) {
 
 void addDetails(CLI::App& app, const std::string& name, const std::string& details) {
     if (CLI::Option* const option = app.get_option_no_throw(name)) {
-        option->description(withDetails(option->get_description(), details));
+        option->description(option->get_description() + details);
     }
 }
 

@@ -23,7 +23,7 @@ void setUpVerbHelp(CLI::App& verb);
 
 /// The description of an option or verb. Only --manual shows the details.
 [[nodiscard]] std::string withDetails(const std::string& help, const std::string& details);
-/// Adds details to an option. Does nothing if the app has no such option.
+/// Appends to the details of an option. Does nothing if the app has no such option.
 void addDetails(CLI::App& app, const std::string& name, const std::string& details);
 
 /// A heading in the help, and its options: "--budget". Names that an app lacks have no effect.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "runtime/command_line/command_line.h"
+
 namespace relief {
 namespace {
 
@@ -161,7 +163,8 @@ class FieldOptions : public FieldVisitor {
 
     void operator()(std::string_view name, FieldRef value, const FieldInfo& info) override {
         if (value.form() == FieldForm::kBool) {
-            options_.push_back(app_.add_flag(optionName(name), value.as<bool>(), std::string(info.help)));
+            options_.push_back(app_.add_flag(optionName(name), value.as<bool>(),
+                                             withDetails(std::string(info.help), std::string(info.details))));
         } else {
             add(describeField(name, value, info),
                 [value, info](const std::string& word) { return readWord(word, info, value); });
@@ -191,7 +194,7 @@ void FieldOptions::add(const FieldWords& field, const std::function<std::string(
             }
             return true;
         },
-        helpOf(field));
+        withDetails(helpOf(field), std::string(field.info.details)));
     option->option_text(valueText(field));
     if (field.kind == FieldKind::kList) {
         option->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->allow_extra_args(false);

@@ -90,7 +90,7 @@ struct Progress::Impl {
         reportError({ErrorCode::kLimit,
                      options.name + ": the bake did not end within " + secondsText(double{*options.seconds}) +
                          "; it was " + stage + ", for " + secondsText(secondsSince(stage_start)) +
-                         "; simplify the mesh, lower the budget or resolution, or raise --time-limit"});
+                         "; simplify the mesh, lower the budget or resolution, or raise --timeout"});
         ::_exit(static_cast<int>(ErrorCode::kLimit));
     }
 

@@ -51,12 +51,12 @@ Result<EventList> EventList::create(std::span<const EventOptions> lists, std::ui
     }
     EventList made;
     for (EventOptions options : lists) {
-        if (options.most == 0 || options.most > kMostMax || !(options.min_speed >= 0.0F)) {
+        if (options.max_per_step == 0 || options.max_per_step > kMostMax || !(options.min_speed >= 0.0F)) {
             return fail(ErrorCode::kUsage, "a list of events must have room for 1 to " +
                                                std::to_string(kMostMax) +
                                                " events, and a minimum speed of at least 0");
         }
-        options.most = std::min(options.most, capacity);
+        options.max_per_step = std::min(options.max_per_step, capacity);
         made.lists_.push_back(options);
     }
     std::array<std::uint32_t, kEventLists> first_row{};
@@ -71,7 +71,7 @@ Result<EventList> EventList::create(std::span<const EventOptions> lists, std::ui
 std::uint32_t EventList::longest() const {
     std::uint32_t most = 0;
     for (const EventOptions& list : lists_) {
-        most = std::max(most, list.most);
+        most = std::max(most, list.max_per_step);
     }
     return most;
 }
@@ -87,7 +87,7 @@ std::uint32_t EventList::layOut(std::uint32_t particles,
     std::uint32_t rows = 0;
     for (std::size_t i = 0; i < lists_.size(); ++i) {
         first_row[i] = rows;
-        rows += rowsOf(std::min(lists_[i].most, particles));
+        rows += rowsOf(std::min(lists_[i].max_per_step, particles));
     }
     return rows;
 }
@@ -277,7 +277,7 @@ std::optional<EventList::Collected> EventList::collect() {
     const std::size_t plane = request.floats / kFloats / list_.size() * kFloats;
     for (std::size_t i = 0; i < lists_.size(); ++i) {
         const auto count = static_cast<std::uint32_t>(total[i]);
-        const std::size_t listed = std::min(count, lists_[i].most);
+        const std::size_t listed = std::min(count, lists_[i].max_per_step);
         const std::size_t first = listed == 0 ? 0 : kFloats * listWidth() * request.first_row[i];
         std::vector<float> values(kFloats * list_.size() * listed);
         for (std::size_t p = 0; p < list_.size() && listed > 0; ++p) {

@@ -79,7 +79,7 @@ Result<void> EventRecorder::check(const ShaderCollider* collider) const {
         return fail(ErrorCode::kLimit,
                     "events cannot distinguish " + std::to_string(materials) + " materials of " +
                         std::to_string(bodies) + " bodies: at most " + std::to_string(EventList::kPlacesMax) +
-                        " pairs; give materials the same names, or bake with --materials none");
+                        " pairs; give materials the same names, or bake with --materials drop");
     }
     return {};
 }

@@ -18,7 +18,7 @@ struct EventOptions {
     bool lasting = false;
     bool deaths = false;     ///< deaths by age and by collision (OnCollision::kDie)
     float min_speed = 0.0F;  ///< ignores slower hits; world units/s, ≥ 0
-    std::uint32_t most =
+    std::uint32_t max_per_step =
         65'536;  ///< per step, 1…kCapacityMax; further events, at the highest indices, are dropped
     std::optional<std::uint32_t> type{};  ///< only events of this type
     std::optional<int> material{};        ///< only hits on this material, see ParticleEvent::material
@@ -48,7 +48,7 @@ struct ParticleEvent {
 struct StepEvents {
     std::uint64_t tag = 0;      ///< as requested
     double time = 0.0;          ///< the end of the step, seconds
-    std::uint32_t dropped = 0;  ///< events beyond EventOptions::most
+    std::uint32_t dropped = 0;  ///< events beyond EventOptions::max_per_step
     std::vector<ParticleEvent> events;
     struct List {
         std::size_t size = 0;  ///< number of its `events`

@@ -11,7 +11,7 @@ Spawner::Spawner(const SpawnSettings& settings, std::uint64_t seed, std::uint64_
       opening_(static_cast<float>(oneMinusCosine(static_cast<double>(settings.cone_degrees)))) {}
 
 bool Spawner::matches(const ParticleEvent& event) const {
-    if (settings_.of && event.type != *settings_.of) {
+    if (settings_.parent && event.type != *settings_.parent) {
         return false;
     }
     return settings_.on == SpawnOn::kDeath
@@ -25,8 +25,8 @@ EventOptions Spawner::eventOptions() const {
     return {.hits = hits,
             .deaths = !hits,
             .min_speed = hits ? settings_.min_speed : 0.0F,
-            .most = settings_.most,
-            .type = settings_.of,
+            .max_per_step = settings_.max_per_step,
+            .type = settings_.parent,
             .material = hits ? settings_.material : std::nullopt};
 }
 
@@ -34,16 +34,16 @@ std::uint64_t Spawner::spawn(std::span<const ParticleEvent> events, std::span<co
                              std::uint64_t room, std::vector<Birth>& births) {
     const float radius =
         types.empty() ? 0.0F : types[std::min<std::size_t>(settings_.type, types.size() - 1)].radius;
-    std::uint64_t left = std::min<std::uint64_t>(room, settings_.most);
-    std::uint64_t refused = 0;
+    std::uint64_t left = std::min<std::uint64_t>(room, settings_.max_per_step);
+    std::uint64_t rejected = 0;
     std::uint64_t used = 0;
     for (const ParticleEvent& event : events) {
         if (!matches(event)) {
             continue;
         }
-        // No random numbers are drawn beyond `most`, so a shorter event list gives the same births.
-        if (++used > settings_.most) {
-            refused += settings_.count_min;
+        // No random numbers are drawn beyond `max_per_step`, so a shorter event list gives the same births.
+        if (++used > settings_.max_per_step) {
+            rejected += settings_.count_min;
             continue;
         }
         const std::uint64_t due =
@@ -54,13 +54,13 @@ std::uint64_t Spawner::spawn(std::span<const ParticleEvent> events, std::span<co
             if (isValid(birth)) {
                 births.push_back(birth);
             } else {
-                ++refused;
+                ++rejected;
             }
         }
         left -= made;
-        refused += due - made;
+        rejected += due - made;
     }
-    return refused;
+    return rejected;
 }
 
 // The order of the random draws must not change, because seeded runs depend on it: direction, speed, lifetime.

@@ -25,16 +25,16 @@ inline constexpr std::array<std::string_view, 2> kWordsOf<SpawnOn>{"collision", 
 
 struct SpawnSettings {
     SpawnOn on = SpawnOn::kCollision;
-    std::optional<std::uint32_t> of;  ///< type of the parent; nullopt: all
-    float min_speed = 0.0F;           ///< ignores slower hits; ≥ 0; for kCollision
+    std::optional<std::uint32_t> parent;  ///< type of the particle that hits or dies; nullopt: all
+    float min_speed = 0.0F;               ///< ignores slower hits; ≥ 0; for kCollision
     std::optional<int> material;  ///< only hits on this material, see ParticleEvent::material; for kCollision
 
     std::uint32_t type = 0;  ///< type of the births
     /// Births per event, uniform in [count_min, count_max].
     std::uint32_t count_min = 1;
     std::uint32_t count_max = 1;
-    std::uint32_t most = 10'000;  ///< births per step, ≥ 1; further births are refused
-    float lifetime_min = 1.0F;    ///< seconds, > 0; uniform between both limits
+    std::uint32_t max_per_step = 10'000;  ///< births, ≥ 1; further births are rejected
+    float lifetime_min = 1.0F;            ///< seconds, > 0; uniform between both limits
     float lifetime_max = 1.0F;
 
     /// Fraction of the parent's velocity that births inherit, ≥ 0; for hits, of the velocity along the surface, which
@@ -58,13 +58,13 @@ class Spawner {
     Spawner(const SpawnSettings& settings, std::uint64_t seed, std::uint64_t stream = 0);
 
     /// Generates the births of a step's events, in order, with age 0. Births of hits touch the surface from outside.
-    /// Only the first `most` matching events are used; each later one only adds its minimum number of births to the
-    /// number refused.
+    /// Only the first `max_per_step` matching events are used; each later one only adds its minimum number of births to
+    /// the number rejected.
     /// \param types   of the particle system, for their radii.
     /// \param room    maximum number of births to generate.
     /// \param births  receives the births at its end.
-    /// \return the number of births refused: no room, above `most`, or without a finite position or velocity because
-    /// the event has none.
+    /// \return the number of births rejected: no room, above `max_per_step`, or without a finite position or velocity,
+    /// because the event has none.
     std::uint64_t spawn(std::span<const ParticleEvent> events, std::span<const ParticleType> types,
                         std::uint64_t room, std::vector<Birth>& births);
     std::uint64_t spawn(const StepEvents& step, std::span<const ParticleType> types, std::uint64_t room,

@@ -28,9 +28,9 @@ std::string sidesText(const glm::vec3& sides) {
 
 }  // namespace
 
-Result<Collider> animatedFrames(const glm::vec3& room, std::uint32_t resolution) {
+Result<Collider> animatedFrames(const glm::vec3& box_size, std::uint32_t resolution) {
     Collider frames =
-        RELIEF_TRY(liveFrames({-0.5F * room, 0.5F * room}, resolution, LiveSize::kSquareTexels));
+        RELIEF_TRY(liveFrames({-0.5F * box_size, 0.5F * box_size}, resolution, LiveSize::kSquareTexels));
     for (DepthMap& map : frames.maps) {
         map.encloses = true;
         map.empty_is_outside = true;
@@ -40,12 +40,12 @@ Result<Collider> animatedFrames(const glm::vec3& room, std::uint32_t resolution)
 
 Result<AnimatedCollider> AnimatedCollider::create(std::shared_ptr<const AnimatedMesh> mesh,
                                                   const AnimatedColliderOptions& options) {
-    const glm::vec3 room = options.room ? *options.room : poseExtent(*mesh).room;
-    Collider frames = RELIEF_TRY(animatedFrames(room, options.resolution));
+    const glm::vec3 box_size = options.box_size ? *options.box_size : poseExtent(*mesh).box_size;
+    Collider frames = RELIEF_TRY(animatedFrames(box_size, options.resolution));
     SkinPass pass = RELIEF_TRY(SkinPass::create(*mesh));
     // Any initial positions are valid: setPose() replaces all of them before the first render.
     LiveCollider live = RELIEF_TRY(LiveCollider::create(mesh->positions, mesh->triangles, std::move(frames)));
-    AnimatedCollider made(std::move(mesh), room, std::move(pass), std::move(live));
+    AnimatedCollider made(std::move(mesh), box_size, std::move(pass), std::move(live));
     RELIEF_TRY(made.setPose(firstPose(*made.mesh_)));
     return made;
 }
@@ -62,11 +62,11 @@ Result<void> AnimatedCollider::check(const MeshPose& pose) const {
         return fail(ErrorCode::kUsage, "the pose of an animated collider is not finite");
     }
     const Bounds box = bounds_.of(pose);
-    if (!glm::all(
-            glm::lessThanEqual(box.size(), room_ + kRoomSlack * std::max({room_.x, room_.y, room_.z})))) {
+    if (!glm::all(glm::lessThanEqual(
+            box.size(), box_size_ + kRoomSlack * std::max({box_size_.x, box_size_.y, box_size_.z})))) {
         return fail(ErrorCode::kUsage, "a pose occupies " + sidesText(box.size()) +
                                            ", more than the box of the animated collider, " +
-                                           sidesText(room_) + "; create it with a larger one");
+                                           sidesText(box_size_) + "; create it with a larger one");
     }
     return {};
 }

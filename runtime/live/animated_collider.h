@@ -29,13 +29,13 @@ namespace relief {
 
 /// Returns liveFrames() around the origin for a mesh whose poses fit into a box of this size. Space around the mesh
 /// counts as outside.
-/// \param room  object units, see poseExtent(). Errors: as liveFrames().
-[[nodiscard]] Result<Collider> animatedFrames(const glm::vec3& room, std::uint32_t resolution);
+/// \param box_size  object units, see poseExtent(). Errors: as liveFrames().
+[[nodiscard]] Result<Collider> animatedFrames(const glm::vec3& box_size, std::uint32_t resolution);
 
 struct AnimatedColliderOptions {
     std::uint32_t resolution = 512;  ///< texels along the longest side of the box
     /// Sides of a box that fits every pose, object units; nullopt: that of poseExtent().
-    std::optional<glm::vec3> room{};
+    std::optional<glm::vec3> box_size{};
 };
 
 class AnimatedCollider {
@@ -48,7 +48,7 @@ class AnimatedCollider {
                                                          const AnimatedColliderOptions& options = {});
 
     /// Checks a pose. Errors: kUsage (wrong number of joints or weights, a number that is not finite, a pose that
-    /// exceeds the room).
+    /// exceeds the box_size).
     [[nodiscard]] Result<void> check(const MeshPose& pose) const;
     /// Moves the vertices; update() renders them. Call it at most once between two updates.
     /// Errors: those of check(); kUsage (called twice). The state is then unchanged.
@@ -72,17 +72,17 @@ class AnimatedCollider {
     [[nodiscard]] const glm::vec3& middle() const { return middle_; }  ///< centre of the box, object space
 
   private:
-    AnimatedCollider(std::shared_ptr<const AnimatedMesh> mesh, const glm::vec3& room, SkinPass pass,
+    AnimatedCollider(std::shared_ptr<const AnimatedMesh> mesh, const glm::vec3& box_size, SkinPass pass,
                      LiveCollider live)
         : mesh_(std::move(mesh)),
           bounds_(*mesh_),
-          room_(room),
+          box_size_(box_size),
           pass_(std::move(pass)),
           live_(std::move(live)) {}
 
     std::shared_ptr<const AnimatedMesh> mesh_;
     PoseBounds bounds_;
-    glm::vec3 room_;
+    glm::vec3 box_size_;
     SkinPass pass_;
     LiveCollider live_;
     std::optional<MeshPose> pose_;  // the last one set

@@ -166,7 +166,8 @@ std::uint64_t Emitter::emit(double dt, std::uint64_t room, std::vector<Birth>& b
         for (std::uint64_t i = 0; i < by_rate; ++i) {
             const double moment = settings_.start + static_cast<double>(steady + i + 1) / settings_.rate;
             Birth& birth = births.emplace_back();
-            birth.age = settings_.spread ? static_cast<float>(std::clamp(elapsed_ - moment, 0.0, dt)) : 0.0F;
+            birth.age =
+                settings_.interpolate ? static_cast<float>(std::clamp(elapsed_ - moment, 0.0, dt)) : 0.0F;
             sample(birth);
         }
         steady += by_rate;

@@ -76,7 +76,7 @@ struct EmitterSettings {
     std::uint32_t type = 0;
     /// True: births by rate get an age. Birth n occurs at start + n / rate and lives for the rest of its step. False:
     /// all births of a step start at its beginning.
-    bool spread = true;
+    bool interpolate = true;
 };
 
 class Emitter {

@@ -29,7 +29,7 @@ Result<void> checkTypes(std::span<const ParticleType> types) {
     const auto finite = [](float value, float low) { return value >= low && std::isfinite(value); };
     for (const ParticleType& type : types) {
         if (!(finite(type.mass, kParticleMassMin) && finite(type.radius, 0.0F) && share(type.restitution) &&
-              std::isfinite(type.gravity) && type.collides <= kCollidesWithAll && share(type.friction) &&
+              std::isfinite(type.gravity) && type.collides_with <= kCollidesWithAll && share(type.friction) &&
               finite(type.friction_threshold, 0.0F) && finite(type.lifetime_loss, 0.0F))) {
             return fail(
                 ErrorCode::kUsage,
@@ -145,7 +145,7 @@ StepVariant ParticleSystem::variantFor(const ShaderCollider* collider) const {
                         .types = static_cast<int>(types_.size())};
     for (const ParticleType& type : types_) {
         variant.radius = variant.radius || (type.radius > 0.0F && collider != nullptr);
-        variant.masks = variant.masks || type.collides != kCollidesWithAll;
+        variant.masks = variant.masks || type.collides_with != kCollidesWithAll;
     }
     for (const std::shared_ptr<StepFeature>& feature : features_) {
         variant.features.push_back(feature.get());
@@ -271,7 +271,7 @@ Result<std::size_t> ParticleSystem::spawn(std::span<const Birth> births) {
         ++accepted;
     }
     born_ += accepted;
-    refused_ += births.size() - accepted;
+    rejected_ += births.size() - accepted;
     return accepted;
 }
 
@@ -397,7 +397,7 @@ void ParticleSystem::setEpochForward() {
 }
 
 ParticleCounts ParticleSystem::counts() const {
-    return {born_, died_, refused_, allocator_.liveCount(), allocator_.extent()};
+    return {born_, died_, rejected_, allocator_.liveCount(), allocator_.extent()};
 }
 
 bool isLost(const ParticleState& particle) {

@@ -56,7 +56,7 @@ struct ParticleSystemOptions {
 struct ParticleCounts {
     std::uint64_t born = 0;
     std::uint64_t died = 0;
-    std::uint64_t refused = 0;  ///< births without a free index
+    std::uint64_t rejected = 0;  ///< births without a free index
     std::uint32_t alive = 0;
     std::uint32_t extent = 0;  ///< largest live index + 1
 };
@@ -139,7 +139,7 @@ class ParticleSystem {
 
     /// Adds births for the start of the next step. A birth with an age first moves for this time, under the forces
     /// and without collisions. Free texels are used in ascending order.
-    /// \return the number of births added; the others are refused and counted.
+    /// \return the number of births added; the others are rejected and counted.
     /// Errors: kUsage (a birth that is not isValid(), named by its index; none is added then).
     Result<std::size_t> spawn(std::span<const Birth> births);
 
@@ -205,7 +205,7 @@ class ParticleSystem {
     std::uint32_t stepped_extent_ = 0;         // in the last step, including particles that died in it
     std::uint64_t born_ = 0;
     std::uint64_t died_ = 0;
-    std::uint64_t refused_ = 0;
+    std::uint64_t rejected_ = 0;
     double time_ = 0.0;
     double epoch_ = 0.0;
     double epoch_seconds_ = 0.0;

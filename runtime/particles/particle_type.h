@@ -10,7 +10,7 @@
 
 namespace relief {
 
-/// Bits of ParticleType::collides: body group g (ColliderBody::group) has bit g. A single collider is in group 0.
+/// Bits of ParticleType::collides_with: body group g (ColliderBody::group) has bit g. A single collider is in group 0.
 inline constexpr std::uint32_t kCollidesWithGround = 1U << kGroundBit;
 inline constexpr std::uint32_t kCollidesWithAll = 2 * kCollidesWithGround - 1;
 
@@ -23,8 +23,8 @@ struct ParticleType {
     float friction = 0.0F;            ///< ν, 0…1: fraction of the tangential speed that is lost
     float friction_threshold = 0.0F;  ///< no friction below this speed, world units/s
     OnCollision on_collision = OnCollision::kBounce;
-    float lifetime_loss = 0.0F;                 ///< seconds of life lost in each step in contact, ≥ 0
-    std::uint32_t collides = kCollidesWithAll;  ///< bit mask of what it collides with
+    float lifetime_loss = 0.0F;                      ///< seconds of life lost in each step in contact, ≥ 0
+    std::uint32_t collides_with = kCollidesWithAll;  ///< bit mask of what it collides with
 };
 
 inline constexpr std::size_t kParticleTypesMax = 16;

@@ -105,7 +105,7 @@ void StepPass::use(const Values& values) const {
         types.emplace_back(type.radius, type.restitution, 1.0F - type.friction, type.friction_threshold);
         types.emplace_back(dragRate(forces, type), static_cast<float>(type.on_collision), type.lifetime_loss,
                            type.gravity);
-        collides.push_back(static_cast<GLint>(type.collides));
+        collides.push_back(static_cast<GLint>(type.collides_with));
     }
     program_.set("u_types", types);
     program_.set("u_collides", collides);

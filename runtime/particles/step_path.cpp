@@ -12,9 +12,9 @@ namespace relief {
 Result<StepPath> chosenPath(StepPath wanted) {
     if (wanted == StepPath::kCompute && !hasCompute()) {
         return fail(ErrorCode::kUnsupported,
-                    "the compute path needs OpenGL 4.3 or OpenGL ES 3.1, and this context has " +
+                    "compute shaders need OpenGL 4.3 or OpenGL ES 3.1, and this context has " +
                         std::string(reinterpret_cast<const char*>(glGetString(GL_VERSION))) +
-                        "; use the fragment path");
+                        "; use fragment shaders");
     }
     if (wanted == StepPath::kAuto) {
         return hasCompute() && !isSoftwareRenderer() ? StepPath::kCompute : StepPath::kFragment;

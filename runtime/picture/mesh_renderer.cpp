@@ -167,7 +167,7 @@ void MeshRenderer::drawMap(const ParallelMap& map, std::span<const MeshPlace> pl
     drawPlaces(depth_program_, places, true, moving);
 }
 
-void MeshRenderer::drawPrints(std::span<const MeshPlace> places, float metre) {
+void MeshRenderer::drawPrints(std::span<const MeshPlace> places, float units_per_meter) {
     glDisable(GL_DEPTH_TEST);
     glBindFramebuffer(GL_FRAMEBUFFER, prints_target_.name());
     glViewport(0, 0, kPrintSide, kPrintSide);
@@ -175,8 +175,8 @@ void MeshRenderer::drawPrints(std::span<const MeshPlace> places, float metre) {
     print_program_.set("u_clip", zenith_.clip);
     print_program_.set("u_zenith", 0);
     // In clip space, whose depth range is twice that of window depth.
-    print_program_.set("u_sole",
-                       0.5F * kSoleHeight * metre * glm::length(glm::vec3(glm::transpose(zenith_.clip)[2])));
+    print_program_.set("u_sole", 0.5F * kSoleHeight * units_per_meter *
+                                     glm::length(glm::vec3(glm::transpose(zenith_.clip)[2])));
     useTexture(0, zenith_.depth);
     drawPlaces(print_program_, places, false, true);
     glEnable(GL_DEPTH_TEST);
@@ -202,14 +202,15 @@ void MeshRenderer::drawZenith(std::span<const MeshPlace> places, const Bounds& a
     }
 }
 
-Result<void> MeshRenderer::press(std::span<const MeshPlace> places, float metre, const Bounds& around) {
+Result<void> MeshRenderer::press(std::span<const MeshPlace> places, float units_per_meter,
+                                 const Bounds& around) {
     RELIEF_TRY(checkPlaces(places));
     const PassState state;
     if (!(around_ == around)) {
         keepNearest();
         drawZenith(places, around);
     }
-    drawPrints(places, metre);
+    drawPrints(places, units_per_meter);
     return {};
 }
 
@@ -224,7 +225,7 @@ Result<void> MeshRenderer::draw(const CameraMatrices& camera, const MeshStyle& s
     sun_.clip = parallelClip(around, sunDirection());
     drawMap(sun_, places, true);
     drawZenith(places, around);
-    drawPrints(places, style.metre);
+    drawPrints(places, style.units_per_meter);
 
     glBindFramebuffer(GL_FRAMEBUFFER, surface_.name());
     glViewport(0, 0, width_, height_);
@@ -255,10 +256,10 @@ Result<void> MeshRenderer::draw(const CameraMatrices& camera, const MeshStyle& s
     shade.set("u_sun", sunDirection());
     shade.set("u_background", linearColor(style.background));
     shade.set("u_sunlight", style.sun);
-    shade.set("u_per_fog", style.fog > 0.0F ? 1.0F / style.fog : 0.0F);
+    shade.set("u_per_fog", style.fog_distance > 0.0F ? 1.0F / style.fog_distance : 0.0F);
     shade.set("u_wet", style.wet);
     shade.set("u_snow", style.snow);
-    shade.set("u_metre", style.metre);
+    shade.set("u_meter", style.units_per_meter);
     shade.set("u_srgb", target.srgb);
     glDepthFunc(GL_ALWAYS);
     drawInBands(shade, target.framebuffer, target.width, target.height);

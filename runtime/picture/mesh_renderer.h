@@ -26,10 +26,10 @@ struct MeshStyle {
     glm::vec3 background{0.62F, 0.69F, 0.76F};  ///< sky at the horizon, and fog; sRGB
     glm::vec3 clay{0.74F, 0.60F, 0.52F};        ///< meshes without colours; sRGB
     float sun = 1.0F;                           ///< sunlight, 0 (overcast)…1
-    float metre = 1.0F;  ///< world units per metre, > 0: scales grain, drifts and ambient occlusion
-    float fog = 0.0F;    ///< distance at which 63 % of the light is lost, world units; 0: no fog
-    float wet = 0.0F;    ///< wetness where rain reaches, 0…1
-    float snow = 0.0F;   ///< cover where snow reaches, 0…1
+    float units_per_meter = 1.0F;  ///< world units per metre, > 0: scales grain, drifts and ambient occlusion
+    float fog_distance = 0.0F;     ///< distance at which 63 % of the light is lost, world units; 0: no fog
+    float wet = 0.0F;              ///< wetness where rain reaches, 0…1
+    float snow = 0.0F;             ///< cover where snow reaches, 0…1
     friend bool operator==(const MeshStyle&, const MeshStyle&) = default;
 };
 
@@ -63,8 +63,9 @@ class MeshRenderer {
                                     const RenderTarget& target);
 
     /// Adds footprints of moving meshes without drawing, for the time between two pictures.
-    /// \param metre  as in MeshStyle. \param around  as in draw(). Errors: kUsage (no such mesh).
-    [[nodiscard]] Result<void> press(std::span<const MeshPlace> places, float metre, const Bounds& around);
+    /// \param units_per_meter  as in MeshStyle. \param around  as in draw(). Errors: kUsage (no such mesh).
+    [[nodiscard]] Result<void> press(std::span<const MeshPlace> places, float units_per_meter,
+                                     const Bounds& around);
 
     /// Returns the window depths of the last draw(), in the size of its target but not attached to it; empty before.
     [[nodiscard]] const GlTexture& depth() const { return depth_; }
@@ -89,7 +90,7 @@ class MeshRenderer {
     [[nodiscard]] Result<void> checkPlaces(std::span<const MeshPlace> places) const;
     /// Draws the map of resting meshes from above. Clears the footprints if `around` has changed.
     void drawZenith(std::span<const MeshPlace> places, const Bounds& around);
-    void drawPrints(std::span<const MeshPlace> places, float metre);
+    void drawPrints(std::span<const MeshPlace> places, float units_per_meter);
 
     std::vector<Mesh> meshes_;
     GlProgram surface_program_;

@@ -51,8 +51,8 @@ std::string lookFault(const ParticleLook& look) {
             return problem;
         }
     }
-    for (const float value :
-         {look.turn, look.spin, look.stretch, look.fade_in.value_or(0.0F), look.fade_out.value_or(0.0F)}) {
+    for (const float value : {look.rotation_spread, look.spin_spread, look.stretch,
+                              look.fade_in.value_or(0.0F), look.fade_out.value_or(0.0F)}) {
         if (!within(value, 0.0F, kHuge)) {
             return kOutOfRange;
         }
@@ -90,7 +90,7 @@ void packRow(const ParticleLook& look, const LookDefaults& defaults, std::span<c
         key.value = linearColor(key.value);
     }
     const glm::vec3 plain = linearColor(defaults.color);
-    row[0] = {look.turn, look.spin, -1.0F, 0.0F};
+    row[0] = {look.rotation_spread, look.spin_spread, -1.0F, 0.0F};
     if (look.cell_first) {
         row[0].z = static_cast<float>(*look.cell_first);
         row[0].w = static_cast<float>(look.cell_last - *look.cell_first + 1);

@@ -39,12 +39,12 @@ template <class T>
 using AgeTrack = std::vector<AgeKey<T>>;
 
 struct ParticleLook {
-    AgeTrack<float> size;       ///< diameter in object units, ≥ 0; empty: the style's
-    AgeTrack<glm::vec3> color;  ///< sRGB; interpolated in linear light; empty: the style's
-    AgeTrack<float> opacity;    ///< 0…1; empty: the style's
-    AgeTrack<float> rotation;   ///< radians, anticlockwise in the picture; empty: 0
-    float turn = 0.0F;          ///< radians, ≥ 0: random initial rotation within ± turn
-    float spin = 0.0F;          ///< radians/s, ≥ 0: random angular speed within ± spin
+    AgeTrack<float> size;          ///< diameter in object units, ≥ 0; empty: the style's
+    AgeTrack<glm::vec3> color;     ///< sRGB; interpolated in linear light; empty: the style's
+    AgeTrack<float> opacity;       ///< 0…1; empty: the style's
+    AgeTrack<float> rotation;      ///< radians, anticlockwise in the picture; empty: 0
+    float rotation_spread = 0.0F;  ///< radians, ≥ 0: random initial rotation within ± rotation_spread
+    float spin_spread = 0.0F;      ///< radians/s, ≥ 0: random angular speed within ± spin_spread
     /// Exposure time in seconds, ≥ 0. Above 0, a sprite is stretched back along its velocity by the distance of that
     /// time; rotation, turn and spin then have no effect. Only for quads.
     float stretch = 0.0F;

@@ -69,7 +69,7 @@ void setUniforms(const GlProgram& program, const ParticleSystem& particles, cons
     program.set("u_up_view", glm::mat3(camera.view) * glm::vec3(0.0F, 1.0F, 0.0F));
     program.set("u_ordered", ordered);
     program.set("u_srgb", target.srgb);
-    program.set("u_soft", soft ? style.soft : 0.0F);
+    program.set("u_soft", soft ? style.soft_distance : 0.0F);
     if (style.atlas != nullptr) {
         program.set("u_cells", glm::ivec2(style.atlas->columns(), style.atlas->rows()));
         program.set("u_levels_max", static_cast<float>(style.atlas->lastLevel()));
@@ -202,7 +202,7 @@ void ParticleRenderer::bindTextures(const ParticleSystem& particles, const Parti
 Result<void> ParticleRenderer::draw(const ParticleSystem& particles, const CameraMatrices& camera,
                                     const ParticleStyle& style, const RenderTarget& target,
                                     const ParticleOrder& order, const GlTexture* behind) {
-    if (!(style.soft >= 0.0F && style.soft < 1e30F)) {
+    if (!(style.soft_distance >= 0.0F && style.soft_distance < 1e30F)) {
         return fail(ErrorCode::kUsage, "the soft distance of particles must be 0 or more");
     }
     if (!isFinite(camera.view) || !isFinite(camera.projection)) {

@@ -47,7 +47,8 @@ struct ParticleStyle {
                                         ///< values above. Further types use the last look
     Sprite sprite = Sprite::kPoint;
     Blend blend = Blend::kAlpha;
-    float soft = 0.0F;  ///< distance over which a sprite fades in front of surfaces, object units, ≥ 0
+    float soft_distance =
+        0.0F;  ///< distance over which a sprite fades in front of surfaces, object units, ≥ 0
     const SpriteAtlas* atlas = nullptr;  ///< for the cells of looks; null: all particles are round dots
 };
 
@@ -78,8 +79,8 @@ class ParticleRenderer {
     /// Draws over the target's contents (linear or sRGB, as the target requires) with its depth test; writes no depth.
     /// Does not read back or wait for the GPU.
     /// \param order   drawing order; without a texture, that of the particle indices.
-    /// \param behind  depths for style.soft: window depths of a picture with the same camera and size, not attached to
-    ///                the target, such as ColliderRenderer::depth(). Null: style.soft has no effect.
+    /// \param behind  depths for style.soft_distance: window depths of a picture with the same camera and size, not attached to
+    ///                the target, such as ColliderRenderer::depth(). Null: style.soft_distance has no effect.
     /// Errors: kUsage (looks, see packLooks(); a stretched look of points; soft; a camera that is not finite),
     /// kUnsupported, kFailure (shader compiler), kLimit (out of memory for the light around the collider).
     Result<void> draw(const ParticleSystem& particles, const CameraMatrices& camera,

@@ -47,7 +47,7 @@ Result<void> MeshPicture::press(double seconds) {
     if (!snows || !walks || !(since < seconds)) {
         return {};
     }
-    const float metre = loaded_->scene.render.metre;
+    const float units_per_meter = loaded_->scene.render.units_per_meter;
     const Bounds around = shadowBounds(*loaded_);
     const auto steps =
         static_cast<int>(std::clamp(std::ceil((seconds - since) * kPrintsASecond), 1.0, kMostPrints));
@@ -55,7 +55,7 @@ Result<void> MeshPicture::press(double seconds) {
     for (int i = drawn_before_ ? 1 : 0; i < steps; ++i) {
         const double then = since + (seconds - since) * i / steps;
         RELIEF_TRY(pose(then));
-        RELIEF_TRY(renderer_.press(meshPlaces(*loaded_, drawn_, then), metre, around));
+        RELIEF_TRY(renderer_.press(meshPlaces(*loaded_, drawn_, then), units_per_meter, around));
     }
     return {};
 }

@@ -56,7 +56,7 @@ class Run {
         }
         report_.ms_per_step_median = median(std::move(stretches_));
         report_.counts = simulation_.particles().counts();
-        report_.counts.refused += simulation_.refused();
+        report_.counts.rejected += simulation_.rejected();
         if (outputs_.events() != nullptr) {
             RELIEF_TRY(watched(options_.watchdog, "the events", [&] { return simulation_.finishEvents(); }));
             report_.events_dropped = outputs_.events()->dropped();
@@ -133,12 +133,12 @@ Result<std::unique_ptr<GlContext>> makeContext(const PlayerOptions& options) {
 }
 
 /// Returns a warning if most births were rejected.
-std::optional<std::string> refusedWarning(const ParticleCounts& counts, std::uint32_t capacity) {
-    const std::uint64_t asked = counts.born + counts.refused;
-    if (counts.refused <= counts.born) {
+std::optional<std::string> rejectedWarning(const ParticleCounts& counts, std::uint32_t capacity) {
+    const std::uint64_t asked = counts.born + counts.rejected;
+    if (counts.rejected <= counts.born) {
         return std::nullopt;
     }
-    return std::to_string(counts.refused) + " of " + std::to_string(asked) +
+    return std::to_string(counts.rejected) + " of " + std::to_string(asked) +
            " births were rejected because the system was full; raise particles.capacity (now " +
            std::to_string(capacity) + "), or lower emitter.rate, emitter.burst or emitter.lifetime";
 }
@@ -171,8 +171,8 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     RELIEF_TRY(Run(options, simulation, outputs, report).play());
     RELIEF_TRY(outputs.writeEnd(simulation.particles(), report));
     report.warnings = simulation.takeWarnings();
-    if (auto refused = refusedWarning(report.counts, report.scene.particles.capacity)) {
-        report.warnings.push_back(std::move(*refused));
+    if (auto rejected = rejectedWarning(report.counts, report.scene.particles.capacity)) {
+        report.warnings.push_back(std::move(*rejected));
     }
     guard.keepFolders();
     return report;

@@ -16,8 +16,8 @@ std::string reportText(const PlayerReport& report) {
                   report.scene.time.steps, report.ms_per_step,
                   static_cast<unsigned long long>(report.counts.born),
                   static_cast<unsigned long long>(report.counts.died), report.counts.alive,
-                  static_cast<unsigned long long>(report.counts.refused), report.frames_written);
-    return report.device + ", " + std::string(stepPathName(report.path)) + " path\n" + text;
+                  static_cast<unsigned long long>(report.counts.rejected), report.frames_written);
+    return report.device + ", " + std::string(stepPathName(report.path)) + " shaders\n" + text;
 }
 
 GeneratedTexts playerSchemas() {
@@ -32,8 +32,8 @@ GeneratedTexts playerSchemas() {
 void fields(FieldVisitor& visit, const PlayerReport& report) {
     visit("settings", report.scene, {"Scene as simulated, with its own keys"});
     visit("device", report.device, {"OpenGL version, renderer and platform"});
-    visit("path", stepPathName(report.path),
-          {.help = "Path of the particle steps", .words = kWords<"fragment", "compute">});
+    visit("shaders", stepPathName(report.path),
+          {.help = "Shaders of the particle steps", .words = kWords<"fragment", "compute">});
     const auto collider = [&](FieldVisitor& visit_collider) {
         visit_collider("maps", report.collider_maps, {"Maps of all colliders"});
         visit_collider("gpu_bytes", report.collider_bytes, {"Size on the GPU", "bytes"});
@@ -43,7 +43,7 @@ void fields(FieldVisitor& visit, const PlayerReport& report) {
         visit_particles("alive", report.counts.alive, {"Live particles at the end"});
         visit_particles("born", report.counts.born, {"Particles born"});
         visit_particles("died", report.counts.died, {"Particles that died"});
-        visit_particles("refused", report.counts.refused, {"Births rejected because the system was full"});
+        visit_particles("rejected", report.counts.rejected, {"Births rejected because the system was full"});
         visit_particles("in_contact", report.in_contact, {"Particles in contact in the last step"});
         visit_particles("collisions", report.collisions, {"Steps in contact, summed over live particles"});
     };

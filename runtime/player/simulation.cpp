@@ -183,7 +183,7 @@ std::vector<EventOptions> Simulation::spawnEventLists() const {
     }
     for (const Spawner& spawner : spawners_) {
         lists.push_back(spawner.eventOptions());
-        lists.back().most = std::min(lists.back().most, kEventsMax);
+        lists.back().max_per_step = std::min(lists.back().max_per_step, kEventsMax);
     }
     return lists;
 }
@@ -195,7 +195,7 @@ Result<void> Simulation::setEvents() {
     }
     constexpr float kNone = std::numeric_limits<float>::infinity();
     EventOptions options{
-        .hits = false, .min_speed = event_sink_ ? sink_min_speed_ : kNone, .most = kEventsMax};
+        .hits = false, .min_speed = event_sink_ ? sink_min_speed_ : kNone, .max_per_step = kEventsMax};
     for (const SceneSpawn& spawn : spawns_) {
         const bool death = spawn.on == SpawnOn::kDeath;
         options.deaths = options.deaths || death;
@@ -243,15 +243,15 @@ void Simulation::spawnFrom(const StepEvents& step) {
     // Several lists always mean one per spawner, even if the lists were replaced since.
     const bool several = step.lists.size() > 1;
     const bool each = several || list_each_;
-    refused_ += each || spawners_.empty() ? 0 : step.dropped;
+    rejected_ += each || spawners_.empty() ? 0 : step.dropped;
     for (std::size_t i = 0; i < spawners_.size(); ++i) {
         const bool own = i < step.lists.size();
         const std::uint64_t room =
             particles_->room() - std::min<std::uint64_t>(particles_->room(), spawned_.size());
         const std::uint64_t least = spawners_[i].settings().count_min;
-        refused_ += each && own ? least * step.lists[i].dropped : 0;
+        rejected_ += each && own ? least * step.lists[i].dropped : 0;
         if (own || !several) {
-            refused_ += spawners_[i].spawn(several ? step.of(i) : step.events, types_, room, spawned_);
+            rejected_ += spawners_[i].spawn(several ? step.of(i) : step.events, types_, room, spawned_);
         }
     }
 }
@@ -293,7 +293,7 @@ Result<void> Simulation::emitBirths(float dt) {
     sweep_.add(*scene_, births_);
     const std::uint64_t room =
         particles_->room() - std::min<std::uint64_t>(particles_->room(), births_.size());
-    refused_ += emitAll(emitters_, static_cast<double>(dt), room, births_, motions_, particles_->time());
+    rejected_ += emitAll(emitters_, static_cast<double>(dt), room, births_, motions_, particles_->time());
     [[maybe_unused]] const std::size_t accepted = RELIEF_TRY(particles_->spawn(births_));
     return {};
 }
@@ -343,10 +343,10 @@ Result<void> Simulation::makeLive(const LoadedScene& loaded) {
     }
     for (std::size_t i = 0; i < loaded.played.size(); ++i) {
         if (const auto& played = loaded.played[i]) {
-            auto collider = RELIEF_TRY(
-                withPrefix(loaded.scene.colliders[i].origin + ": collider.play",
-                           AnimatedCollider::create(
-                               played->mesh, {.resolution = played->play.resolution, .room = played->room})));
+            auto collider = RELIEF_TRY(withPrefix(
+                loaded.scene.colliders[i].origin + ": collider.play",
+                AnimatedCollider::create(
+                    played->mesh, {.resolution = played->play.resolution, .box_size = played->box_size})));
             played_.push_back({i, std::move(collider)});
         }
     }

@@ -79,7 +79,7 @@ class Simulation {
     /// collider of a streamed world that failed to load.
     [[nodiscard]] std::vector<std::string> takeWarnings();
     /// Number of births of emitters and [[spawn]] rejected because the particle system was full.
-    [[nodiscard]] std::uint64_t refused() const { return refused_; }
+    [[nodiscard]] std::uint64_t rejected() const { return rejected_; }
     /// Sets the points around which a streamed world has full detail, besides the emitters and instead of the scene's
     /// camera. Takes effect with the next step.
     void setPoints(std::vector<PointOfInterest> points) { points_ = std::move(points); }
@@ -176,7 +176,7 @@ class Simulation {
     std::vector<PlayedBody> played_;
     std::unique_ptr<ParticleSystem> particles_;
     std::vector<Birth> births_;  // reused buffer of a step
-    std::uint64_t refused_ = 0;
+    std::uint64_t rejected_ = 0;
     std::uint64_t steps_ = 0;
     std::vector<ParticleType> types_;
     std::vector<std::string> warnings_;  // not returned yet

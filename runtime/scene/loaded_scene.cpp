@@ -201,14 +201,14 @@ Result<LoadedScene> loadAll(Scene scene, const fs::path& input, const SceneOverr
     scene.time.steps = overrides.steps.value_or(scene.time.steps);
     scene.render.width = overrides.width.value_or(scene.render.width);
     scene.render.height = overrides.height.value_or(scene.render.height);
-    scene.render.every = overrides.frame_every.value_or(scene.render.every);
-    scene.render.first = overrides.first_frame ? overrides.first_frame : scene.render.first;
-    scene.render.last = overrides.last_frame ? overrides.last_frame : scene.render.last;
-    if (scene.render.first.value_or(0) > scene.render.last.value_or(kNoLast)) {
-        return fail(ErrorCode::kUsage, "the first frame, of step " + std::to_string(*scene.render.first) +
-                                           ", comes after the last, of step " +
-                                           std::to_string(*scene.render.last) +
-                                           "; swap --first-frame and --last-frame");
+    scene.render.steps_per_frame = overrides.steps_per_frame.value_or(scene.render.steps_per_frame);
+    scene.render.first_frame = overrides.first_frame ? overrides.first_frame : scene.render.first_frame;
+    scene.render.last_frame = overrides.last_frame ? overrides.last_frame : scene.render.last_frame;
+    if (scene.render.first_frame.value_or(0) > scene.render.last_frame.value_or(kNoLast)) {
+        return fail(ErrorCode::kUsage,
+                    "the first frame, of step " + std::to_string(*scene.render.first_frame) +
+                        ", comes after the last, of step " + std::to_string(*scene.render.last_frame) +
+                        "; swap --first-frame and --last-frame");
     }
     for (SceneEmitter& emitter : scene.emitters) {
         emitter.seed = overrides.seed.value_or(emitter.seed);

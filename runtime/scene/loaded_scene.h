@@ -24,12 +24,12 @@ namespace relief {
 /// Values that override those of the scene.
 struct SceneOverrides {
     std::optional<std::uint32_t> steps;
-    std::optional<std::uint32_t> width;        ///< of pictures, pixels
-    std::optional<std::uint32_t> height;       ///< of pictures, pixels
-    std::optional<std::uint64_t> seed;         ///< of every emitter
-    std::optional<std::uint32_t> first_frame;  ///< render.first
-    std::optional<std::uint32_t> last_frame;   ///< render.last
-    std::optional<std::uint32_t> frame_every;  ///< render.every
+    std::optional<std::uint32_t> width;            ///< of pictures, pixels
+    std::optional<std::uint32_t> height;           ///< of pictures, pixels
+    std::optional<std::uint64_t> seed;             ///< of every emitter
+    std::optional<std::uint32_t> first_frame;      ///< render.first_frame
+    std::optional<std::uint32_t> last_frame;       ///< render.last_frame
+    std::optional<std::uint32_t> steps_per_frame;  ///< render.steps_per_frame
     /// A folder whose files the scene may name, besides its own folder; empty: none.
     std::filesystem::path root;
     ContainerLimits limits;  ///< per collider, and for all colliders of a world together

@@ -44,14 +44,15 @@ std::optional<FieldFault> checkAirOf(Scene& scene, const GivenFields& given) {
 /// Checks that the frames are within the steps.
 std::optional<FieldFault> checkFrames(const Scene& scene) {
     const SceneRender& render = scene.render;
-    for (const auto& [path, step] : {std::pair("render.first", render.first), {"render.last", render.last}}) {
+    for (const auto& [path, step] :
+         {std::pair("render.first_frame", render.first_frame), {"render.last_frame", render.last_frame}}) {
         if (step && *step > scene.time.steps) {
             return FieldFault{path, "= " + std::to_string(*step) + " is out of range; choose 0 to " +
                                         std::to_string(scene.time.steps)};
         }
     }
-    if (render.last && *render.last < render.first.value_or(0)) {
-        return FieldFault{"render.last", "comes before render.first; swap them"};
+    if (render.last_frame && *render.last_frame < render.first_frame.value_or(0)) {
+        return FieldFault{"render.last_frame", "comes before render.first_frame; swap them"};
     }
     return std::nullopt;
 }
@@ -107,7 +108,7 @@ std::size_t numbered(const Scene& scene) {
                                                   [](const SceneCollider& c) { return !c.tile_of; }));
 }
 
-/// Returns all bodies as bits of ParticleType::collides.
+/// Returns all bodies as bits of ParticleType::collides_with.
 std::uint32_t bodiesOf(const Scene& scene) {
     const auto groups = std::min<std::size_t>(numbered(scene), WorldTextures::kGroups);
     return (1U << groups) - 1U + (scene.ground.enabled ? kCollidesWithGround : 0U);
@@ -255,7 +256,7 @@ std::vector<ParticleType> particleTypes(const Scene& scene) {
     std::vector<ParticleType> types(scene.types.begin(), scene.types.end());
     for (ParticleType& type : types) {
         // Ignore bits of absent bodies: a type that collides with everything has a faster step.
-        type.collides = type.collides == bodiesOf(scene) ? kCollidesWithAll : type.collides;
+        type.collides_with = type.collides_with == bodiesOf(scene) ? kCollidesWithAll : type.collides_with;
     }
     return types;
 }
@@ -275,23 +276,24 @@ std::uint32_t prewarmSteps(const Scene& scene) {
 }
 
 std::uint32_t firstFrame(const Scene& scene) {
-    return std::min(scene.render.first.value_or(scene.render.every), lastFrame(scene));
+    return std::min(scene.render.first_frame.value_or(scene.render.steps_per_frame), lastFrame(scene));
 }
 
 std::uint32_t lastFrame(const Scene& scene) {
-    return std::min(scene.render.last.value_or(scene.time.steps), scene.time.steps);
+    return std::min(scene.render.last_frame.value_or(scene.time.steps), scene.time.steps);
 }
 
 std::uint32_t frameCount(const Scene& scene) {
     const std::uint32_t first = firstFrame(scene);
     const std::uint32_t span = lastFrame(scene) - first;  // first is at most last
-    return 1 + span / scene.render.every + (span % scene.render.every == 0 ? 0 : 1);
+    return 1 + span / scene.render.steps_per_frame + (span % scene.render.steps_per_frame == 0 ? 0 : 1);
 }
 
 bool frameDue(const Scene& scene, std::uint32_t step) {
     const std::uint32_t first = firstFrame(scene);
     const std::uint32_t last = lastFrame(scene);
-    return step >= first && step <= last && ((step - first) % scene.render.every == 0 || step == last);
+    return step >= first && step <= last &&
+           ((step - first) % scene.render.steps_per_frame == 0 || step == last);
 }
 
 Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
@@ -312,15 +314,15 @@ Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
     for (std::size_t i = 0; i < scene.types.size(); ++i) {
         SceneType& type = scene.types[i];
         // A scene without a world already checked this when it was read.
-        const std::uint32_t absent = type.collides & ~(bodiesOf(scene) | kCollidesWithGround);
-        if (!scene.world.empty() && type.collides != kCollidesWithAll && absent != 0) {
+        const std::uint32_t absent = type.collides_with & ~(bodiesOf(scene) | kCollidesWithGround);
+        if (!scene.world.empty() && type.collides_with != kCollidesWithAll && absent != 0) {
             return fail(
                 ErrorCode::kInvalidInput,
-                nth("type", i, ".collides") +
+                nth("type", i, ".collides_with") +
                     " names a body that does not exist; the number of bodies, including the world, is " +
                     std::to_string(numbered(scene)) + ", numbered from 0");
         }
-        type.collides &= bodiesOf(scene);
+        type.collides_with &= bodiesOf(scene);
     }
     RELIEF_TRY(completeEmitters(scene.emitters, bounds, scale, run, scene.particles.capacity));
     if (!scene.forces.gravity) {
@@ -352,8 +354,8 @@ Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
     if (!scene.render.point_size) {
         scene.render.point_size = 0.0065F * scale;
     }
-    scene.render.first = firstFrame(scene);
-    scene.render.last = lastFrame(scene);
+    scene.render.first_frame = firstFrame(scene);
+    scene.render.last_frame = lastFrame(scene);
     return scene;
 }
 

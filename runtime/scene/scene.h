@@ -112,13 +112,13 @@ struct SceneRender {
     glm::vec3 color{0.97F, 0.98F, 1.0F};  ///< sRGB
     float opacity = 0.95F;
     glm::vec3 background{0.62F, 0.69F, 0.76F};  ///< sRGB
-    std::uint32_t every = 10;                   ///< steps per frame
-    std::optional<std::uint32_t> first;         ///< step of the first frame; nullopt: `every`
-    std::optional<std::uint32_t> last;          ///< step of the last frame; nullopt: the end of the run
+    std::uint32_t steps_per_frame = 10;         ///< steps per frame
+    std::optional<std::uint32_t> first_frame;   ///< step of the first frame; nullopt: `steps_per_frame`
+    std::optional<std::uint32_t> last_frame;    ///< step of the last frame; nullopt: the end of the run
     std::uint32_t sort_frames = 0;              ///< frames per depth sort, 2…200; 0: unsorted
     Sprite sprite = Sprite::kPoint;
     Blend blend = Blend::kAlpha;
-    float soft = 0.0F;            ///< object units
+    float soft_distance = 0.0F;   ///< object units
     std::filesystem::path atlas;  ///< resolved; empty: none
     std::string atlas_origin;     ///< position of the key, "scene.toml:3:8", for messages
     std::uint32_t atlas_columns = 1;
@@ -127,16 +127,16 @@ struct SceneRender {
     std::string mesh_origin;
     std::filesystem::path meshes;  ///< resolved; empty: none
     std::string meshes_origin;
-    float fog = 0.0F;                   ///< world units; 0: none
-    float metre = 1.0F;                 ///< world units
-    std::optional<float> shadows;       ///< distance from camera.target, world units
-    std::vector<SceneWeather> weather;  ///< ascending times
+    float fog_distance = 0.0F;             ///< world units; 0: none
+    float units_per_meter = 1.0F;          ///< world units
+    std::optional<float> shadow_distance;  ///< distance from camera.target, world units
+    std::vector<SceneWeather> weather;     ///< ascending times
 };
 
 void fields(FieldVisitor& visit, SceneRender& r);
 [[nodiscard]] std::optional<FieldFault> check(SceneRender& render, const GivenFields& given);
 
-/// Reads and writes ParticleType::collides as a list of bodies.
+/// Reads and writes ParticleType::collides_with as a list of bodies.
 struct CollidesList {
     std::uint32_t& bits;
 };
@@ -208,7 +208,7 @@ void fields(FieldVisitor& visit, Scene& scene);
 /// Return the steps after which the first and the last frame are due; 0 is before the first step.
 [[nodiscard]] std::uint32_t firstFrame(const Scene& scene);
 [[nodiscard]] std::uint32_t lastFrame(const Scene& scene);
-/// Returns whether a frame is due after a step: every `render.every` steps from the first frame on, and at the last.
+/// Returns whether a frame is due after a step: every `render.steps_per_frame` steps from the first frame on, and at the last.
 [[nodiscard]] bool frameDue(const Scene& scene, std::uint32_t step);
 /// Returns the number of frames of the run.
 [[nodiscard]] std::uint32_t frameCount(const Scene& scene);

@@ -60,8 +60,8 @@ struct ScenePlay {
     std::string clip;
     float start = 0.0F;
     float speed = 1.0F;
-    bool repeat = true;
-    float room = 1.0F;
+    bool loop = true;
+    float bounds_scale = 1.0F;
     std::uint32_t resolution = 512;
     friend bool operator==(const ScenePlay&, const ScenePlay&) = default;
 };

@@ -25,13 +25,13 @@ void fields(FieldVisitor& visit, ParticleLook& look) {
            .range = within(kAngleMax),
            .fallback = "0",
            .left_out = true});
-    visit("turn", look.turn,
+    visit("rotation_spread", look.rotation_spread,
           {"Range ± of each particle's random initial rotation", "radians", {0.0, kAngleMax}});
-    visit("spin", look.spin,
+    visit("spin_spread", look.spin_spread,
           {"Range ± of each particle's random rotation speed", "radians/s", {0.0, kAngleMax}});
     visit("stretch", look.stretch,
           {"Exposure time: stretches the sprite along its path of this duration; needs render.sprite = "
-           "\"quad\"; excludes rotation, turn and spin",
+           "\"quad\"; excludes rotation, rotation_spread and spin_spread",
            "s", kTimeRange});
     visit("cell", FieldSpan{look.cell_first, look.cell_last},
           {.help = "Cell of the atlas, or [first, last] to play over the lifetime, counted row by row from "
@@ -81,8 +81,8 @@ void fields(FieldVisitor& visit, ScenePlay& play) {
           leftOut({"Name of a clip in a container baked with --animated", {}, {}, "the first"}));
     visit("start", play.start, {"Offset into the clip at time 0", "s", within(kClipStartMax)});
     visit("speed", play.speed, {"Playback speed; negative plays backwards", "1", within(kClipSpeedMax)});
-    visit("repeat", play.repeat, {"Loop the clip"});
-    visit("room", play.room,
+    visit("loop", play.loop, {"Loop the clip"});
+    visit("bounds_scale", play.bounds_scale,
           {"Scale of the clips' bounding box, to make room for poses set by a program", {}, {1.0, 100.0}});
     visit("resolution", play.resolution, {"Texels of its maps along the longest side", {}, {16.0, 4096.0}});
 }
@@ -229,7 +229,7 @@ void fields(FieldVisitor& visit, SceneEmitter& e) {
     visit(
         "burst_every", e.burst_every,
         leftOut({"Interval between bursts", "s", {1e-4, kSecondsMax}, "a single burst", {.needs = "burst"}}));
-    visit("spread", e.spread, {"Spread births by rate over their step"});
+    visit("interpolate", e.interpolate, {"Spread births by rate over their step"});
     visit("velocity", FieldMaybe{e.velocity, e.has_velocity},
           leftOut({"Velocity of every birth",
                    "[x, y, z]/s",
@@ -372,10 +372,10 @@ void fields(FieldVisitor& visit, SceneRender& r) {
     visit("color", r.color, {"Colour of particles", "[r, g, b]", {0.0, 1.0}});
     visit("opacity", r.opacity, {"Opacity of particles", {}, {0.0, 1.0, false}});
     visit("background", r.background, {"Colour of the background", "[r, g, b]", {0.0, 1.0}});
-    visit("every", r.every, {"Steps per frame", {}, {1.0, kStepsMax}});
-    visit("first", r.first,
-          {"Step of the first frame; 0: before the first step", {}, {0.0, kStepsMax}, "every"});
-    visit("last", r.last, {"Step of the last frame", {}, {0.0, kStepsMax}, "the last step"});
+    visit("steps_per_frame", r.steps_per_frame, {"Steps per frame", {}, {1.0, kStepsMax}});
+    visit("first_frame", r.first_frame,
+          {"Step of the first frame; 0: before the first step", {}, {0.0, kStepsMax}, "steps_per_frame"});
+    visit("last_frame", r.last_frame, {"Step of the last frame", {}, {0.0, kStepsMax}, "the last step"});
     visit("sort_frames", r.sort_frames,
           {"Frames over which one depth sort is spread, at least 2; 0: no sort. The compute path sorts every "
            "frame",
@@ -383,7 +383,8 @@ void fields(FieldVisitor& visit, SceneRender& r) {
            {0.0, 200.0}});
     visit("sprite", r.sprite, {"Shape of particles; quads may have any size and rotate"});
     visit("blend", r.blend, {"Blend mode of particles"});
-    visit("soft", r.soft, {"Distance from collider and floor within which sprites fade", {}, kLengthRange});
+    visit("soft_distance", r.soft_distance,
+          {"Distance from collider and floor within which sprites fade", {}, kLengthRange});
     visit("atlas", FieldFile{r.atlas, r.atlas_origin},
           leftOut({"PNG with alpha, up to 8192 pixels a side; needs a type with cell", {}, {}, "none"}));
     visit("atlas_cells", FieldPair{r.atlas_columns, r.atlas_rows},
@@ -404,19 +405,19 @@ void fields(FieldVisitor& visit, SceneRender& r) {
                    {},
                    "none: the maps are drawn",
                    {.instead_of = "mesh"}}));
-    visit("fog", r.fog,
+    visit("fog_distance", r.fog_distance,
           {"Distance at which fog hides 63 %, in the background colour; 0: no fog",
            {},
            kLengthRange,
            {},
            {.needs = "meshes"}});
-    visit("metre", r.metre,
+    visit("units_per_meter", r.units_per_meter,
           {"World units per metre: scales surface grain, snow drifts and corner shading",
            {},
            kSizeRange,
            {},
            {.needs = "meshes"}});
-    visit("shadows", r.shadows,
+    visit("shadow_distance", r.shadow_distance,
           leftOut({"Distance from camera.target in x and z within which meshes cast shadows and give shelter",
                    {},
                    kSizeRange,
@@ -433,7 +434,7 @@ void fields(FieldVisitor& visit, SceneRender& r) {
 void fields(FieldVisitor& visit, SceneType& type) {
     visit("name", type.name, leftOut({"Unique name, for emitter.type and spawn", {}, {}, "none"}));
     fields(visit, static_cast<ParticleType&>(type));
-    visit("collides", CollidesList{type.collides},
+    visit("collides_with", CollidesList{type.collides_with},
           {"Colliders that it collides with, by index from 0 (7: all from 7 on), and \"ground\", as in [0, "
            "\"ground\"]",
            {},

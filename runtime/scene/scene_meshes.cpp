@@ -221,8 +221,8 @@ std::vector<MeshPlace> meshPlaces(const LoadedScene& loaded, const DrawnMeshes& 
 MeshStyle meshStyle(const Scene& scene, double seconds) {
     MeshStyle style;
     style.background = scene.render.background;
-    style.fog = scene.render.fog;
-    style.metre = scene.render.metre;
+    style.fog_distance = scene.render.fog_distance;
+    style.units_per_meter = scene.render.units_per_meter;
     const std::vector<SceneWeather>& keys = scene.render.weather;
     if (keys.empty()) {
         return style;
@@ -249,8 +249,8 @@ Bounds shadowBounds(const LoadedScene& loaded) {
         around.min -= glm::vec3(height, 0.0F, height);
         around.max += glm::vec3(height, 0.0F, height);
     }
-    if (loaded.scene.render.shadows) {
-        const float reach = *loaded.scene.render.shadows;
+    if (loaded.scene.render.shadow_distance) {
+        const float reach = *loaded.scene.render.shadow_distance;
         const glm::vec3 target = *loaded.scene.camera.target;
         for (const int i : {0, 2}) {
             around.min[i] = std::max(around.min[i], target[i] - reach);

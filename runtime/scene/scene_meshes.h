@@ -52,7 +52,7 @@ struct DrawnMeshes {
 /// Returns the style at a time in seconds.
 [[nodiscard]] MeshStyle meshStyle(const Scene& scene, double seconds);
 
-/// Returns the region with shadows: the whole world, or the part within render.shadows of camera.target along x and z.
+/// Returns the region with shadows: the whole world, or the part within render.shadow_distance of camera.target along x and z.
 [[nodiscard]] Bounds shadowBounds(const LoadedScene& loaded);
 
 }  // namespace relief

@@ -104,7 +104,7 @@ ParticleStyle particleStyle(const Scene& scene, const SpriteAtlas* atlas) {
     style.looks = particleLooks(scene);
     style.sprite = render.sprite;
     style.blend = render.blend;
-    style.soft = render.soft;
+    style.soft_distance = render.soft_distance;
     style.atlas = atlas;
     return style;
 }

@@ -30,12 +30,12 @@ MeshPose PlayedMesh::poseAt(double time) const {
     }
     const MeshClip& of = mesh->clips[*clip];
     const double seconds = double{play.start} + double{play.speed} * time;
-    return relief::poseAt(*mesh, of, play.repeat ? repeated(of, seconds) : seconds);
+    return relief::poseAt(*mesh, of, play.loop ? repeated(of, seconds) : seconds);
 }
 
 double PlayedMesh::run(double time) const {
     const double seconds = double{play.start} + double{play.speed} * time;
-    return clip && play.repeat ? std::floor(seconds / double{mesh->clips[*clip].seconds}) : 0.0;
+    return clip && play.loop ? std::floor(seconds / double{mesh->clips[*clip].seconds}) : 0.0;
 }
 
 Result<void> changeClip(PlayedMesh& played, const SceneCollider& from) {
@@ -58,9 +58,9 @@ Result<PlayedMesh> loadPlayedMesh(const SceneCollider& from, std::shared_ptr<con
     PlayedMesh played;
     played.mesh = std::move(mesh);
     RELIEF_TRY(changeClip(played, from));
-    played.room = played.play.room * extent.room;
+    played.box_size = played.play.bounds_scale * extent.box_size;
     played.frames = RELIEF_TRY(
-        withPrefix(from.origin + ": collider.play", animatedFrames(played.room, played.play.resolution)));
+        withPrefix(from.origin + ": collider.play", animatedFrames(played.box_size, played.play.resolution)));
     played.frames.bounds = extent.box;
     return played;
 }

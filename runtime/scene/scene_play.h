@@ -19,8 +19,8 @@ struct PlayedMesh {
     std::optional<std::size_t> clip;  ///< of the mesh; nullopt: it has no clips and rests
     bool cyclic = false;              ///< isCyclic()
     ScenePlay play;
-    glm::vec3 room{0.0F};  ///< sides of the box of its maps, object units
-    Collider frames;       ///< bounds of all clips in object space, and three maps without texels
+    glm::vec3 box_size{0.0F};  ///< sides of the box of its maps, object units
+    Collider frames;           ///< bounds of all clips in object space, and three maps without texels
 
     /// Returns the pose at a time of the scene, seconds.
     [[nodiscard]] MeshPose poseAt(double time) const;

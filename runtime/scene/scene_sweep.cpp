@@ -172,7 +172,7 @@ void SceneSweep::add(const Scene& scene, std::span<const Birth> births) {
     }
     for (std::size_t t = 0; t < types.size(); ++t) {
         for (std::size_t i = 0; i < groups_.size() && speeds[t]; ++i) {
-            if ((types[t].collides >> i & 1U) != 0) {
+            if ((types[t].collides_with >> i & 1U) != 0) {
                 float& fastest = groups_[i][types[t].radius];
                 fitted_ = fitted_ && *speeds[t] <= fastest;
                 fastest = std::max(fastest, *speeds[t]);

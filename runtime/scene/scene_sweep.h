@@ -42,7 +42,7 @@ class SceneSweep {
     struct Body {
         std::filesystem::path path;
         float thick = 0.0F;     // typical thickness, world units
-        std::size_t group = 0;  // bit of ParticleType::collides
+        std::size_t group = 0;  // bit of ParticleType::collides_with
     };
     struct Thin;
     [[nodiscard]] std::vector<Thin> thinColliders() const;

@@ -25,7 +25,7 @@ void fields(FieldVisitor& visit, SpawnSettings& s) {
            {},
            {},
            {.required = true, .selects = true}});
-    visit("of", s.of,
+    visit("parent", s.parent,
           {"Index or name of the type that hits or dies",
            {},
            {0.0, kParticleTypesMax - 1},
@@ -40,7 +40,7 @@ void fields(FieldVisitor& visit, SpawnSettings& s) {
     visit("type", s.type,
           {"Index or name of the type to emit", {}, {0.0, kParticleTypesMax - 1}, {}, {.index_of = "type"}});
     visit("count", FieldSpan{s.count_min, s.count_max}, {"Births per event", {}, {1.0, 10'000.0}});
-    visit("most", s.most, {"Maximum births per step", {}, {1.0, 1 << 24}});
+    visit("max_per_step", s.max_per_step, {"Maximum births per step", {}, {1.0, 1 << 24}});
     visit("lifetime", FieldSpan{s.lifetime_min, s.lifetime_max}, {"Lifetime of births", "s", kLifeRange});
     visit("inherit", s.inherit,
           {"Factor on the parent's velocity, which births inherit; after a hit, only its tangential part",

@@ -9,7 +9,7 @@
 
 namespace relief {
 
-/// All fields except `collides`, which names bodies.
+/// All fields except `collides_with`, which names bodies.
 void fields(FieldVisitor& visit, ParticleType& type);
 
 void fields(FieldVisitor& visit, SpawnSettings& s);

@@ -206,7 +206,7 @@ EMSCRIPTEN_KEEPALIVE const char* relief_player_warnings(Player* player) {
 EMSCRIPTEN_KEEPALIVE int relief_player_near(Player* player, const float* balls, int count) {
     return answer(__func__, -1, [&](const Call&) -> Result<int> {
         if (!player->loaded.scene.stream) {
-            return fail(ErrorCode::kUsage, "near() needs a streamed world; use streamWorld()");
+            return fail(ErrorCode::kUsage, "setPointsOfInterest() needs a streamed world; use streamWorld()");
         }
         player->near.clear();
         for (int i = 0; i < count; ++i, balls += 4) {
@@ -328,7 +328,7 @@ EMSCRIPTEN_KEEPALIVE const char* relief_player_animation(const Player* player, i
     }
     Json clips = Json::array();
     for (const MeshClip& clip : mesh->clips) {
-        clips.push_back({{"name", clip.name}, {"seconds", clip.seconds}});
+        clips.push_back({{"name", clip.name}, {"duration", clip.seconds}});
     }
     Json joints = Json::array();
     for (const MeshJoint& joint : mesh->joints) {

@@ -32,16 +32,16 @@ export class ParticleSystem {
     #handle = 0;
     #scene;
     #shaded;
-    #warn;
-    #hits; // callback, or undefined
-    #hitSpeed;
+    #onWarning;
+    #onHits; // callback, or undefined
+    #minHitSpeed;
     #fetches = null; // for a streamed world
-    #near = null; // 4 numbers per point
+    #pointsOfInterest = null; // 4 numbers per point
 
     constructor(gl, options = {}) {
-        const wrong = Object.keys(options).find((key) => !["collider", "files", "hits", "hitSpeed", "scene", "shaded", "warn", "world"].includes(key));
+        const wrong = Object.keys(options).find((key) => !["collider", "files", "minHitSpeed", "onHits", "onWarning", "scene", "shaded", "world"].includes(key));
         if (wrong !== undefined) {
-            throw new ReliefError(`ParticleSystem has no option '${wrong}'; it has collider, files, hits, hitSpeed, scene, shaded, warn and world`);
+            throw new ReliefError(`ParticleSystem has no option '${wrong}'; it has collider, files, minHitSpeed, onHits, onWarning, scene, shaded and world`);
         }
         if (options.collider) {
             collider("the option 'collider'", options.collider);
@@ -55,22 +55,22 @@ export class ParticleSystem {
             }
             options.world.handle; // throws if disposed
         }
-        if (options.warn !== undefined && typeof options.warn !== "function") {
-            throw new ReliefError("the option 'warn' must be a function that takes a line");
+        if (options.onWarning !== undefined && typeof options.onWarning !== "function") {
+            throw new ReliefError("the option 'onWarning' must be a function that takes a line");
         }
-        if (options.hits !== undefined && typeof options.hits !== "function") {
-            throw new ReliefError("the option 'hits' must be a function that takes StepHits");
+        if (options.onHits !== undefined && typeof options.onHits !== "function") {
+            throw new ReliefError("the option 'onHits' must be a function that takes StepHits");
         }
-        const { hitSpeed = 0 } = options;
-        if (!(Number.isFinite(hitSpeed) && hitSpeed >= 0)) {
-            throw new ReliefError("the option 'hitSpeed' must be a speed, 0 or more");
+        const { minHitSpeed = 0 } = options;
+        if (!(Number.isFinite(minHitSpeed) && minHitSpeed >= 0)) {
+            throw new ReliefError("the option 'minHitSpeed' must be a speed, 0 or more");
         }
         use(gl);
         this.#gl = gl;
         this.#shaded = options.shaded ?? true;
-        this.#warn = options.warn ?? ((line) => console.warn(line));
-        this.#hits = options.hits;
-        this.#hitSpeed = hitSpeed;
+        this.#onWarning = options.onWarning ?? ((line) => console.warn(line));
+        this.#onHits = options.onHits;
+        this.#minHitSpeed = minHitSpeed;
         this.#fetches = options.world?.stream ? new Fetches(options.world.stream.load) : null;
         this.#folder = makeFolder();
         const files = { ...options.files };
@@ -117,11 +117,11 @@ export class ParticleSystem {
     #create() {
         this.#losses = use(this.#gl);
         this.#handle = callForHandle("relief_player_create", ...this.#text(), this.#shaded ? 1 : 0, this.#fetches ? 1 : 0);
-        if (this.#near) {
-            callChecked("relief_player_near", this.#handle, this.#near, this.#near.length / 4);
+        if (this.#pointsOfInterest) {
+            callChecked("relief_player_near", this.#handle, this.#pointsOfInterest, this.#pointsOfInterest.length / 4);
         }
-        if (this.#hits) {
-            callChecked("relief_player_list_hits", this.#handle, this.#hitSpeed);
+        if (this.#onHits) {
+            callChecked("relief_player_list_hits", this.#handle, this.#minHitSpeed);
         }
     }
 
@@ -198,18 +198,18 @@ export class ParticleSystem {
     /** Passes on the hits that have arrived. The callback may dispose of the system. */
     #passHits() {
         const head = new Float64Array(4);
-        while (this.#handle && this.#hits && call("relief_player_next_hits", this.#handle, head)) {
+        while (this.#handle && this.#onHits && call("relief_player_next_hits", this.#handle, head)) {
             const [step, time, dropped, count] = head;
             const rows = new Float32Array(16 * count);
             call("relief_player_hits", this.#handle, rows);
-            this.#hits({ step, time, dropped, rows });
+            this.#onHits({ step, time, dropped, rows });
         }
     }
 
     /** Passes on warnings about colliders that failed to load. */
     #passWarnings() {
         for (const line of JSON.parse(textAt(call("relief_player_warnings", this.#handle)))) {
-            this.#warn(line);
+            this.#onWarning(line);
         }
     }
 
@@ -239,17 +239,17 @@ export class ParticleSystem {
         }
     }
 
-    near(points) {
+    setPointsOfInterest(points) {
         const places = Array.isArray(points) ? points : [];
         const wrong = places.findIndex((one) => one?.position?.length !== 3 || !(one.radius > 0));
         if (!Array.isArray(points) || wrong >= 0) {
-            throw new ReliefError("near() takes a list of { position: [x, y, z], radius } with a radius above 0" +
+            throw new ReliefError("setPointsOfInterest() takes a list of { position: [x, y, z], radius } with a radius above 0" +
                                   (wrong >= 0 ? `; item ${wrong} is invalid` : ""));
         }
         this.#ready();
-        const list = checkFinite("near()", Float32Array.from(places.flatMap(({ position, radius }) => [...position, radius])));
+        const list = checkFinite("setPointsOfInterest()", Float32Array.from(places.flatMap(({ position, radius }) => [...position, radius])));
         callChecked("relief_player_near", this.handle, list, list.length / 4);
-        this.#near = list;
+        this.#pointsOfInterest = list;
     }
 
     async loaded() {

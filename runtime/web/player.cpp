@@ -20,8 +20,8 @@ Json json(const glm::vec3& v) {
 }
 
 Json describeStream(const std::optional<StreamCounts>& counts) {
-    return counts ? Json{{"wanted", counts->wanted},
-                         {"present", counts->present},
+    return counts ? Json{{"requested", counts->wanted},
+                         {"loaded", counts->present},
                          {"failed", counts->failed},
                          {"gpu_bytes", counts->gpu_bytes}}
                   : Json();
@@ -100,7 +100,8 @@ Result<Scene> readScene(std::string_view text, const std::filesystem::path& path
 /// Returns whether neither plays a clip, or both play one with maps of the same size.
 bool sameMaps(const SceneCollider& a, const SceneCollider& b) {
     return a.play.has_value() == b.play.has_value() &&
-           (!a.play || (a.play->resolution == b.play->resolution && a.play->room == b.play->room));
+           (!a.play ||
+            (a.play->resolution == b.play->resolution && a.play->bounds_scale == b.play->bounds_scale));
 }
 
 /// Applies the wanted poses and clips; fails if anything else of a collider changes.
@@ -250,7 +251,7 @@ Json describePlayer(const Player& player) {
                 {"alive", counts.alive},
                 {"born", counts.born},
                 {"died", counts.died},
-                {"refused", counts.refused + player.simulation->refused()},
+                {"rejected", counts.rejected + player.simulation->rejected()},
                 {"extent", counts.extent},
                 {"capacity", particles.capacity()},
                 {"width", particles.textureWidth()},

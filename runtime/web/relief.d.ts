@@ -38,7 +38,8 @@ export function loadWorld(source: string | URL | Request | Response): Promise<Wo
 
 export interface StreamOptions {
     /**
-     * Full detail within this distance of emitters, the camera of draw() and points of near(); world units, above 0.
+     * Full detail within this distance of emitters, the camera of draw() and points of setPointsOfInterest(); world
+     * units, above 0.
      */
     radius: number;
     /** GPU memory budget for the colliders of a system in megabytes, coarse colliders included. Default 256. */
@@ -55,8 +56,8 @@ export interface WorldSource extends StreamOptions {
 
 /**
  * Like loadWorld(), for worlds too large to load completely. Loads only the coarse container of each collider that has
- * one. A ParticleSystem loads the full containers near its emitters, the camera of draw() and the points of near(): up
- * to six requests at a time, and 128 kB of uploads per step.
+ * one. A ParticleSystem loads the full containers near its emitters, the camera of draw() and the points of
+ * setPointsOfInterest(): up to six requests at a time, and 128 kB of uploads per step.
  */
 export function streamWorld(source: string | URL | Request | Response, options: StreamOptions): Promise<World>;
 
@@ -66,7 +67,7 @@ export interface Bounds {
 }
 
 /** Results of Collider.query() at n points. */
-export interface Answers {
+export interface Samples {
     /** n: distance to the surface, below 0 inside; about 1e30 or more if the point is far outside. */
     distance: Float32Array;
     /** 3 n: outward surface normal; 0 if the point is far outside. */
@@ -89,7 +90,7 @@ export interface MapInfo {
     /** 6 for a cube, otherwise 1. */
     faces: number;
     /** Object space to map space: three rows of four numbers. */
-    rows: [number, number, number, number][];
+    object_to_map: [number, number, number, number][];
     object_per_map: [number, number, number, number];
     encloses: boolean;
     empty_is_outside: boolean;
@@ -99,10 +100,8 @@ export interface MapInfo {
 export interface ColliderInfo {
     bounds: Bounds;
     unit: string;
-    mesh: { name: string; hash: string; triangles: number };
-    tool: string;
-    options: string;
-    bytes: number;
+    /** `options`: those of `relief bake`, as on its command line. */
+    provenance: { mesh_name: string; mesh_hash: string; triangles: number; tool_version: string; options: string };
     gpu_bytes: number;
     /** Side length of the finest texel, in object units. */
     finest_texel: number;
@@ -117,7 +116,7 @@ export class Collider {
     readonly info: ColliderInfo;
     readonly bounds: Bounds;
     /** Evaluates the collider on the CPU. @param points  3 n numbers. */
-    query(points: Numbers): Answers;
+    query(points: Numbers): Samples;
     /**
      * Returns the texels of a map, 8 numbers each: depth and normal of the front surface, then of the back surface; the
      * depth is NaN if there is no surface. Row y = 0 comes first; the faces of a cube follow each other. Use tree() for
@@ -133,8 +132,8 @@ export class Collider {
 }
 
 /** Results of World.query() at n points. */
-export interface WorldAnswers {
-    /** n: the least distance over all bodies, in world units; otherwise as in Answers. */
+export interface WorldSamples {
+    /** n: the least distance over all bodies, in world units; otherwise as in Samples. */
     distance: Float32Array;
     /** 3 n: outward surface normal in world space; 0 if the point is far outside. */
     normal: Float32Array;
@@ -178,7 +177,7 @@ export class World {
      * The cost is proportional to the number of bodies.
      * @param points  3 n numbers.
      */
-    query(points: Numbers): WorldAnswers;
+    query(points: Numbers): WorldSamples;
     dispose(): void;
 }
 
@@ -219,14 +218,14 @@ export interface ParticleSystemOptions {
     /** Whether the collider shades particles; false is faster. Default true. */
     shaded?: boolean;
     /** Called with one line for each collider of a streamed world that fails to load. Default: console.warn(). */
-    warn?: (line: string) => void;
+    onWarning?: (line: string) => void;
     /**
      * Called by step() with the hits (new contacts with a surface) of each step, in order. Hits arrive two steps late,
      * so that the CPU does not wait for the GPU.
      */
-    hits?: (hits: StepHits) => void;
+    onHits?: (hits: StepHits) => void;
     /** Minimum normal speed of reported hits. Default 0. */
-    hitSpeed?: number;
+    minHitSpeed?: number;
 }
 
 export interface StepHits {
@@ -281,7 +280,7 @@ export interface SystemInfo {
     born: number;
     died: number;
     /** Number of births rejected because the system was full. */
-    refused: number;
+    rejected: number;
     /** Texels 0 to extent - 1 of the state textures, row by row, may hold a particle. */
     extent: number;
     capacity: number;
@@ -298,10 +297,10 @@ export interface SystemInfo {
     /** Names of the materials of all colliders; hits refer to them by index. */
     materials: string[];
     /**
-     * Null unless the world is streamed: the numbers of colliders wanted in full detail, of those loaded and of those
+     * Null unless the world is streamed: the numbers of colliders requested in full detail, of those loaded and of those
      * that failed to load, and the GPU bytes of everything loaded.
      */
-    stream: { wanted: number; present: number; failed: number; gpu_bytes: number } | null;
+    stream: { requested: number; loaded: number; failed: number; gpu_bytes: number } | null;
     /**
      * The colliders of the scene; `matrix`: object space to world space, column-major. `file` of a deforming one is its
      * mesh.
@@ -357,9 +356,9 @@ export class ParticleSystem {
      * Sets additional points around which a streamed world has full detail, besides the emitters and the camera of
      * draw(). Replaces the previous points. Takes effect with the next step.
      */
-    near(points: readonly PointOfInterest[]): void;
+    setPointsOfInterest(points: readonly PointOfInterest[]): void;
     /**
-     * Resolves when all wanted colliders of a streamed world are loaded or have failed. Useful before the first step.
+     * Resolves when all requested colliders of a streamed world are loaded or have failed. Useful before the first step.
      */
     loaded(): Promise<void>;
     /** Restarts without particles, and retries failed loads. Call it after 'webglcontextrestored', too. */
@@ -377,10 +376,10 @@ export class ParticleSystem {
      * Describes the animation of a body whose collider has `play`; null for other bodies. Joints are those of the glTF
      * skin, or the node of a mesh without a skin.
      */
-    animation(body: number): { clips: { name: string; seconds: number }[]; joints: string[]; weights: number } | null;
+    animation(body: number): { clips: { name: string; duration: number }[]; joints: string[]; weights: number } | null;
     /**
      * Sets the pose of a body that plays a clip, from the next step on. Without `joints`, the clip continues. The pose
-     * may not exceed the extent of the clips, scaled by `room` of `play`.
+     * may not exceed the extent of the clips, scaled by `play.bounds_scale`.
      * @param joints  glTF joint matrices, column-major, one per joint. For a three.js skeleton: boneMatrices, multiplied
      *                by the mesh's bindMatrix on the right and bindMatrixInverse on the left.
      * @param weights  one weight per morph target.

@@ -238,8 +238,8 @@ class RELIEF_OT_show(ReliefOperator, bpy.types.Operator):
     def add_places(context, obj, collider, vertices, triangles, size):
         accuracy = relief_module().check(collider, to_relief(vertices, obj.relief.up), triangles, samples=50_000)
         obj.relief.wrong = accuracy.wrong_percent
-        for number, place in enumerate(accuracy.places, 1):
-            empty = bpy.data.objects.new(f"{PLACE}{number}: {place.share_percent:.1f} %, {place.cause}", None)
+        for number, place in enumerate(accuracy.worst_places, 1):
+            empty = bpy.data.objects.new(f"{PLACE}{number}: {place.contribution_percent:.1f} %, {place.cause}", None)
             empty.empty_display_type = "SPHERE"
             empty.empty_display_size = max(0.5 * place.size, 0.02 * size)
             empty.location = to_blender([place.position], obj.relief.up)[0].tolist()

@@ -30,7 +30,7 @@ for task in range(1, tasks + 1):
         unfinished.append(task)
 
 report = {"tasks": tasks, "unfinished_tasks": unfinished, "baked": counts["done"], "up_to_date": counts["skipped"],
-          "failed": counts["failed"], "cancelled": counts["cancelled"], "bytes": counts["bytes"],
+          "failed": counts["failed"], "canceled": counts["canceled"], "bytes": counts["bytes"],
           "failures": [{"asset": asset, "error": error} for asset, error in sorted(failures)]}
 (reports / "report.json").write_text(json.dumps(report, indent=2) + "\n")
 (reports / "failures.txt").write_text("".join(f"{asset}: {error}\n" for asset, error in sorted(failures)))
@@ -40,4 +40,4 @@ for asset, error in sorted(failures)[:20]:
     print(f"{asset}: {error}")
 if unfinished:
     print(f"unfinished tasks: {unfinished}; submit again to resume")
-sys.exit(0 if not failures and not unfinished and not counts["cancelled"] else 1)
+sys.exit(0 if not failures and not unfinished and not counts["canceled"] else 1)

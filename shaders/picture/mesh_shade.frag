@@ -27,7 +27,7 @@ uniform float u_sunlight;   // 0…1
 uniform float u_per_fog;    // 1 / world units
 uniform float u_wet;
 uniform float u_snow;
-uniform float u_metre;      // world units
+uniform float u_meter;      // world units
 uniform bool u_srgb;
 
 layout(location = 0) out vec4 o_color;
@@ -94,14 +94,14 @@ float cornerShare(vec3 p, vec3 n, float t, inout uint seed) {
         float angle = TWO_PI * (turn + 0.618034 * float(i));
         vec3 way = normalize(n + 0.99 * vec3(sqrt(1.0 - z * z) * vec2(cos(angle), sin(angle)), z));
         float share = (float(i) + 0.5) / float(CORNER_TAPS);
-        float reach = u_metre * mix(0.04, 1.2, share * share);
+        float reach = u_meter * mix(0.04, 1.2, share * share);
         vec3 end = p + reach * way;
         vec4 clip = u_clip * vec4(end, 1.0);
         vec2 at = 0.5 * clip.xy / clip.w + 0.5;
         float window = textureLod(u_surface_depth, at, 0.0).r;
         float seen = u_depth.y / (window - u_depth.x);
         float behind = clip.w - seen;
-        bool hidden = clip.w > 0.0 && behind > 0.01 * reach + 0.0005 * t && behind < 3.0 * reach + 0.3 * u_metre;
+        bool hidden = clip.w > 0.0 && behind > 0.01 * reach + 0.0005 * t && behind < 3.0 * reach + 0.3 * u_meter;
         open += hidden ? 0.0 : 1.0;
     }
     return open / float(CORNER_TAPS);
@@ -123,11 +123,11 @@ void main() {
         vec3 n = dot(given, given) > 1e-12 ? normalize(given) : -d;
         vec4 surface = texelFetch(u_surface_color, pixel, 0);
         vec3 albedo = linearOf(surface.rgb);
-        vec3 q = p / u_metre;
+        vec3 q = p / u_meter;
         float grain = fractalNoise(1.7 * q);
         albedo *= 0.86 + 0.28 * grain;
 
-        float shelter = openShare(u_zenith_depth, u_zenith_clip, p + (0.03 * u_metre) * n, 0.25 * u_metre, 0.05 * u_metre, seed);
+        float shelter = openShare(u_zenith_depth, u_zenith_clip, p + (0.03 * u_meter) * n, 0.25 * u_meter, 0.05 * u_meter, seed);
         vec2 on_map = 0.5 * (u_zenith_clip * vec4(p, 1.0)).xy + 0.5;
         float on_it = all(greaterThanEqual(on_map, vec2(0.0))) && all(lessThan(on_map, vec2(1.0))) ? 1.0 : 0.0;
         float texel = 1.0 / float(textureSize(u_prints, 0).x);
@@ -154,8 +154,8 @@ void main() {
         albedo *= mix(1.0, 0.68, wet);
 
         float facing = dot(shaded, u_sun);
-        float sun = facing > 0.0 && u_sunlight > 0.0 ? openShare(u_sun_depth, u_sun_clip, p + (0.02 * u_metre) * n, 0.05 * u_metre, u_metre * (0.03 + 0.05 * (1.0 - facing)), seed) : 0.0;
-        float overhead = openShare(u_zenith_depth, u_zenith_clip, p + (0.1 * u_metre) * n, 2.5 * u_metre, 0.3 * u_metre, seed);
+        float sun = facing > 0.0 && u_sunlight > 0.0 ? openShare(u_sun_depth, u_sun_clip, p + (0.02 * u_meter) * n, 0.05 * u_meter, u_meter * (0.03 + 0.05 * (1.0 - facing)), seed) : 0.0;
+        float overhead = openShare(u_zenith_depth, u_zenith_clip, p + (0.1 * u_meter) * n, 2.5 * u_meter, 0.3 * u_meter, seed);
         float open = cornerShare(p + 0.002 * t * n, n, t, seed);
         open *= open;
         vec3 sky = mix(FLOOR_COLOR, SKY_COLOR, 0.5 + 0.5 * shaded.y) * mix(1.9, 1.05, u_sunlight);

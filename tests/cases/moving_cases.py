@@ -95,7 +95,7 @@ def check(cases, folder, kind):
                            f"axis = {motion.axis}\nangle = {math.degrees(u * motion.angle)}\n" for u in (0, 1))
         texel = motion.longest() / 60
     else:
-        collider = f'play = {{ clip = "move", repeat = false, resolution = {resolution} }}\n'
+        collider = f'play = {{ clip = "move", loop = false, resolution = {resolution} }}\n'
         texel = motion.longest() / resolution
     margin = 2.5 * texel
     reach = 3 + max(abs(c) for c in motion.way) + motion.longest()

@@ -22,7 +22,7 @@ PACKAGED = [('OBJ/box.obj', None), ('PLY/cube.ply', None), ('PLY/cube_binary.ply
             ('STL/Spider_binary.stl', None), ('glTF2/BoxTextured-glTF-Binary/BoxTextured.glb', None),
             ('glTF2/BoxTextured-glTF-Embedded/BoxTextured.gltf', None), ('glTF2/BoxTextured-glTF/BoxTextured.gltf', 'BoxTextured0.bin')]
 TEXTS = ('box.obj', 'cube.ply', 'Spider_ascii.stl', 'BoxTextured.gltf')
-OPTIONS = ('-o', 'out.relief', '--map', 'fixed8:size=16', '-q', '--import-time', '10', '--import-memory', '1GB')
+OPTIONS = ('-o', 'out.relief', '--map', 'fixed8:size=16', '-q', '--import-timeout', '10', '--max-import-memory', '1GB')
 UNSEEN = 'no map sees the surface'  # a flat mesh seen edge-on by its only map: exit code 4, not a failure
 PR_SET_CHILD_SUBREAPER = 36
 

@@ -42,7 +42,7 @@ cell = 0
 [render]
 atlas = "atlas.png"
 size = [16, 16]
-every = 1
+steps_per_frame = 1
 """
 DRAWN = """[collider]
 file = "box.relief"
@@ -171,7 +171,7 @@ def relief_case(arena, random):
         lambda: ["relief", "export", "box.relief", "-o", maps_folder()],
         lambda: ["relief", "slice", "box.relief", "-o", lead("box.relief", ending=".png")],
         lambda: ["relief", "query", "box.relief", "--points", "points.csv", "-o", lead("box.relief", "points.csv")],
-        lambda: ["relief", "check", "box.relief", "--mesh", "box.obj", "--samples", "50", "--html",
+        lambda: ["relief", "check", "box.relief", "--mesh", "box.obj", "--samples", "50", "--page",
                  lead("box.relief", "box.obj", "box.mtl")],
         lambda: ["relief", "export", "box.relief", "--mesh", lead("box.relief"), "--voxels", "16"],
         lambda: ["relief", "export", "box.relief", "--engine", "c", engine_folder()],

@@ -14,7 +14,7 @@ matches AnimatedMorphCube.bin <cube.d || die "depfile: $(cat cube.d)"
 expect 0 "$relief" info cube.relief
 matches -E '^  Square +4.2' <stdout && matches "^groups   'AnimatedMorphCube'" <stdout && matches "^material 'Material'" <stdout && matches -- '--animated$' <stdout || die "info: $(cat stdout)"
 expect 0 "$relief" info cube.relief --json
-json stdout "abs(d['animation']['clips'][0]['seconds'] - 4.2) < 0.01 and d['animation']['joints'] == 1"
+json stdout "abs(d['animation']['clips'][0]['duration'] - 4.2) < 0.01 and d['animation']['joints'] == 1"
 expect 0 "$relief" check cube.relief --mesh $cube --max-error 2
 matches 'in its rest pose' <stdout || die "check: $(cat stdout)"
 printf '0,0,0\n0.9,0.9,0.9\n1.5,0,0\n0,-1.2,0\n' >points.csv
@@ -71,7 +71,7 @@ python3 "$RELIEF_SOURCE/samples/meshes.py" torus torus.obj
 scene() { # KEY…: of [collider]
     printf '%s\n' '[collider]' "$@" '[time]' 'steps = 30' '[particles]' 'capacity = 2000' '[emitter]' 'box_min = [-1.2, 0.4, -1.2]' \
         'box_max = [1.2, 0.5, 1.2]' 'rate = 0.0' 'burst = 2000' 'lifetime = 100.0' '[ground]' 'height = -1.0' '[render]' \
-        'mesh = "torus.obj"' 'size = [160, 120]' 'every = 15' >scene.toml
+        'mesh = "torus.obj"' 'size = [160, 120]' 'steps_per_frame = 15' >scene.toml
 }
 scene 'mesh = "torus.obj"' 'deform = { amplitude = 1e-4, frequency = 2 }' 'resolution = 64'
 "$relief_sim" scene.toml --dump still.ply -q

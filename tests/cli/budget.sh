@@ -8,8 +8,8 @@ mesh=$models/OBJ/spider.obj
 # By default patches use up to 1 MB.
 expect 0 "$relief" bake "$mesh" -o default.relief --json
 cp stdout report.json
-json report.json 'd["settings"]["budget"] == d["patches"]["budget"] == 10**6 and 0.9e6 < d["patches"]["bytes"] == d["texel_bytes"] <= 10**6'
-json report.json 'd["settings"]["maps"] == ["patches:bytes=1000000"] and d["settings"]["resolution"] is None and d["times_ms"]["fit"] > 0'
+json report.json 'd["settings"]["budget"] == d["patches"]["budget"] == 10**6 and 0.9e6 < d["patches"]["bytes"] == d["gpu_bytes"] <= 10**6'
+json report.json 'd["settings"]["maps"] == ["patches:budget=1000000"] and d["settings"]["resolution"] is None and d["times_ms"]["fit"] > 0'
 expect 0 "$relief" bake "$mesh" -o budget.relief --budget 1MB
 cmp default.relief budget.relief || die "the default is not a budget of 1 MB"
 grep -qE '^patches for 1.0 MB' stderr && grep -qE 'ms: import [0-9].*fitting [0-9].*writing [0-9]' stderr ||
@@ -24,8 +24,8 @@ json stdout 'all("decode=plane" in m for m in d["settings"]["maps"]) and d["prov
 for options in "" "--compress 9"; do
     # shellcheck disable=SC2086
     expect 0 "$relief" bake "$mesh" -o recorded.relief --budget 60kB $options --json
-    json stdout '" --budget 60000" in d["provenance"]["options"] and 50000 < d["texel_bytes"] <= 60000'
-    json stdout "d['file_size'] == $(stat -c %s recorded.relief)"
+    json stdout '" --budget 60000" in d["provenance"]["options"] and 50000 < d["gpu_bytes"] <= 60000'
+    json stdout "d['file_bytes'] == $(stat -c %s recorded.relief)"
 done
 [ "$(stat -c %s recorded.relief)" -lt 60000 ] || die "the compressed file is larger than its maps on the GPU"
 
@@ -37,9 +37,9 @@ bake_fails() { # CODE PATTERN ARGUMENT…
 }
 bake_fails 4 'lower --texel$' --texel 1e6
 expect 0 "$relief" bake "$bunny" -o b.relief --max-error 0.5% --json
-json stdout 'd["patches"]["search"]["wrong_percent"] <= 0.5 and d["texel_bytes"] < 250000'
-json stdout 'len(d["patches"]["search"]["tries"]) >= 3 and d["patches"]["search"]["max_error_percent"] == 0.5'
-[ "$(grep -c 'on the wrong side' stderr)" -ge 3 ] || die "the tries are not reported: $(cat stderr)"
+json stdout 'd["patches"]["search"]["wrong_percent"] <= 0.5 and d["gpu_bytes"] < 250000'
+json stdout 'len(d["patches"]["search"]["trials"]) >= 3 and d["patches"]["search"]["max_error_percent"] == 0.5'
+[ "$(grep -c 'on the wrong side' stderr)" -ge 3 ] || die "the trials are not reported: $(cat stderr)"
 budget=$(python3 -c 'import json; print(json.load(open("stdout"))["patches"]["budget"])')
 expect 0 "$relief" check b.relief --mesh "$bunny" --samples 100000 --seed 5 --max-error 0.57
 expect 0 "$relief" bake "$bunny" -o b2.relief --budget "$budget" -q

@@ -4,20 +4,20 @@
 . "$(dirname "$0")/lib.sh"
 
 "$relief" bake "$bunny" -o b.relief --paper --resolution 64 --json >bake.json 2>/dev/null
-bytes=$(python3 -c 'import json; print(json.load(open("bake.json"))["texel_bytes"])')
+bytes=$(python3 -c 'import json; print(json.load(open("bake.json"))["gpu_bytes"])')
 expect 0 "$relief" check b.relief --mesh "$bunny" --samples 5000
 head -1 stdout | matches -xE 'b\.relief: [0-9.]+ % wrong near the surface: poor' || die "no verdict: $(cat stdout)"
 grep -qE '^  relief bake .*bunny.obj -o b.relief --budget [0-9.]+[kM]B$' stdout || die "no advice: $(cat stdout)"
 expect 0 "$relief" check b.relief --mesh "$bunny" --samples 5000 --json
 cp stdout report.json
-json report.json 'd["mesh"]["name"] == "bunny.obj" and d["mesh"]["baked_from_it"] and d["warnings"] == [] and d["passed"]'
+json report.json 'd["mesh"]["name"] == "bunny.obj" and d["mesh"]["is_source"] and d["warnings"] == [] and d["passed"]'
 json report.json '0 < d["verdict"]["wrong_percent"] == d["accuracy"]["near"]["wrong_percent"] < 30'
 json report.json "d['accuracy']['gpu_bytes'] == $bytes and d['sampling']['samples'] == 5000 and d['sampling']['seed'] == 1"
 json report.json 'len(d["worst_places"]) == 3 and all(0 < p["size"] < 0.6 and 0 <= p["map"] < 4 for p in d["worst_places"])'
 
 # Equal seeds give equal numbers and pages. The page is that of `relief view` with the report.
 for i in 1 2; do
-    "$relief" check b.relief --mesh "$bunny" --samples 5000 --seed 7 --json --html $i.html | grep -v -e '"truth"' -e '"field"' >$i.json
+    "$relief" check b.relief --mesh "$bunny" --samples 5000 --seed 7 --json --page $i.html | grep -v -e '"truth"' -e '"field"' >$i.json
 done
 cmp 1.json 2.json && cmp 1.html 2.html || die "two runs give different results"
 "$relief" view b.relief -o view.html
@@ -31,13 +31,13 @@ P
 # The first matching advice achieves the promised accuracy.
 check_advice() { # MESH COLLIDER PATTERN
     "$relief" check "$2" --mesh "$1" --samples 20000 --json >before.json 2>/dev/null
-    bash -c "$(python3 -c 'import json, sys; print(next(a["command"] for a in json.load(open("before.json"))["advice"] if sys.argv[1] in a["about"] + a["command"]))' "$3" |
+    bash -c "$(python3 -c 'import json, sys; print(next(a["command"] for a in json.load(open("before.json"))["advice"] if sys.argv[1] in a["description"] + a["command"]))' "$3" |
         sed "s#^relief#'$relief'#") -q" 2>/dev/null
     "$relief" check "$2" --mesh "$1" --samples 20000 --json >after.json 2>/dev/null
     python3 - "$3" <<'P' || die "the advice for $2 does not achieve what it promises"
 import json, sys
 before, after = (json.load(open(f)) for f in ('before.json', 'after.json'))
-advice = next(a for a in before['advice'] if sys.argv[1] in a['about'] + a['command'])
+advice = next(a for a in before['advice'] if sys.argv[1] in a['description'] + a['command'])
 said, found = advice['wrong_percent'], after['verdict']['wrong_percent']
 print(said, found)
 sys.exit(0 if advice['helps'] and abs(said - found) <= 0.15 * said + 0.2 and said < before['verdict']['wrong_percent'] else 1)
@@ -45,7 +45,7 @@ P
 }
 "$relief" bake "$bunny" -o few.relief --budget 20kB -q
 check_advice "$bunny" few.relief '--budget 40kB'
-json before.json '{p["cause"] for p in d["worst_places"]} == {"texel"} and [a["about"] for a in d["advice"]] == ["patches of twice the size"]'
+json before.json '{p["cause"] for p in d["worst_places"]} == {"texel"} and [a["description"] for a in d["advice"]] == ["patches of twice the size"]'
 "$relief" bake "$bunny" -o maps.relief -q --map front-back:dir=-x,size=64 --map front-back:dir=-y,size=64 --map front-back:dir=-z,size=64
 check_advice "$bunny" maps.relief 'patches of the same size'
 json after.json 'd["accuracy"]["gpu_bytes"] <= 1e5 and [p["map"] for p in d["worst_places"]] == [0] * 3'
@@ -101,13 +101,13 @@ grep -q '^b.relief: .*: within --max-error 50 %$' stdout && ! grep -q '^What to 
 (cat "$bunny" && echo '# touched') >touched.obj
 expect 0 "$relief" check b.relief --mesh touched.obj --samples 1000 --json
 grep -q 'warning: .*touched.obj' stderr || die "no warning: $(cat stderr)"
-json stdout 'not d["mesh"]["baked_from_it"] and len(d["warnings"]) == 1'
+json stdout 'not d["mesh"]["is_source"] and len(d["warnings"]) == 1'
 expect_error 3 'box.obj' "$relief" check b.relief --mesh "$models/OBJ/box.obj"
 expect_error 1 'max-error' "$relief" check b.relief --mesh "$bunny" --max-error few
 expect_error 6 'samples' "$relief" check b.relief --mesh "$bunny" --samples 99999999999
-expect_error 1 'html' "$relief" check b.relief --mesh "$bunny" --html -
-expect_error 2 'missing' "$relief" check b.relief --mesh "$bunny" --html missing/page.html
-for option in '--samples 5' '--seed 5' '--max-error 5' '--html page.html'; do
+expect_error 1 'page' "$relief" check b.relief --mesh "$bunny" --page -
+expect_error 2 'missing' "$relief" check b.relief --mesh "$bunny" --page missing/page.html
+for option in '--samples 5' '--seed 5' '--max-error 5' '--page page.html'; do
     # shellcheck disable=SC2086
     expect_error 1 '--mesh' "$relief" check b.relief $option
 done

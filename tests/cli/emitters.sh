@@ -5,7 +5,7 @@
 "$relief" bake "$bunny" -o bunny.relief --paper --resolution 64 -q
 scene() { # LINES…: an emitter whose particles hit nothing
     printf '%s\n' '[[collider]]' 'file = "bunny.relief"' 'position = [0.0, -50.0, 0.0]' "$@" '[particles]' 'capacity = 4000' \
-        '[forces]' 'gravity = [0.0, 0.0, 0.0]' 'drag = 0.0' '[ground]' 'enabled = false' '[render]' 'size = [64, 48]' 'first = 0' 'every = 64'
+        '[forces]' 'gravity = [0.0, 0.0, 0.0]' 'drag = 0.0' '[ground]' 'enabled = false' '[render]' 'size = [64, 48]' 'first_frame = 0' 'steps_per_frame = 64'
 }
 
 # Prewarm gives the particles of a longer run at the time of a shorter one. Hits before time 0 are not written.
@@ -25,8 +25,8 @@ expect 0 "$relief_sim" hits.toml -q --events hits.jsonl
 [ ! -s hits.jsonl ] || die "hits before time 0 are written: $(head -1 hits.jsonl)"
 
 # Frames in a range of steps.
-expect 0 "$relief_sim" long.toml -q --dump-frames all --first-frame 0 --frame-every 1
-expect 0 "$relief_sim" long.toml -q --dump-frames some --first-frame 10 --last-frame 25 --frame-every 7 --frames pictures
+expect 0 "$relief_sim" long.toml -q --dump-frames all --first-frame 0 --steps-per-frame 1
+expect 0 "$relief_sim" long.toml -q --dump-frames some --first-frame 10 --last-frame 25 --steps-per-frame 7 --frames pictures
 [ "$(ls all | wc -l)" -eq 193 ] && [ "$(ls some | wc -l)" -eq 4 ] && [ "$(ls pictures | wc -l)" -eq 4 ] || die "steps 10, 17, 24 and 25: $(ls some pictures)"
 i=0
 for step in 10 17 24 25; do

@@ -19,7 +19,7 @@ velocity = [0.25, 0.0, 0.0]
 velocity_spread = [0.0, 0.0, 0.0]
 rate = 1.0
 duration = 4.0
-spread = false
+interpolate = false
 lifetime = 1.5
 [forces]
 gravity = [0.0, -9.8, 0.0]
@@ -55,6 +55,6 @@ expect_error 2 '/dev/full.*--events' "$relief_sim" drop.toml --events /dev/full
 
 # [[spawn]]: five births for each hit of a drop.
 sed '/^capacity/s/10/100/; s/^\[\[type/&]]\nname = "drop"\n#/' drop.toml >splash.toml
-printf '%s\n' '[[type]]' 'name = "splash"' '[[spawn]]' 'on = "collision"' 'of = "drop"' 'type = "splash"' 'count = 5' 'lifetime = 40' >>splash.toml
+printf '%s\n' '[[type]]' 'name = "splash"' '[[spawn]]' 'on = "collision"' 'parent = "drop"' 'type = "splash"' 'count = 5' 'lifetime = 40' >>splash.toml
 expect 0 "$relief_sim" splash.toml --json
-json stdout "(d['particles']['born'], d['particles']['refused']) == (24, 0)"
+json stdout "(d['particles']['born'], d['particles']['rejected']) == (24, 0)"

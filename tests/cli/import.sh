@@ -25,7 +25,7 @@ json stdout "d['unit'] == 'm' and d['provenance']['options'].endswith(' --unit c
 json stdout "all(abs(a - b) < 1e-6 for a, b in zip(d['bounds']['min'] + d['bounds']['max'], [0, 0, -.02, .01, .03, 0]))"
 expect 0 "$relief" check turned.relief --mesh good.stl --samples 1000 --unit cm --up +z
 expect_error 3 'good.stl' "$relief" check turned.relief --mesh good.stl --samples 1000
-for option in '--import-memory 1kB' '--import-time 0' '--max-triangles 200000000'; do
+for option in '--max-import-memory 1kB' '--import-timeout 0' '--max-triangles 200000000'; do
     # shellcheck disable=SC2086
     expect_error 1 "${option%% *}" "$relief" bake good.stl -o x.relief $option
 done
@@ -36,7 +36,7 @@ printf '%s\n' ply 'format binary_little_endian 1.0' 'element vertex 99999999999'
     'element face 1' 'property list uchar int vertex_indices' end_header >count.ply
 expect_error 6 'count\.ply' "$relief" bake count.ply -o x.relief
 sed -i 's/99999999999/300000000/' count.ply
-expect_error 3 'count\.ply' "$relief" bake count.ply -o x.relief --import-memory 64MB
+expect_error 3 'count\.ply' "$relief" bake count.ply -o x.relief --max-import-memory 64MB
 expect_error 6 'OutOfMemory\.off' "$relief" bake "$models/invalid/OutOfMemory.off" -o x.relief
 python3 - <<'P'
 import base64, json, struct
@@ -55,12 +55,12 @@ json.dump({
     open('instances.gltf', 'w'))
 P
 unfold unfold.dae
-expect_error 6 'large\.obj' "$relief" bake large.obj -o x.relief --import-memory 64MB
+expect_error 6 'large\.obj' "$relief" bake large.obj -o x.relief --max-import-memory 64MB
 (
     ulimit -v 2000000 -t 10
     expect_error 6 'instances\.gltf.*--max-triangles' "$relief" bake instances.gltf -o x.relief
 )
-expect_error 6 'unfold\.dae.*import-(time|memory)' "$relief" bake unfold.dae -o x.relief --import-time 2
+expect_error 6 'unfold\.dae.*(import-timeout|max-import-memory)' "$relief" bake unfold.dae -o x.relief --import-timeout 2
 
 filters() { # PID: the system call filters according to /proc
     grep -s '^Seccomp' "/proc/$1/status"
@@ -69,7 +69,7 @@ filters() { # PID: the system call filters according to /proc
 # start ARGUMENT…: bakes unfold.dae in the background, sets $parent and $worker, and stops the worker at once. On a busy
 # machine the worker must not reach its memory limit first.
 start() {
-    nice -n 19 "$relief" bake unfold.dae --import-memory 8000000000 -o x.relief "$@" >"$work/stdout" 2>"$work/stderr" </dev/null &
+    nice -n 19 "$relief" bake unfold.dae --max-import-memory 8000000000 -o x.relief "$@" >"$work/stdout" 2>"$work/stderr" </dev/null &
     parent=$!
     worker=
     for _ in $(seq 500); do
@@ -89,8 +89,8 @@ expect_end() { # CODE PATTERN
         die "exit code $code instead of $1, or not one line with '$2': $(cat "$work/stderr")"
 }
 
-start --import-time 2
-expect_end 6 'import-time'
+start --import-timeout 2
+expect_end 6 'import-timeout'
 gone "$worker" || die "a worker outlived its time limit"
 start
 kill -KILL "$worker"
@@ -99,7 +99,7 @@ start
 kill -SEGV "$worker"
 kill -CONT "$worker"
 expect_end 3 'SIGSEGV'
-start --import-time 600
+start --import-timeout 600
 kill -KILL "$parent"
 wait "$parent" || true
 kill -CONT "$worker" 2>/dev/null || true

@@ -48,7 +48,7 @@ expect_error 3 'holed\.obj: .*7 boundary edges' "$relief" bake holed.obj -o stri
 
 # Reversed triangles do not change the maps.
 expect 0 "$relief" bake turned.obj -o turned.relief "${small[@]}" --json
-json stdout "d['turned_triangles'] == 86 and d['repair'] is None"
+json stdout "d['flipped_triangles'] == 86 and d['repair'] is None"
 "$relief" export ball.relief -o a -q
 "$relief" export turned.relief -o b -q
 diff -r a b || die "reversed triangles change the maps"
@@ -61,7 +61,7 @@ expect 0 "$relief" bake holed.obj -o again.relief "${small[@]}" --repair wrap=0.
 cmp wrap.relief again.relief || die "two wraps of one mesh differ"
 for repair in warp wrap=2; do expect_error 1 'repair' "$relief" bake ball.obj -o x.relief --repair $repair; done
 
-# Lost parts are named, and the suggested budget loses fewer. --max-error fails because of them, and --detail selects
+# Lost parts are named, and the suggested budget loses fewer. --max-error fails because of them, and --min-part selects
 # which count.
 expect 0 "$relief" bake slab.obj -o slab.relief --unit m --json
 json stdout 'd["parts"]["lost"] == 9 and d["parts"]["worst"][0]["node"].startswith("pillar") and d["wrong_percent"] < 1'
@@ -73,8 +73,8 @@ json stdout 'd["parts"]["lost"] < 5'
 expect 7 "$relief" check slab.relief --mesh slab.obj --unit m --samples 20000 --max-error 2 --json
 json stdout 'd["verdict"]["grade"] == "poor" and d["verdict"]["lost_parts"] == 9 and d["verdict"]["wrong_percent"] < 1'
 json stdout 'len(d["parts"]["groups"]) == 10 and all(p["size"] == 9 and p["state"] == "lost" for p in d["parts"]["worst"][:9])'
-grep -q -- '--detail' stderr || die "no advice: $(cat stderr)"
-expect 0 "$relief" check slab.relief --mesh slab.obj --unit m --samples 20000 --max-error 2 --detail 10 --json
+grep -q -- '--min-part' stderr || die "no advice: $(cat stderr)"
+expect 0 "$relief" check slab.relief --mesh slab.obj --unit m --samples 20000 --max-error 2 --min-part 10 --json
 json stdout 'd["verdict"]["grade"] == "good" and d["parts"]["minor"] == 9 and d["passed"]'
 json stdout 'd["verdict"]["ignored_parts"]["lost"] == 9 and "; 9 of 10 parts, at most 9 m long, are not represented" in d["verdict"]["text"]'
 

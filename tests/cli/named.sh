@@ -95,6 +95,6 @@ expect 0 "$relief" bake --recipe r.toml -q
 cmp two.relief two.baked.relief || die "recipe and command line give different bytes"
 sed -i 's/tub=solid/tub=shell/' r.toml
 expect 0 "$relief" bake --recipe r.toml -q --json
-json stdout "[a['state'] for a in d['assets']] == ['baked', 'up to date']"
+json stdout "[a['state'] for a in d['assets']] == ['baked', 'up_to_date']"
 sed -i 's/tub=shell/tub=sheet/' r.toml
 expect_error 3 "r\.toml:9:6: .*'tub=sheet'" "$relief" bake --recipe r.toml

@@ -16,7 +16,7 @@ convert -size 4x4 xc:red atlas.png
 mkdir frames
 cp atlas.png frames/frame_0002.png
 printf '%s\n' '[collider]' 'file = "box.relief"' '[time]' 'steps = 4' '[[type]]' 'cell = 0' '[render]' \
-    'atlas = "frames/frame_0002.png"' 'size = [16, 16]' 'every = 2' >scene.toml
+    'atlas = "frames/frame_0002.png"' 'size = [16, 16]' 'steps_per_frame = 2' >scene.toml
 printf 'version = 1\n[[asset]]\nmesh = "box.obj"\noutput = "{stem}.new.relief"\nmap = "cube:size=16"\n' >r.toml
 sha256sum box.* points.csv atlas.png scene.toml r.toml frames/frame_0002.png >before
 expect_kept() { # PATTERN COMMAND…: fails with a usage error, and no file changes
@@ -70,7 +70,7 @@ expect 0 "$relief" bake box.obj --world fresh/sub --budget 20kB --depfile fresh/
 
 # A page of a world, and the report next to a page.
 expect_kept "is the input" "$relief" view level/world.json -o "$(echo level/*.relief)"
-expect_kept "the report and --html would both write" "$relief" check box.relief --mesh box.obj --html /dev/stdout
+expect_kept "the report and --page would both write" "$relief" check box.relief --mesh box.obj --page /dev/stdout
 
 # Standard input and output are files, too.
 expect_kept "'points.csv' is the input standard input" sh -c "'$relief' query box.relief --points - -o points.csv <points.csv"

@@ -32,13 +32,13 @@ json stdout "d['counts']['baked'] == 5 and [a['state'] for a in d['assets']] == 
 json stdout "[a['asset'] for a in d['assets']] == ['baked/%s.relief' % n for n in ('d', 'r1', 'r2', 'r3', 'hill')]"
 json stdout "all(len(a['hash']) == 32 and a['bytes'] > 0 and a['ms'] > 0 for a in d['assets'])"
 grep -q '5 assets: 5 baked;' stderr || die "no summary: $(cat stderr)"
-[ "$(events events.jsonl | tr ' ' '\n' | sort | uniq -c | xargs)" = '5 done 1 start 5 started 1 summary' ] || die "events: $(events events.jsonl)"
+[ "$(events events.jsonl | tr ' ' '\n' | sort | uniq -c | xargs)" = '5 done 1 run_started 5 started 1 summary' ] || die "events: $(events events.jsonl)"
 [ "$(ls -A in/baked)" = "$(printf '%s\n' d.relief hill.relief r1.relief r2.relief r3.relief)" ] || die "files: $(ls -A in/baked)"
 "$relief" bake in/rocks/r1.obj -o single.relief --map cube:size=32 -q
 cmp single.relief in/baked/r1.relief || die "recipe and command line give different bytes"
 container_hashes in >first
 expect 0 "$relief" bake --recipe in/r.toml --events -
-[ "$(events stdout)" = "start skipped skipped skipped skipped skipped summary" ] || die "events: $(cat stdout)"
+[ "$(events stdout)" = "run_started skipped skipped skipped skipped skipped summary" ] || die "events: $(cat stdout)"
 [ "$(cat stderr)" = "5 assets up to date" ] || die "the second run reports something else: $(cat stderr)"
 
 rebakes() { # NAMES…: a run bakes exactly these assets
@@ -79,7 +79,7 @@ container_hashes in | cmp - first || die "the fixed asset gives different bytes"
 # is null.
 printf '%s\n' 'version = 1' '[[asset]]' 'mesh = "hill.obj"' 'output = "a.relief"' 'budget = "20kB"' '[[asset]]' 'mesh = "hill.obj"' \
     'output = "b.relief"' 'map = "cube:size=16"' '[[asset]]' 'mesh = "hill.obj"' 'output = "w/world.json"' 'budget = "20kB"' >in/wrong.toml
-for state in baked 'up to date'; do
+for state in baked up_to_date; do
     expect 0 "$relief" bake --recipe in/wrong.toml --json --events wrong.jsonl
     json stdout "[(a['state'], a['wrong_percent'] is not None) for a in d['assets']] == [('$state', w) for w in (True, False, True)]"
     grep '"asset":"a.relief".*"wrong_percent":' wrong.jsonl >/dev/null || die "no error in events: $(cat wrong.jsonl)"
@@ -87,10 +87,10 @@ for state in baked 'up to date'; do
 done
 
 # A bake that exceeds its time is stopped, and the exit code signals a limit.
-printf '%s\n' 'version = 1' '[[asset]]' "mesh = \"bunny.obj\"" 'output = "late.relief"' 'budget = "16MB"' 'time-limit = 0.2' >late.toml
+printf '%s\n' 'version = 1' '[[asset]]' "mesh = \"bunny.obj\"" 'output = "late.relief"' 'budget = "16MB"' 'timeout = 0.2' >late.toml
 cp "$bunny" bunny.obj
 expect 6 "$relief" bake --recipe late.toml
-grep -q 'late.relief: .*--time-limit' stderr || die "the limit is not named: $(cat stderr)"
+grep -q 'late.relief: .*--timeout' stderr || die "the limit is not named: $(cat stderr)"
 
 # Errors in a recipe have a position, and nothing is baked. Also options that conflict with recipes or require one.
 printf '%s\n' 'version = 1' '[[asset]]' 'mesh = "hill.obj"' 'output = "h.relief"' 'budgte = 1' >in/wrong.toml

@@ -49,7 +49,7 @@ while not (children := open(f'/proc/{run.pid}/task/{run.pid}/children').read().s
 child = int(children[0])
 while b'--json' not in (words := open(f'/proc/{child}/cmdline', 'rb').read()):  # until the child executes the bake
     pass
-assert b'--time-limit=3600' in words.split(b'\0'), words
+assert b'--timeout=3600' in words.split(b'\0'), words
 os.kill(child, signal.SIGSEGV)
 events = [json.loads(line) for line in run.stdout]
 failed = [e for e in events if e['event'] == 'failed']
@@ -140,7 +140,7 @@ cp -r keys elsewhere
 expect 0 "$relief" bake --recipe keys/r.toml --dry-run --json
 keys >before
 grep -qE '^m.relief=[0-9a-f]{32} t.relief=[0-9a-f]{32}$' before || die "keys: $(cat before)"
-for _ in baked 'up to date'; do
+for _ in baked up_to_date; do
     expect 0 "$relief" bake --recipe keys/r.toml --json
     keys | cmp - before || die "the bake changes the keys: $(keys)"
 done

@@ -161,9 +161,9 @@ grep -q "error: folders/parts/world.json: .*b\.obj" stderr || die "the failed le
 tetrahedron in/parts/b.obj 3
 tetrahedron in/rock.obj 1
 rebakes rock.relief
-sed 's/^budget = "200kB"/&\ntime-limit = 0.001/' in/r.toml >in/late.toml
+sed 's/^budget = "200kB"/&\ntimeout = 0.001/' in/r.toml >in/late.toml
 expect 6 "$relief" bake --recipe in/late.toml -o out
-grep -q 'levels/yard/world.json: .*--time-limit' stderr || die "the limit is not named: $(cat stderr)"
+grep -q 'levels/yard/world.json: .*--timeout' stderr || die "the limit is not named: $(cat stderr)"
 hashes out | diff first - || die "a level that timed out changes files"
 
 # Errors in a recipe have a position. Links out of the folders are neither read nor written; unit tests cover those of
@@ -188,7 +188,7 @@ rm in/parts/secret.obj
 # A world can be in the output folder, or in the folder of its level.
 sed 's#w/world#world#' <(printf '%s\n' 'version = 1' '[[asset]]' "${yard[@]}") >in/root.toml
 printf '%s\n' 'version = 1' '[[asset]]' 'mesh = "parts/"' 'output = "{dir}/{stem}/world.json"' 'budget = "100kB"' 'compress = 1' >in/own.toml
-for state in baked 'up to date'; do
+for state in baked up_to_date; do
     expect 0 "$relief" bake --recipe in/root.toml -o root --json -q
     json stdout "[a['state'] for a in d['assets']] == ['$state']"
     expect 0 "$relief" bake --recipe in/own.toml --json -q

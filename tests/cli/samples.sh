@@ -46,7 +46,7 @@ share = {'walker': 8, 'wobbling_torus': 10}.get(path[:-5], 40)
 # The village's mud keeps its rate: at 2 MB few soles are as near the ground as the scene requires.
 full = 1000 if path == 'village.toml' else 0
 text = re.sub(r'(?m)^rate = ([0-9.]+)', lambda m: 'rate = %g' % (float(m[1]) / (share if float(m[1]) >= full else 1)), text)
-text = re.sub(r'(?m)^every = .*', 'every = 100000', text)
+text = re.sub(r'(?m)^steps_per_frame = .*', 'steps_per_frame = 100000', text)
 if path in ('village.toml', 'walker.toml'):
     text = text.replace('clip = "walk"', 'clip = "walk", resolution = %d' % (128 if path == 'village.toml' else 256))
 open(path, 'w').write(text)
@@ -61,7 +61,7 @@ done
 
 play() { # NAME STEPS
     expect 0 "$relief_sim" "$1.toml" --steps "$2" --size 320x240 --frames "frames_$1" --dump "end_$1.ply" --json
-    json stdout "d['steps'] == $2 and d['particles']['refused'] == 0 and d['particles']['in_contact'] > 0"
+    json stdout "d['steps'] == $2 and d['particles']['rejected'] == 0 and d['particles']['in_contact'] > 0"
     json stdout "d['particles']['born'] == d['particles']['alive'] + d['particles']['died']"
     local colors
     colors=$(identify -format '%k' "frames_$1/frame_0000.png")
@@ -139,8 +139,8 @@ meshes = "."
 [[render.weather]]
 snow = 1.0
 T
-expect 0 "$relief_sim" prints.toml --frame-every 60 --frames prints_seldom -q
-expect 0 "$relief_sim" prints.toml --frame-every 4 --frames prints_often -q
+expect 0 "$relief_sim" prints.toml --steps-per-frame 60 --frames prints_seldom -q
+expect 0 "$relief_sim" prints.toml --steps-per-frame 4 --frames prints_often -q
 python3 - <<'P'
 import glob, subprocess
 

@@ -27,7 +27,7 @@ lifetime = 9.0
 [[type]]
 radius = 0.02
 restitution = 0.4
-collides = [0, 1, 2]
+collides_with = [0, 1, 2]
 [ground]
 enabled = false
 '''

@@ -135,11 +135,11 @@ attractor = [{ position = [0, 0, 0], strength = 1, radius = 1, reach = 5 }]
 vortex = [{ center = [0, 0, 0], axis = [0, 1, 0], strength = 1, radius = 1 }]
 type = [
     { name = "flake", size = [[0, 0.01], [1, 0.02]], color = [[0, 1, 1, 1], [1, 0, 0, 1]], opacity = [[0, 1], [1, 0]], on_collision = "die" },
-    { mass = 2, gravity = 0.5, collides = [0] },
+    { mass = 2, gravity = 0.5, collides_with = [0] },
 ]
 camera = { target = [0, 0, 0], key = [{ time = 0, eye = [0, 1, 5] }, { time = 1, eye = [5, 1, 0] }] }
 spawn = [{ on = "collision" }]
-render = { size = [32, 24], every = 20, sprite = "quad" }
+render = { size = [32, 24], steps_per_frame = 20, sprite = "quad" }
 T
 document sim-report 0 "$relief_sim" scene.toml --steps 40 --frames frames --events hits.jsonl --json
 [ -s hits.jsonl ] || die "there are no hits"

@@ -20,7 +20,7 @@ burst = 1000
 lifetime = [0.1, 1.0]
 [render]
 size = [33, 21]
-every = 10
+steps_per_frame = 10
 S
 
 # --check needs no GPU, display or driver: here any attempt to create a context fails with 5.
@@ -82,11 +82,11 @@ cmp again.ply final.ply || die "the same seed gives a different run, or --dump -
 grep -q '25 steps' text || die "the summary is not on stderr with --dump -"
 "$relief_sim" scene.toml --dump other.ply --seed 4 -q
 ! cmp -s other.ply final.ply || die "another seed gives the same run"
-"$relief_sim" scene.toml --path compute --api gles --dump other.ply --seed 3 --json >stdout
-json stdout 'd["path"] == "compute" and d["particles"]["born"] > 0'
+"$relief_sim" scene.toml --shaders compute --api gles --dump other.ply --seed 3 --json >stdout
+json stdout 'd["shaders"] == "compute" and d["particles"]["born"] > 0'
 cmp other.ply final.ply || die "compute shaders give a different run"
-MESA_GL_VERSION_OVERRIDE=3.3 expect_error 5 'OpenGL 4\.3 or OpenGL ES 3\.1' "$relief_sim" scene.toml --path compute
-expect_error 1 '--path' "$relief_sim" scene.toml --check --path compute
+MESA_GL_VERSION_OVERRIDE=3.3 expect_error 5 'OpenGL 4\.3 or OpenGL ES 3\.1' "$relief_sim" scene.toml --shaders compute
+expect_error 1 '--shaders' "$relief_sim" scene.toml --check --shaders compute
 
 # Valid settings whose combination is too large: one line, and nothing is dumped.
 printf '[collider]\nfile = "bunny.relief"\nposition = [0.0, 1e9, 0.0]\nscale = 1e6\n' >moved.toml

@@ -15,7 +15,7 @@ for word in 'Z,' ZBack N.X N.Y N.Z worldToCamera worldToNDC; do
 done
 
 # A collider with patches is exported as six views, besides the images of other maps.
-"$relief" bake "$bunny" -o p.relief --map patches:bytes=20kB --map cube:size=16 -q
+"$relief" bake "$bunny" -o p.relief --map patches:budget=20kB --map cube:size=16 -q
 "$relief" info p.relief | grep -qE 'patches +per patch +- +[1-9][0-9]+ patches +[0-9.]+ kB' || die "info does not print the number of patches: $("$relief" info p.relief)"
 "$relief" export p.relief -o patches --resolution 100
 [ "$(find patches -name 'view_[+-][xyz].exr' | wc -l)" -eq 6 ] && [ "$(find patches -type f | wc -l)" -eq 12 ] || die "six views and six faces, not $(ls patches)"

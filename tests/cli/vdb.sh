@@ -10,7 +10,7 @@ file = "b.relief"
 [time]
 steps = 60
 [render]
-every = 20
+steps_per_frame = 20
 [emitter]
 rate = 3000.0
 T

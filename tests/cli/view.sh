@@ -32,7 +32,7 @@ cp rest.html page.html
 sed 's/"name":"b.relief"/"name":"standard input"/' b.html | cmp - standard_input.html || die "standard input gives a different page"
 
 # Pages of all kinds of maps differ only in their data.
-"$relief" bake "$bunny" -o kinds.relief -q --map float:dir=+x,size=16 --map fixed8:dir=-z,size=16 --map cube:size=8 --map front-back:dir=+y,size=16 --map patches:bytes=10kB
+"$relief" bake "$bunny" -o kinds.relief -q --map float:dir=+x,size=16 --map fixed8:dir=-z,size=16 --map cube:size=8 --map front-back:dir=+y,size=16 --map patches:budget=10kB
 "$relief" view kinds.relief -o page_of.html
 extract page_of.html
 cmp rest.html page.html || die "the page of kinds.relief differs outside its data"

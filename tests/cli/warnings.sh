@@ -32,7 +32,7 @@ warns ''
 open=$'[collision]\nsweep = 0.0' # only the ends of a step are tested
 scene "${jet[@]}" 'velocity = [0.0, 0.0, -60.0]' "$open"
 warns "at a speed of 60 a step is 1 long, but 'metres\.relief' is typically 0\.(199|2) thick.*collision\.sweep = 0\.(0995|1),"
-for cure in $'[collision]\nsweep = 0.1' $'[time]\ndt = 0.002' $'[[type]]\ncollides = ["ground"]'; do
+for cure in $'[collision]\nsweep = 0.1' $'[time]\ndt = 0.002' $'[[type]]\ncollides_with = ["ground"]'; do
     scene "${jet[@]}" 'velocity = [0.0, 0.0, -60.0]' "$cure"
     warns ''
 done
@@ -66,7 +66,7 @@ scene "${crowd[@]}" 'rate = 3000.0'
 warns ''
 expect 0 "$relief_sim" scene.toml --json
 grep -qE '^relief-sim: warning: 900 of 1000 births .*particles\.capacity' stderr || die "no warning: $(cat stderr)"
-json stdout 'len(d["warnings"]) == 1 and d["particles"]["refused"] == 900'
+json stdout 'len(d["warnings"]) == 1 and d["particles"]["rejected"] == 900'
 scene "${crowd[@]}" 'rate = 300.0'
 expect 0 "$relief_sim" scene.toml
 [ ! -s stderr ] || die "warned: $(cat stderr)"

@@ -79,7 +79,7 @@ expect_error 1 "--max-error" "$relief" bake level.gltf --world v --max-error 1
 expect_error 1 "both name the output" "$relief" bake level.gltf --world v -o x.relief
 expect_error 1 "recipe" "$relief" bake --recipe r.toml --world v
 expect_error 1 "24576" "$relief" bake level.gltf --world v --budget 10kB
-expect_error 1 "--detail" "$relief" check w/world.json --detail 1 --mesh other.gltf
+expect_error 1 "--min-part" "$relief" check w/world.json --min-part 1 --mesh other.gltf
 expect_error 1 "--within" "$relief" check "$(ls w/floor-*.relief | head -1)" --within 1 --mesh other.gltf
 ln -s "$(ls "$PWD"/of_parts/*.relief | head -1)" w/link.relief
 sed "s/\"file\": *\"floor[^\"]*\"/\"file\": \"link.relief\"/" w/world.json >w/linked.json

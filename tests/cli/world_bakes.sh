@@ -9,12 +9,12 @@ diff -r -x .relief-cache.json w one || die "the number of threads changes the wo
 
 # The page of a check equals that of relief view.
 page_place >template.html
-RELIEF_VIEW_PAGE=$PWD/none.html expect_error 2 none.html "$relief" check w/world.json --mesh level.gltf --html page.html --samples 50
+RELIEF_VIEW_PAGE=$PWD/none.html expect_error 2 none.html "$relief" check w/world.json --mesh level.gltf --page page.html --samples 50
 export RELIEF_VIEW_PAGE=$PWD/template.html
 sed 's/data-format="/&1/' template.html >other.html
-RELIEF_VIEW_PAGE=$PWD/other.html expect_error 3 'other.html.*scripts/build.sh web' "$relief" check w/world.json --mesh level.gltf --html page.html
+RELIEF_VIEW_PAGE=$PWD/other.html expect_error 3 'other.html.*scripts/build.sh web' "$relief" check w/world.json --mesh level.gltf --page page.html
 [ ! -e page.html ] || die "a page was written for a player of another format"
-expect 0 "$relief" check w/world.json --mesh level.gltf --html page.html --samples 5000
+expect 0 "$relief" check w/world.json --mesh level.gltf --page page.html --samples 5000
 expect 0 "$relief" view w/world.json --mesh level.gltf -o view.html --samples 5000
 cmp page.html view.html || die "check and view write different pages"
 sed 's/.*page-data"[^>]*>//; s/<.script>.*//' page.html >page.json

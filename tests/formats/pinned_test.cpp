@@ -71,7 +71,7 @@ void addHash(std::ostream& text, const char* name, std::span<const std::byte> by
 void addMaterials(std::ostream& text, const Materials& materials) {
     for (const Material& one : materials.list) {
         text << "material '" << one.name << "' " << shortest(one.restitution) << ' ' << shortest(one.friction)
-             << ' ' << shortest(one.lifetime_loss) << ' ' << shortest(one.area_share) << '\n';
+             << ' ' << shortest(one.lifetime_loss) << ' ' << shortest(one.area_fraction) << '\n';
     }
     addNumbers(text, "materials_cube", {{materials.origin, materials.size}}, 4);
     text << "sides";

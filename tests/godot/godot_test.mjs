@@ -50,7 +50,7 @@ before(async () => {
     const maps = { small: [1], two: [1, 1] };
     for (const [name, each] of Object.entries(maps)) {
         run("bake", container("pyramid.obj"), "-o", container(`${name}.relief`), "-q",
-            ...each.flatMap(() => ["--map", "patches:bytes=2000"]));
+            ...each.flatMap(() => ["--map", "patches:budget=2000"]));
     }
     run("bake", container("pyramid.obj"), "-o", container("compressed.relief"), "-q", "--compress", "3");
     run("bake", container("pyramid.obj"), "-o", container("paper.relief"), "-q", "--map", "fixed8:size=16");

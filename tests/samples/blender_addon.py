@@ -138,7 +138,7 @@ file = "ball_Y.relief"
 [time]
 steps = 30
 [render]
-every = 10
+steps_per_frame = 10
 [emitter]
 rate = 2000.0
 """)

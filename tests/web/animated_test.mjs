@@ -105,7 +105,7 @@ test("a body that plays a clip pushes as in relief-sim", { timeout: 60_000 }, as
         }
         assert.equal(inside, 0);
     }
-    assert.deepEqual(animation, { clips: [{ name: "rise", seconds: 1 }, { name: "sink", seconds: 1 }], joints: ["lift"], weights: 0 });
+    assert.deepEqual(animation, { clips: [{ name: "rise", duration: 1 }, { name: "sink", duration: 1 }], joints: ["lift"], weights: 0 });
     assert.equal(still, null);
     assert.equal(triangles, 12);
     assert.ok(Math.abs(tops[0] - kSteps / 64) < 1e-5 && tops[1] < -0.7, `${tops}`);

@@ -119,7 +119,7 @@ test("the shaders of a page match relief query, for each kind of map", { timeout
     const folder = scratch(t);
     const at = (name) => path.join(folder, name);
     writeFileSync(at("ball.obj"), ball(16));
-    const kinds = ["float:dir=+x,size=32", "fixed8:dir=-z,size=32", "cube:size=16", "front-back:dir=+y,size=32", "patches:bytes=10kB"];
+    const kinds = ["float:dir=+x,size=32", "fixed8:dir=-z,size=32", "cube:size=16", "front-back:dir=+y,size=32", "patches:budget=10kB"];
     run("relief", "bake", at("ball.obj"), "-q", "-o", at("kinds.relief"), ...kinds.flatMap((map) => ["--map", map]));
     run("relief", "view", at("kinds.relief"));
     const random = generator(1);

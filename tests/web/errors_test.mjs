@@ -93,7 +93,7 @@ const kErrors = {
 test("each error has its message", { timeout: 60_000 }, async (t) => {
     const folder = scratch(t);
     bakeCube(folder);
-    run("relief", "bake", path.join(folder, "cube.obj"), "-q", "-o", path.join(folder, "patches.relief"), "--map", "patches:bytes=4kB");
+    run("relief", "bake", path.join(folder, "cube.obj"), "-q", "-o", path.join(folder, "patches.relief"), "--map", "patches:budget=4kB");
     const whole = readFileSync(path.join(folder, "cube.relief"));
     writeFileSync(path.join(folder, "cut.relief"), whole.subarray(0, 9000));
     writeFileSync(path.join(folder, "noise.relief"), whole.map((byte, i) => (byte * 31 + i) & 255));

@@ -45,7 +45,7 @@ name = "chip"
 on_collision = "stop"
 [[spawn]]
 on = "collision"
-of = "drop"
+parent = "drop"
 material = "oak"
 type = "chip"
 count = 2
@@ -71,7 +71,7 @@ test("hits have the same materials as in relief-sim", { timeout: 120_000 }, asyn
         const system = new relief.ParticleSystem(gl, {
             scene,
             files: { "slab.relief": collider },
-            hits: ({ step, time, dropped, rows }) => reports.push({ step, time, dropped, rows: [...rows] }),
+            onHits: ({ step, time, dropped, rows }) => reports.push({ step, time, dropped, rows: [...rows] }),
         });
         for (let i = 0; i < steps; ++i) {
             system.step();
@@ -105,11 +105,11 @@ test("hits have the same materials as in relief-sim", { timeout: 120_000 }, asyn
     });
 });
 
-test("the options hits and hitSpeed are validated", { timeout: 60_000 }, async (t) => {
+test("the options onHits and minHitSpeed are validated", { timeout: 60_000 }, async (t) => {
     const folder = scratch(t);
     const { page } = await libraryPage(t, folder);
-    const errors = await page.evaluate(() => errorsOf(() => new relief.ParticleSystem(gl, { hits: 3 }),
-                                                    () => new relief.ParticleSystem(gl, { hits: () => {}, hitSpeed: -1 })));
-    assert.match(errors[0], /option 'hits' must be a function/);
-    assert.match(errors[1], /option 'hitSpeed' must be a speed/);
+    const errors = await page.evaluate(() => errorsOf(() => new relief.ParticleSystem(gl, { onHits: 3 }),
+                                                    () => new relief.ParticleSystem(gl, { onHits: () => {}, minHitSpeed: -1 })));
+    assert.match(errors[0], /option 'onHits' must be a function/);
+    assert.match(errors[1], /option 'minHitSpeed' must be a speed/);
 });

@@ -32,7 +32,7 @@ test("a page reads the same texels as relief-particles, for each kind of map", {
     bakeCube(folder);
     const file = path.join(folder, "kinds.relief");
     const kinds = ["float:dir=+x,size=16x12", "fixed8:dir=-z,size=16", "cube:size=8", "front-back:dir=+y,size=16x24,depth=half",
-                   "front-back:dir=1/2/3,size=16,depth=unorm16,decode=projected", "patches:bytes=4kB"];
+                   "front-back:dir=1/2/3,size=16,depth=unorm16,decode=projected", "patches:budget=4kB"];
     run("relief", "bake", path.join(folder, "cube.obj"), "-q", "-o", file, ...kinds.flatMap((map) => ["--map", map]));
     run("relief", "view", file);
     const collider = new PageCollider(dataOf(path.join(folder, "kinds.html")).collider);

@@ -55,8 +55,8 @@ target = [0.0, 0.5, 0.5]
 [render]
 size = [${kWidth}, ${kHeight}]
 meshes = "meshes"
-first = 0
-every = ${kSteps}
+first_frame = 0
+steps_per_frame = ${kSteps}
 [[render.weather]]
 time = 0.2
 [[render.weather]]

@@ -21,11 +21,11 @@ const kColliders = {
     "fixed8 plane": "--resolution 128 --map fixed8:dir=1/2/3,compare=greater",
     "front-back of halfs": "--resolution 128 --decode projected --depth half --map front-back:dir=-z",
     "front-back": "--resolution 128 --map front-back:dir=-z",
-    patches: "--map patches:bytes=100kB",
+    patches: "--map patches:budget=100kB",
     cube: "--resolution 128 --decode projected --map cube:compare=greater",
     "cube from outside": "--resolution 128 --map cube:center=0/10/0,compare=less",
     "all of them, as zstd": "--compress 19 --map float:dir=+x,size=128 --map fixed8:dir=-y,size=128 " +
-        "--map front-back:dir=1/1/1,size=100x50 --map cube:size=32 --map cube:size=48,decode=projected --map patches:bytes=20kB",
+        "--map front-back:dir=1/1/1,size=100x50 --map cube:size=32 --map cube:size=48,decode=projected --map patches:budget=20kB",
 };
 
 function writePoints(file) {

@@ -64,7 +64,7 @@ async function compare(t, ...options) {
 
 test("300 steps of snow agree with relief-sim", { timeout: 120_000 }, (t) => compare(t, "--budget", "200kB"));
 
-test("300 steps of snow among patches agree with relief-sim", { timeout: 120_000 }, (t) => compare(t, "--map", "patches:bytes=200kB"));
+test("300 steps of snow among patches agree with relief-sim", { timeout: 120_000 }, (t) => compare(t, "--map", "patches:budget=200kB"));
 
 test("particles spawned by the page do not pass a floor thinner than a step", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);

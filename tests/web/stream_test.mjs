@@ -104,8 +104,8 @@ test("tiles are fetched on demand, and drops rest on them", { timeout: 180_000 }
     const first = tilesAt(world, 20, 20);
     assert.ok(first.length >= 1 && first.length < 8, first.join(" "));
     assert.deepEqual(taken(), first);
-    assert.equal(near.before.present, 0);
-    assert.deepEqual([near.after.wanted, near.after.present, near.after.failed], [first.length, first.length, 0]);
+    assert.equal(near.before.loaded, 0);
+    assert.deepEqual([near.after.requested, near.after.loaded, near.after.failed], [first.length, first.length, 0]);
     const whole = await page.evaluate(async (steps) => {
         const full = await relief.loadWorld("/files/w/world.json");
         const all = new relief.World({ ...world.files, ...full.files }); // has all files, including the coarse ones
@@ -120,8 +120,8 @@ test("tiles are fetched on demand, and drops rest on them", { timeout: 180_000 }
     assert.deepEqual(near.rows, whole.rows[0]);
     assert.deepEqual(near.rows, whole.rows[1]);
     assert.equal(whole.stream[0], null);
-    assert.ok(whole.stream[1].present >= first.length && whole.stream[1].present === whole.stream[1].wanted);
-    assert.equal(whole.stream[2].present, 0);
+    assert.ok(whole.stream[1].loaded >= first.length && whole.stream[1].loaded === whole.stream[1].requested);
+    assert.equal(whole.stream[2].loaded, 0);
     assert.equal(below(near.rows).count, 500);
     assert.ok(below(near.rows).deepest < 0.05, JSON.stringify(below(near.rows)));
     assert.ok(below(whole.rows[2]).deepest > 0.2, JSON.stringify(below(whole.rows[2]))); // the coarse ground differs
@@ -140,7 +140,7 @@ test("tiles are fetched on demand, and drops rest on them", { timeout: 180_000 }
         return { stream: system.info.stream, rows: [...system.read()] };
     }, { steps: kSteps, emitter: emitterAt(440, 340) });
     assert.deepEqual(taken(), fresh);
-    assert.deepEqual([gone.stream.wanted, gone.stream.present, gone.stream.failed], [second.length, second.length, 0]);
+    assert.deepEqual([gone.stream.requested, gone.stream.loaded, gone.stream.failed], [second.length, second.length, 0]);
     assert.equal(below(gone.rows).count, 1000);
     assert.ok(below(gone.rows).deepest < 0.05, JSON.stringify(below(gone.rows)));
 
@@ -152,7 +152,7 @@ test("tiles are fetched on demand, and drops rest on them", { timeout: 180_000 }
     const known = [...first, ...second];
     assert.ok(there.some((file) => !known.includes(file)) && seen.some((file) => !known.includes(file) && !there.includes(file)));
     await page.evaluate(async (position) => {
-        system.near([{ position, radius: 10 }]);
+        system.setPointsOfInterest([{ position, radius: 10 }]);
         await system.loaded();
     }, center);
     assert.deepEqual(taken(), there.filter((file) => !known.includes(file)));
@@ -165,18 +165,18 @@ test("tiles are fetched on demand, and drops rest on them", { timeout: 180_000 }
     // Restarts, and disposal during downloads.
     const again = await page.evaluate(async () => {
         system.restart();
-        const begun = system.info.stream.present;
+        const begun = system.info.stream.loaded;
         await system.loaded();
-        const { wanted, present } = system.info.stream;
+        const { requested, loaded } = system.info.stream;
         system.restart();
         system.step();
         const waits = system.loaded().catch((error) => error.message);
         system.dispose();
         const kept = world.query([100, 30, 100]).distance[0];
         world.dispose();
-        return { begun, wanted, present, end: await waits, kept, gl: gl.getError() };
+        return { begun, requested, loaded, end: await waits, kept, gl: gl.getError() };
     });
-    assert.ok(again.begun === 0 && again.wanted === again.present && again.present > 0, JSON.stringify(again));
+    assert.ok(again.begun === 0 && again.requested === again.loaded && again.loaded > 0, JSON.stringify(again));
     assert.match(again.end, /disposed of/);
     assert.ok(Math.abs(again.kept) < 60, String(again.kept));
     assert.equal(again.gl, 0);
@@ -200,7 +200,7 @@ test("a missing or damaged tile is reported once, and its coarse tile stays", { 
     const got = await page.evaluate(async ({ scene, steps }) => {
         const world = await relief.streamWorld("/files/w/world.json", { radius: 40 });
         const lines = [];
-        const systems = [new relief.ParticleSystem(gl, { world, scene, warn: (line) => lines.push(line) }),
+        const systems = [new relief.ParticleSystem(gl, { world, scene, onWarning: (line) => lines.push(line) }),
                          new relief.ParticleSystem(gl, { world, scene })];
         for (let i = 0; i < steps; ++i) {
             systems.forEach((one) => one.step());
@@ -208,7 +208,7 @@ test("a missing or damaged tile is reported once, and its coarse tile stays", { 
         }
         const [info, rows] = [systems[0].info, [...systems[0].read()]];
         const full = new relief.ParticleSystem(gl, { world: new relief.World(world.files, { radius: 40, load: () => "no bytes" }), scene,
-                                                     warn: (line) => lines.push(line) });
+                                                     onWarning: (line) => lines.push(line) });
         await full.loaded();
         const plain = new relief.ParticleSystem(gl, { world: new relief.World(world.files, { radius: 1, load: () => {} }), scene });
         const cube = new relief.ParticleSystem(gl, { scene: { ...scene, collider: { file: "a.relief" } },
@@ -227,11 +227,11 @@ test("a missing or damaged tile is reported once, and its coarse tile stays", { 
                 () => new relief.World(world.files),
                 () => make({ scene: { ...scene, stream: { memory: 0.01 } } }),
                 () => make({ scene: text }),
-                () => make({ warn: "loud" }),
-                () => plain.near({ position: [0, 0, 0], radius: 1 }),
-                () => plain.near([{ position: [0, 0, 0], radius: 1 }, { position: [0, 0, 0] }]),
-                () => plain.near([{ position: [0, NaN, 0], radius: 1 }]),
-                () => cube.near([]),
+                () => make({ onWarning: "loud" }),
+                () => plain.setPointsOfInterest({ position: [0, 0, 0], radius: 1 }),
+                () => plain.setPointsOfInterest([{ position: [0, 0, 0], radius: 1 }, { position: [0, 0, 0] }]),
+                () => plain.setPointsOfInterest([{ position: [0, NaN, 0], radius: 1 }]),
+                () => cube.setPointsOfInterest([]),
                 () => plain.set({ stream: undefined }),
                 () => plain.set({ stream: { memory: 3 } }),
                 () => cube.set({ stream: { radius: 3 } }),
@@ -245,14 +245,14 @@ test("a missing or damaged tile is reported once, and its coarse tile stays", { 
     const named = got.lines.slice(0, 2).sort((a, b) => a.includes(broken) - b.includes(broken));
     assert.match(named[0], new RegExp(`^http.*/files/w/${gone}: the server returned 404 .*; its coarse collider remains in use$`));
     assert.match(named[1], new RegExp(`${broken}.* does not match its hash.*; its coarse collider remains in use$`));
-    assert.deepEqual([got.info.wanted, got.info.present, got.info.failed], [count, count - 2, 2]);
+    assert.deepEqual([got.info.requested, got.info.loaded, got.info.failed], [count, count - 2, 2]);
     assert.equal(below(got.rows).count, 500);
     assert.ok(below(got.rows).deepest < 3, JSON.stringify(below(got.rows))); // tolerance of the coarse ground
     assert.equal(got.lines.slice(2).length, count);
     assert.ok(got.lines.slice(2).every((line) => /'load' returned no Uint8Array/.test(line)));
     const expected = [/streamWorld\(\) needs a radius above 0/, /needs a radius above 0/, /memory must be a number/, /no option 'speed'/, /404/, /needs 'load'/,
-                      /No such file/, /resident colliders.*allow more/, /has no \[stream\]/, /'warn' must be a function/, /near\(\) takes a list/,
-                      /item 1 is invalid/, /near\(\): number 1 is NaN/, /use streamWorld\(\)/, /only the radius of 'stream' can change/, /only the radius of 'stream' can change/,
+                      /No such file/, /resident colliders.*allow more/, /has no \[stream\]/, /'onWarning' must be a function/, /setPointsOfInterest\(\) takes a list/,
+                      /item 1 is invalid/, /setPointsOfInterest\(\): number 1 is NaN/, /use streamWorld\(\)/, /only the radius of 'stream' can change/, /only the radius of 'stream' can change/,
                       /stream needs .world/];
     assert.equal(got.errors.length, expected.length);
     got.errors.forEach((message, i) => {
@@ -261,7 +261,7 @@ test("a missing or damaged tile is reported once, and its coarse tile stays", { 
     });
     assert.deepEqual(got.allowed, ["no error", "no error"]);
     assert.equal(got.gl, 0);
-    // Without 'warn' the system logs the same warnings to the console, once each.
+    // Without 'onWarning' the system logs the same warnings to the console, once each.
     const warned = messages.filter((line) => line.startsWith("warning: "));
     assert.equal(warned.length, 2, messages.join("\n"));
     assert.deepEqual(messages.filter((line) => !line.startsWith("warning: ") && !line.includes("404")), []);
@@ -288,7 +288,7 @@ rate = 100.0
         reliefView.particles.step();
         return reliefView.particles.system.info.stream;
     });
-    assert.ok(stream.present > 0 && stream.present === stream.wanted && stream.failed === 0, JSON.stringify(stream));
+    assert.ok(stream.loaded > 0 && stream.loaded === stream.requested && stream.failed === 0, JSON.stringify(stream));
     assert.equal(await page.locator("#message p").textContent(), "");
     assert.deepEqual(pageMessages(messages), []);
 });

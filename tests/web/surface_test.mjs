@@ -116,11 +116,11 @@ test("every sheet and strut of a collider is drawn, and nothing else", { timeout
         "bunny, cubes": [bunny, "--map", "cube:size=96"],
         "a thin plate, pairs": ["plate.obj", "--budget", "60kB", "--as", "solid"],
         "a narrow gap, pairs": ["gap.obj", "--budget", "100kB", "--as", "solid"],
-        "plates, patches": ["plates.obj", "--map", "patches:bytes=200kB", "--as", "solid"],
-        "struts, patches": ["struts.obj", "--map", "patches:bytes=400kB", "--as", "solid"],
-        "an open sheet, patches": ["square.obj", "--map", "patches:bytes=60kB", "--thickness", "0.02"],
-        "bunny, few patches": [bunny, "--map", "patches:bytes=20kB"],
-        "bunny, patches among maps": [bunny, "--map", "patches:bytes=40kB", "--map", "cube:size=48", "--map", "front-back:dir=+x,size=64"],
+        "plates, patches": ["plates.obj", "--map", "patches:budget=200kB", "--as", "solid"],
+        "struts, patches": ["struts.obj", "--map", "patches:budget=400kB", "--as", "solid"],
+        "an open sheet, patches": ["square.obj", "--map", "patches:budget=60kB", "--thickness", "0.02"],
+        "bunny, few patches": [bunny, "--map", "patches:budget=20kB"],
+        "bunny, patches among maps": [bunny, "--map", "patches:budget=40kB", "--map", "cube:size=48", "--map", "front-back:dir=+x,size=64"],
     };
     const open = await viewer(t);
     for (const [name, [mesh, ...options]] of Object.entries(cases)) {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Uses every declaration of relief-particles once, for the compiler: types_test.mjs.
 import Relief, { Collider, GpuCollider, ParticleSystem, ReliefError, World, init, load, streamWorld } from "relief-particles";
-import type { Answers, Birth, Scene } from "relief-particles";
+import type { Samples, Birth, Scene } from "relief-particles";
 import { collide, distance, glsl, openCollider, wgsl } from "relief-particles/collider";
-import type { Contact } from "relief-particles/collider";
+import type { CollideOptions } from "relief-particles/collider";
 
 export async function everything(gl: WebGL2RenderingContext, program: WebGLProgram, file: File): Promise<string[]> {
     await init({ wasmUrl: new URL("https://example.org/relief_wasm.wasm") });
     const collider: Collider = await Relief.load("bunny.relief");
     const dropped = await load(file);
-    const { distance, normal, map }: Answers = collider.query([0, 1, 2]);
+    const { distance, normal, map }: Samples = collider.query([0, 1, 2]);
     const sum: number = distance[0] + normal[0] + map[0] + dropped.texels(0)[0] + dropped.tree(0)[0] + collider.bounds.min[1];
 
     const gpu = new GpuCollider(gl, collider);
@@ -38,10 +38,10 @@ export async function everything(gl: WebGL2RenderingContext, program: WebGLProgr
     system.restart();
     const island: World = await streamWorld("island/world.json", { radius: 50, memory: 64 });
     const own = new World(island.files, { radius: 5, load: async (name: string, signal: AbortSignal) => new Uint8Array(await (await fetch(name, { signal })).arrayBuffer()) });
-    const streamed = new ParticleSystem(gl, { world: own, warn: (line: string) => document.title = line });
-    streamed.near([{ position: [0, 1, 0], radius: 2 }]);
+    const streamed = new ParticleSystem(gl, { world: own, onWarning: (line: string) => document.title = line });
+    streamed.setPointsOfInterest([{ position: [0, 1, 0], radius: 2 }]);
     await streamed.loaded();
-    const missing: number = (streamed.info.stream?.wanted ?? 0) - (own.stream?.radius ?? 0) + (island.colliders[0].coarse?.gpu_bytes ?? 0);
+    const missing: number = (streamed.info.stream?.requested ?? 0) - (own.stream?.radius ?? 0) + (island.colliders[0].coarse?.gpu_bytes ?? 0);
     // @ts-expect-error: radius is required
     await streamWorld("island/world.json", { memory: 64 });
     // @ts-expect-error: time must be a number
@@ -65,7 +65,7 @@ export function withoutWebAssembly(bytes: Uint8Array, unzip: (packed: Uint8Array
     const { constants, texels, width, height, bounds, unit, ...collider } = openCollider(bytes, { decompress: (packed) => unzip(packed) });
     const position = new Float32Array(3);
     const velocity = [0, -1, 0];
-    const contact: Contact = { radius: 0.01, restitution: 0.4, friction: 0.2, normal: new Float32Array(3) };
+    const contact: CollideOptions = { radius: 0.01, restitution: 0.4, friction: 0.2, normal: new Float32Array(3) };
     const whole = openCollider(bytes.buffer as ArrayBuffer);
     const left: number = collide(whole, position, velocity, contact) + distance(whole, [0, 1, 0], position);
     // @ts-expect-error: a point has three numbers

@@ -64,7 +64,7 @@ test("each feature of the page changes the picture", { timeout: 300_000 }, async
     await page.locator("#places button").first().click();
     assert.notEqual(await page.evaluate("reliefView.camera.distance"), before);
     await page.waitForFunction("!document.getElementById('pin').hidden");
-    assert.equal(await page.locator("#why").textContent(), made.check.worst_places[0].why);
+    assert.equal(await page.locator("#explanation").textContent(), made.check.worst_places[0].explanation);
 
     assert.equal(await message(), "");
     assert.deepEqual(messages, []);
@@ -73,7 +73,7 @@ test("each feature of the page changes the picture", { timeout: 300_000 }, async
 test("patches show their cells", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     const patches = path.join(folder, "patches.relief");
-    run("relief", "bake", bunny, "-q", "-o", patches, "--map", "patches:bytes=200kB");
+    run("relief", "bake", bunny, "-q", "-o", patches, "--map", "patches:budget=200kB");
     run("relief", "view", patches, "--mesh", bunny, "-q", "--samples", "5000", "-o", path.join(folder, "made.html"));
     const { page, messages } = await openFile(t, path.join(folder, "made.html"), { viewport: { width: 760, height: 400 }, colorScheme: "dark" });
     await page.evaluate(() => {

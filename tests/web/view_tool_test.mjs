@@ -60,7 +60,7 @@ test("the page of a check shows its numbers, worst places, parts and advice", { 
                                          { name: "<b>pillar</b>", low: [43.75, 1, -0.25], high: [44.25, 7, 0.25] }]));
     run("relief", "bake", at("slab.obj"), "-q", "-o", at("slab.relief"), "--map", "fixed8:dir=-y,size=32");
     const report = JSON.parse(run("relief", "check", at("slab.relief"), "--mesh", at("slab.obj"), "-q", "--samples", "5000", "--json",
-                                "--html", at("slab.html")));
+                                "--page", at("slab.html")));
     assert.ok(report.advice.length > 0 && report.verdict.lost_parts === 1, JSON.stringify(report.verdict));
     const { page, messages } = await opened(t, at("slab.html"));
     await page.click("#tab-errors");
@@ -73,7 +73,7 @@ test("the page of a check shows its numbers, worst places, parts and advice", { 
     await page.locator("#places button").last().click();
     const target = await page.evaluate("reliefView.camera.target");
     assert.ok(target.every((v, k) => Math.abs(v - worst.position[k]) < 1e-4), `${target} instead of ${worst.position}`);
-    assert.equal(await page.locator("#why").textContent(), worst.why);
+    assert.equal(await page.locator("#explanation").textContent(), worst.explanation);
     assert.deepEqual(messages, []);
 });
 

@@ -29,7 +29,7 @@ time = 0.0
 time = ${kSteps / 64}
 position = [5.0, 1.0, 5.0]
 `;
-    const playNatively = (more) => play(folder, `world = "w/world.json"\n${tomlOf(scene)}${more}`, "--path", "fragment");
+    const playNatively = (more) => play(folder, `world = "w/world.json"\n${tomlOf(scene)}${more}`, "--shaders", "fragment");
     const native = { still: playNatively(""), moved: playNatively(keys) };
     const { page, messages } = await libraryPage(t, folder);
     const got = await page.evaluate(async ([scene, steps]) => {

@@ -193,14 +193,14 @@ class Collider:
         return Samples(*self._handle.query(_coordinates(points, "points"), distance))
 
     @_hinting
-    def save(self, path: Path, compression: int = 0) -> None:
-        """Writes a .relief file atomically. compression: zstd level, 1 to 19; 0: none."""
-        _relief.save(self._handle, _path(path), _whole(compression, "compression", 0, 19))
+    def save(self, path: Path, compress: int = 0) -> None:
+        """Writes a .relief file atomically. compress: zstd level, 1 to 19; 0: none."""
+        _relief.save(self._handle, _path(path), _whole(compress, "compress", 0, 19))
 
     @_hinting
-    def to_bytes(self, compression: int = 0) -> bytes:
+    def to_bytes(self, compress: int = 0) -> bytes:
         """Returns the bytes that save() writes, for load()."""
-        return _relief.to_bytes(self._handle, _whole(compression, "compression", 0, 19))
+        return _relief.to_bytes(self._handle, _whole(compress, "compress", 0, 19))
 
     def __repr__(self) -> str:
         return f"<Collider of {self._handle.mesh_name or 'a mesh'}: {self._handle.map_count} maps, {self.gpu_bytes} bytes>"
@@ -259,9 +259,9 @@ class WorstPlace:
     """A point on the wrong side, surrounded by others."""
     size: float
     """Longest side of the box of its points on the wrong side."""
-    share_percent: float
+    contribution_percent: float
     """Percentage of all wrong points near the surface."""
-    inside_percent: float
+    false_inside_percent: float
     """Percentage of its points that are classified as inside."""
     map: int
     """Map that decides most of them; -1: no map votes."""
@@ -277,10 +277,10 @@ class Accuracy:
     """Percentage of points near the surface that are inside, but outside in truth."""
     false_outside_percent: float
     """Percentage of points near the surface that are outside, but inside in truth."""
-    distance_mean: float
+    distance_error_mean: float
     """Mean error of the distance near the surface, in the mesh's units."""
-    distance_p99: float
-    normal_mean: float
+    distance_error_p99: float
+    normal_error_mean: float
     """Mean error of normals on the surface, degrees."""
     unknown_percent: float
     """Percentage of points near the surface without a vote."""
@@ -292,7 +292,7 @@ class Accuracy:
     """ "good", "fair" or "poor", as in `relief check`: the worse of the grades of the whole mesh and of its parts. A lost part
     is poor. Coarse parts lower the grade to "fair" if they and the ignored parts together miss more than 1 % of the points near
     the surface. Ignored parts by themselves do not lower it."""
-    places: tuple[WorstPlace, ...] = ()
+    worst_places: tuple[WorstPlace, ...] = ()
     """The worst first; at most three."""
 
     @property
@@ -436,8 +436,8 @@ def bake(mesh: Any, triangles: Any = None, *, name: str = "mesh",
          unit: Optional[str] = None,
          up: Optional[str] = None,
          hidden: Optional[str] = None,
-         import_memory: Optional[Number] = None,
-         import_time: Optional[Number] = None,
+         max_import_memory: Optional[Number] = None,
+         import_timeout: Optional[Number] = None,
          max_triangles: Optional[Number] = None,
          strict: bool = False,
          repair: Optional[str] = None,
@@ -448,7 +448,7 @@ def bake(mesh: Any, triangles: Any = None, *, name: str = "mesh",
          animated: bool = False,
          clips: Union[str, Sequence[str], None] = None,
          heights: Optional[str] = None,
-         time_limit: Optional[Number] = None,
+         timeout: Optional[Number] = None,
          # end of bake-arguments by scripts/generate.sh
          ) -> Collider:
     """Bakes a mesh like `relief bake`, with the same options, defaults and bytes.
@@ -475,12 +475,12 @@ def check(collider: Collider, mesh: Any, triangles: Any = None, *,
           # generated: check-arguments by scripts/generate.sh
           samples: Optional[Number] = None,
           seed: Optional[Number] = None,
-          detail: Optional[Number] = None,
+          min_part: Optional[Number] = None,
           unit: Optional[str] = None,
           up: Optional[str] = None,
           hidden: Optional[str] = None,
-          import_memory: Optional[Number] = None,
-          import_time: Optional[Number] = None,
+          max_import_memory: Optional[Number] = None,
+          import_timeout: Optional[Number] = None,
           max_triangles: Optional[Number] = None,
           # end of check-arguments by scripts/generate.sh
           ) -> Accuracy:
@@ -494,7 +494,7 @@ def check(collider: Collider, mesh: Any, triangles: Any = None, *,
         _wrong_type(collider, "collider", "a relief.Collider")
     words = _words(_CHECK, locals())
     measured = _run(_relief.check, collider._handle, words, *_source(mesh, triangles, "mesh"))
-    return Accuracy(**{**measured, "places": tuple(WorstPlace(**place) for place in measured["places"])})
+    return Accuracy(**{**measured, "worst_places": tuple(WorstPlace(**place) for place in measured["worst_places"])})
 
 
 for _function, _fields in ((bake, _BAKE), (check, _CHECK)):

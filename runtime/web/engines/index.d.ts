@@ -52,7 +52,7 @@ export function openCollider(bytes: ArrayBuffer | ArrayBufferView, options?: Ope
  */
 export function distance(collider: Collider, point: Vec3, normal?: WritableVec3): number;
 
-export interface Contact {
+export interface CollideOptions {
     /** Radius of the particle, at least 0 (default: 0). */
     radius?: number;
     /** Factor of the velocity along the normal, 0 to 1 (default: 0). */
@@ -69,7 +69,7 @@ export interface Contact {
  * @param velocity  likewise
  * @returns the distance less the radius: negative if the particle hit
  */
-export function collide(collider: Collider, position: WritableVec3, velocity: WritableVec3, contact?: Contact): number;
+export function collide(collider: Collider, position: WritableVec3, velocity: WritableVec3, options?: CollideOptions): number;
 
 /** shaders/engines/relief.glsl, for GLSL ES 3.00, 3.30 and Vulkan: reliefDistance() and reliefCollide(). */
 export const glsl: string;

@@ -41,7 +41,7 @@ export function validateMaterials({ list, sides, origin, size, nodes, compressio
     });
     check(names.every((name) => !/[\u202a-\u202e\u2066-\u2069]/.test(name)) && new Set(names).size === names.length,
           "a material's name is not clean UTF-8, or that of another one");
-    check(list.every((one) => isFraction(one.restitution) && isFraction(one.friction) && isFraction(one.areaShare) &&
+    check(list.every((one) => isFraction(one.restitution) && isFraction(one.friction) && isFraction(one.areaFraction) &&
                               one.lifetimeLoss >= 0 && one.lifetimeLoss <= 1e6),
           "a material has a number out of range");
     const pairs = (sides?.byteLength ?? 0) / 3;

@@ -26,7 +26,7 @@ const kOption = table(["name", needs(kString)], ["value", needs(kString)]);
 const kProvenance = table(["meshName", needs(kString)], ["meshHash", needs(kString)], ["triangles", kLong],
                           ["toolVersion", needs(kString)], ["options", vector(kOption)]);
 const kMaterial = table(["name", needs(kString)], ["restitution", number("getFloat32", 4, 1)], ["friction", kFloat],
-                        ["lifetimeLoss", kFloat], ["areaShare", kFloat]);
+                        ["lifetimeLoss", kFloat], ["areaFraction", kFloat]);
 const kMaterials = table(["list", needs(vector(kMaterial, 255))], ["sides", vector(struct(3, 1))], ["origin", needs(kVec3)],
                          ["size", kFloat], ["nodes", vector(struct(1, 1))], ["compression", kByte], ["nodesSize", kWord]);
 const kCollider = table(["boundsMin", needs(kVec3)], ["boundsMax", needs(kVec3)], ["unit", needs(kString)],

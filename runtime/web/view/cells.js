@@ -30,7 +30,7 @@ function depthsInside(texel, { compare, decode, empty_is_outside: empty }, [x, y
 /** Returns the same range for each block of block × block texels: { columns, low, high }. */
 function blocksInside(collider, index, block) {
     const map = collider.info.maps[index];
-    const { width, height, rows, object_per_map: per } = map;
+    const { width, height, object_to_map: rows, object_per_map: per } = map;
     const texels = collider.texels(index);
     const axes = [0, 1, 2].map((k) => scale(rows[k].slice(0, 3), per[k] * per[k] / [width, height, 1][k]));
     const [columns, lines] = [Math.ceil(width / block), Math.ceil(height / block)];
@@ -47,7 +47,7 @@ function blocksInside(collider, index, block) {
 
 /** Marks the cells that a map sees completely outside. */
 function mark(cells, { from, side, n }, collider, index) {
-    const { width, height, rows, empty_is_outside: empty } = collider.info.maps[index];
+    const { width, height, object_to_map: rows, empty_is_outside: empty } = collider.info.maps[index];
     const size = [width, height, 1];
     const reach = rows.map((row, k) => kHalf * side * size[k] * (Math.abs(row[0]) + Math.abs(row[1]) + Math.abs(row[2])) +
                            (k < 2 ? kMargin : 1e-4));
@@ -73,7 +73,7 @@ function mark(cells, { from, side, n }, collider, index) {
 
 /** Like mark(), for a map of patches: marks cells that no patch and no inside leaf overlaps. */
 function markPatches(cells, { from, side, n }, collider, index) {
-    const { rows, object_per_map: [size] } = collider.info.maps[index];
+    const { object_to_map: rows, object_per_map: [size] } = collider.info.maps[index];
     const axes = rows.map((row) => scale(row.slice(0, 3), size * size)); // axes of map space in object space
     const reached = new Uint8Array(cells.length);
     visitLeaves(treeOf(collider, index), (kind, corner, leaf) => {

@@ -85,7 +85,7 @@ export function drawMap(canvas, collider, index) {
 }
 
 export function mapTitle(collider, index) {
-    const { width, height, projection, rows, format } = collider.info.maps[index];
+    const { width, height, projection, object_to_map: rows, format } = collider.info.maps[index];
     if (projection === "local") {
         const { roots, levels } = treeOf(collider, index);
         return `patches in ${roots.join(" × ")} roots, up to ${levels} levels`;

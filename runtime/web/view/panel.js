@@ -183,7 +183,7 @@ export class Panel {
         const range = Math.max(2 * distance.p99, 1e-3 * body.box.longest);
         look.heat = $("heat").checked ? range : 0;
         // A sheet lies in the middle of its shell: subtract half of the recorded thickness, if any.
-        look.depth = 0.5 * Number(/(?:^| )--thickness (?:auto=)?([0-9.e+-]+)/.exec(body.collider.info.options)?.[1] ?? 0);
+        look.depth = 0.5 * Number(/(?:^| )--thickness (?:auto=)?([0-9.e+-]+)/.exec(body.collider.info.provenance.options)?.[1] ?? 0);
         $("sheets-note").textContent = look.depth === 0 ? "" : `Sheets have a thickness of ${this.#length(2 * look.depth)}; ` +
             "white: the mesh is in the middle of its shell.";
         this.#legend("heat", range);
@@ -202,16 +202,16 @@ export class Panel {
             ...(one.tried && !one.helps ? [] : [element("code", {}, command)]), element("p", { class: "hint" }, adviceText(one, verdict)))));
         $("places-title").textContent = places.length ? "Worst places, by fraction of wrong points" : "No wrong places";
         $("places").replaceChildren(...places.map((place) => element("li", {}, element("button", { onclick: () => this.#goTo(place) },
-            element("b", {}, `${shortNumber(place.share_percent)} %`),
+            element("b", {}, `${shortNumber(place.contribution_percent)} %`),
             element("span", {}, [`${this.#length(place.size)} across`, kCauses[place.cause],
                                  place.map === null ? "no map" : `map ${place.map}`].join(", "))))));
     }
 
-    #goTo({ position, normal, why }) {
+    #goTo({ position, normal, explanation }) {
         this.selectMap(-1);
         this.app.pin = position;
         this.app.camera.lookAt(position, normal, 0.9 * this.app.body.box.longest);
-        $("why").textContent = why;
+        $("explanation").textContent = explanation;
     }
 
     // --- particles
@@ -243,7 +243,7 @@ export class Panel {
         const { length } = this.#shownMaps();
         $("facts").textContent = `${length} map${length === 1 ? "" : "s"}, ` +
             (size >= 1e6 ? `${(size / 1e6).toFixed(2)} MB` : `${Math.round(size / 1e3)} kB`) +
-            (info.mesh.triangles ? ` from ${info.mesh.triangles.toLocaleString("en")} triangles` : "") +
+            (info.provenance.triangles ? ` from ${info.provenance.triangles.toLocaleString("en")} triangles` : "") +
             `, ${this.#length(body.box.longest)} long` + (data.collider?.animated ? ", at rest" : "");
         $("show-field").hidden = !data.mesh;
         $("show-picture").hidden = true;
@@ -276,8 +276,8 @@ function checkRows({ accuracy: original, repaired, sampling }, length) {
             ["samples of each kind", sampling.samples.toLocaleString("en")], ["seed", `${sampling.seed}`]];
 }
 
-function adviceText({ about, tried, helps, wrong_percent: left, untried }, verdict) {
-    return !tried ? `${about}; not tried: ${untried}` : helps
-        ? `${about}; tried: ${shortNumber(left)} % wrong points instead of ${shortNumber(verdict.wrong_percent)} %`
-        : `Tried without improvement: ${about} (${shortNumber(left)} %)`;
+function adviceText({ description, tried, helps, wrong_percent: left, untried_reason: reason }, verdict) {
+    return !tried ? `${description}; not tried: ${reason}` : helps
+        ? `${description}; tried: ${shortNumber(left)} % wrong points instead of ${shortNumber(verdict.wrong_percent)} %`
+        : `Tried without improvement: ${description} (${shortNumber(left)} %)`;
 }

@@ -53,7 +53,7 @@ TEST(EngineExport, DataOfAColliderGivesItsDistances) {
 TEST(EngineExport, OtherMapsAreErrors) {
     const TriangleMesh mesh = makeIcosphere({0.0, 0.0, 0.0}, 1.0, 2);
     for (const std::vector<std::string>& specs :
-         {std::vector<std::string>{"cube:size=8"}, {"patches:bytes=4kB", "cube:size=8"}}) {
+         {std::vector<std::string>{"cube:size=8"}, {"patches:budget=4kB", "cube:size=8"}}) {
         const auto files = engineFiles(bakeSpecs(mesh, specs), "ball", Engine::kC);
         ASSERT_FALSE(files);
         EXPECT_EQ(files.error().code, ErrorCode::kUsage);

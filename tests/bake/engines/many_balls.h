@@ -14,12 +14,12 @@
 namespace relief::test {
 
 inline Collider ball() {
-    return bakeSpecs(makeIcosphere({0.2, 0.1, -0.3}, 0.9, 3), {"patches:bytes=20kB"});
+    return bakeSpecs(makeIcosphere({0.2, 0.1, -0.3}, 0.9, 3), {"patches:budget=20kB"});
 }
 
 inline LoadedWorld manyBalls() {
     LoadedWorld level;
-    level.colliders = {ball(), bakeSpecs(makeIcosphere({0.0, 0.0, 0.0}, 0.4, 2), {"patches:bytes=4kB"})};
+    level.colliders = {ball(), bakeSpecs(makeIcosphere({0.0, 0.0, 0.0}, 0.4, 2), {"patches:budget=4kB"})};
     for (const Collider& collider : level.colliders) {
         WorldCollider listed;
         listed.box = collider.bounds;

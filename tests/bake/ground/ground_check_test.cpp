@@ -45,7 +45,7 @@ TEST_F(GroundChecks, PlaneIsWithinTheBakeError) {
     EXPECT_EQ(result.near.missing, 0U);
     EXPECT_LT(result.near.most, 0.01);  // half a quantization step of a leaf with a range of 1.5
     EXPECT_LT(result.near.wrong.total(), 0.5);
-    EXPECT_LT(result.anywhere.total(), 0.1);
+    EXPECT_LT(result.uniform.total(), 0.1);
     EXPECT_FALSE(result.seams);
     EXPECT_EQ(result.worst.size(), 10U);
     EXPECT_TRUE(result.warnings.empty());
@@ -60,8 +60,8 @@ TEST_F(GroundChecks, ShiftIsMeasured) {
     const GroundAccuracy single = onThreads(1, [&] { return check("hills.raw", "tile=64", field); });
     EXPECT_EQ(single.near.mean, right.near.mean);
     EXPECT_EQ(single.seams->p99, right.seams->p99);
-    EXPECT_EQ(single.anywhere.total(), right.anywhere.total());
-    EXPECT_EQ(single.worst.front().place, right.worst.front().place);
+    EXPECT_EQ(single.uniform.total(), right.uniform.total());
+    EXPECT_EQ(single.worst.front().position, right.worst.front().position);
     EXPECT_LT(right.near.mean_abs, 0.01);
     EXPECT_LT(right.near.wrong.total(), 0.5);
     EXPECT_LT(right.seams->wrong.total(), 0.5);
@@ -93,19 +93,19 @@ TEST_F(GroundChecks, HolesAreOutside) {
     const GroundAccuracy right = check("holed.raw", "hole=0", field);
     EXPECT_EQ(right.holes, 20U * 40U);
     EXPECT_LT(right.near.wrong.total(), 0.5);
-    EXPECT_LT(right.anywhere.total(), 0.2);
+    EXPECT_LT(right.uniform.total(), 0.2);
     EXPECT_EQ(right.near.missing, 0U);
     // Filled holes are wrong inside points. Holes where the map has ground are missing points.
     write("whole.raw", 100, 100, hills);
     const WorldField filled = baked("whole.raw", spec(""));
     const GroundAccuracy more = check("holed.raw", "hole=0", filled);
-    EXPECT_GT(more.anywhere.false_inside, 2.0);
-    EXPECT_LT(more.anywhere.false_outside, 0.1);
+    EXPECT_GT(more.uniform.false_inside, 2.0);
+    EXPECT_LT(more.uniform.false_outside, 0.1);
     ASSERT_EQ(more.warnings.size(), 1U);
     EXPECT_NE(more.warnings[0].find("holed.raw is not the file"), std::string::npos);
     const GroundAccuracy less = check("whole.raw", "", field);
     EXPECT_NEAR(100.0 * double(less.near.missing) / double(less.near.points), 100.0 * 800 / (99 * 99), 0.2);
-    EXPECT_GT(less.anywhere.false_outside, 2.0);
+    EXPECT_GT(less.uniform.false_outside, 2.0);
 }
 
 TEST_F(GroundChecks, LostTileIsMissing) {

@@ -65,7 +65,7 @@ struct View {
 };
 
 TEST(ViewImage, ShowsABox) {
-    const Collider box = bakeSpecs(makeBoxMesh({0.1, 0.2, -0.3}, {0.5, 0.3, 0.2}), {"patches:bytes=8kB"});
+    const Collider box = bakeSpecs(makeBoxMesh({0.1, 0.2, -0.3}, {0.5, 0.3, 0.2}), {"patches:budget=8kB"});
     const float texel = finestTexel(box);
     for (int view = 0; view < 6; ++view) {
         SCOPED_TRACE(viewImageName(view));
@@ -89,7 +89,7 @@ TEST(ViewImage, ShowsABox) {
 TEST(ViewImage, ShowsABall) {
     const glm::dvec3 center(0.2, 0.1, -0.3);
     constexpr double kRadius = 0.9;
-    const Collider ball = bakeSpecs(makeIcosphere(center, kRadius, 5), {"patches:bytes=60kB"});
+    const Collider ball = bakeSpecs(makeIcosphere(center, kRadius, 5), {"patches:budget=60kB"});
     const double texel = finestTexel(ball);
     for (int view = 0; view < 6; ++view) {
         SCOPED_TRACE(viewImageName(view));
@@ -123,8 +123,8 @@ TEST(ViewImage, ShowsABall) {
 TEST(ViewImage, ShowsTheFieldFromOppositeSides) {
     const TriangleMesh bunny = required(importMesh("/usr/share/glmark2/models/bunny.obj"));
     for (const std::vector<std::string>& specs :
-         {std::vector<std::string>{"patches:bytes=40kB"},
-          {"patches:bytes=20kB", "front-back:dir=-y,size=32,decode=plane"}}) {
+         {std::vector<std::string>{"patches:budget=40kB"},
+          {"patches:budget=20kB", "front-back:dir=-y,size=32,decode=plane"}}) {
         const Collider collider = bakeSpecs(bunny, specs);
         const float longest = collider.bounds.longestSide();
         for (int axis = 0; axis < 3; ++axis) {
@@ -170,7 +170,7 @@ TEST(ViewImage, ShowsTheFieldFromOppositeSides) {
 TEST(ViewImage, ShowsTinyAndHugeColliders) {
     for (const double scale : {1e-12, 1e12}) {
         const Collider box =
-            bakeSpecs(makeBoxMesh({0, 0, 0}, scale * glm::dvec3(1.0, 0.01, 1.0)), {"patches:bytes=4kB"});
+            bakeSpecs(makeBoxMesh({0, 0, 0}, scale * glm::dvec3(1.0, 0.01, 1.0)), {"patches:budget=4kB"});
         const View image(box, 0, 16);
         EXPECT_EQ(image.grid.height, 2U);
         EXPECT_EQ(image.grid.width, 16U);

@@ -17,9 +17,9 @@ TEST_P(HybridGlTest, PatchesBesideOtherMapsMatchTheCpu) {
         test::joined({test::makeTorusMesh(1.0, 0.35, 96, 48), test::makeIcosphere({0, 0, 0.9}, 0.3, 4),
                       test::makeBoxMesh({0.1, 0.2, -0.9}, {0.9, 0.3, 0.2}, turn)});
     const std::vector<std::vector<std::string>> bakes = {
-        {"patches:bytes=60kB", "front-back:dir=-z,size=64"},
-        {"cube:size=32", "patches:bytes=200kB"},
-        {"front-back:dir=-x,size=48,decode=plane", "patches:bytes=100kB", "cube:size=24,decode=plane",
+        {"patches:budget=60kB", "front-back:dir=-z,size=64"},
+        {"cube:size=32", "patches:budget=200kB"},
+        {"front-back:dir=-x,size=48,decode=plane", "patches:budget=100kB", "cube:size=24,decode=plane",
          "fixed8:dir=0.3/-1/0.2,size=40"},
     };
     for (const std::vector<std::string>& specs : bakes) {

@@ -260,10 +260,10 @@ TEST(MaterialTree, SingleMaterialNeedsNoTree) {
     request.no_check = true;
     const TriangleMesh named = halves("a", "b");
     const Collider kept = bake(request, {}, named)->baked.collider;
-    request.materials = MaterialsAs::kNone;
+    request.materials = MaterialsAs::kDrop;
     const Collider none = bake(request, {}, named)->baked.collider;
     EXPECT_EQ(kept.materials.list.size(), 2U);
-    EXPECT_NEAR(double{kept.materials.list[0].area_share}, 0.5, 1e-6);
+    EXPECT_NEAR(double{kept.materials.list[0].area_fraction}, 0.5, 1e-6);
     EXPECT_EQ(none.materials, Materials());
     EXPECT_EQ(kept.maps, none.maps);
     // On request, a single material is also kept: levels distinguish meshes by material name.

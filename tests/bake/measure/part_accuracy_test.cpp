@@ -49,7 +49,7 @@ TEST(PartAccuracy, MissingPillarIsLostDespiteItsSmallArea) {
     ASSERT_EQ(shape.parts.parts.size(), 2U);
 
     const PartsAccuracy right = measured(shape, fieldOfBoxes({slab.bounds, pillar.bounds}));
-    EXPECT_EQ(right.countOf(PartVerdict::kHeld), 2U);
+    EXPECT_EQ(right.countOf(PartVerdict::kKept), 2U);
     EXPECT_LE(right.parts[0].wrong.total(),
               0.3);  // floats near 900 m resolve a 700th of the points' distance
 
@@ -63,15 +63,15 @@ TEST(PartAccuracy, MissingPillarIsLostDespiteItsSmallArea) {
     EXPECT_NEAR(worst.sigma, 0.005 * 9.0, 1e-6);
 
     PartOptions options;
-    options.detail = 9.5;
+    options.min_part = 9.5;
     const PartsAccuracy coarse = measured(shape, fieldOfBoxes({slab.bounds}), options);
-    EXPECT_EQ(coarse.countOf(PartVerdict::kLost), 0U) << "smaller than the detail";
+    EXPECT_EQ(coarse.countOf(PartVerdict::kLost), 0U) << "smaller than `min_part`";
     EXPECT_EQ(coarse.countOf(PartVerdict::kMinor), 1U);
     EXPECT_EQ(coarse.ignored.lost, 1U);
     EXPECT_EQ(coarse.ignored.size, 9.0);
-    EXPECT_NEAR(defaultDetail(shape.parts, ""), 0.01 * std::sqrt(2.0) * 5000.0, 0.01);
-    EXPECT_DOUBLE_EQ(defaultDetail(shape.parts, "m"), 0.1);
-    EXPECT_DOUBLE_EQ(defaultDetail(shape.parts, "m", 100.0), 0.001);
+    EXPECT_NEAR(defaultMinPart(shape.parts, ""), 0.01 * std::sqrt(2.0) * 5000.0, 0.01);
+    EXPECT_DOUBLE_EQ(defaultMinPart(shape.parts, "m"), 0.1);
+    EXPECT_DOUBLE_EQ(defaultMinPart(shape.parts, "m", 100.0), 0.001);
 
     // Filled as by a texel of 20 m.
     Bounds swollen = pillar.bounds;
@@ -126,7 +126,7 @@ TEST(PartAccuracy, ManySmallLostPartsMatter) {
         cubes.push_back(makeBoxMesh({i % 10, i / 10 % 10, i / 100}, glm::dvec3(0.04)));
     }
     const ShapedMesh shape = shaped(joined(cubes));
-    EXPECT_GT(defaultDetail(shape.parts, ""), 0.08);
+    EXPECT_GT(defaultMinPart(shape.parts, ""), 0.08);
     EXPECT_EQ(measured(shape, fieldOfBoxes({}), fewPoints()).countOf(PartVerdict::kLost), 200U);
     // A hundredth of the surface is missing, and half of the points near it are wrong.
     std::vector<Bounds> most;
@@ -136,11 +136,11 @@ TEST(PartAccuracy, ManySmallLostPartsMatter) {
     const PartsAccuracy few = measured(shape, fieldOfBoxes(most), fewPoints());
     EXPECT_EQ(few.countOf(PartVerdict::kLost), 0U);
     EXPECT_EQ(few.ignored.lost, 2U);
-    // An explicit detail overrides the default.
+    // An explicit `min_part` overrides the default.
     PartOptions options = fewPoints();
-    options.detail = 0.1;
+    options.min_part = 0.1;
     EXPECT_EQ(measured(shape, fieldOfBoxes({}), options).ignored.lost, 200U);
-    options.detail = 0.05;
+    options.min_part = 0.05;
     EXPECT_EQ(measured(shape, fieldOfBoxes(most), options).countOf(PartVerdict::kLost), 2U);
 }
 
@@ -227,7 +227,7 @@ TEST(PartAccuracy, PartsInsideOthersAreHidden) {
     const TriangleMesh outer = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0));
     const TriangleMesh sheet = moved(makePlane(0.1F, 2), [](const glm::dvec3& p) { return 0.5 * p; });
     const PartsAccuracy found = measured(shaped(joined({outer, sheet})), fieldOfBoxes({outer.bounds}));
-    EXPECT_EQ(found.countOf(PartVerdict::kHeld), 1U);
+    EXPECT_EQ(found.countOf(PartVerdict::kKept), 1U);
     EXPECT_EQ(found.countOf(PartVerdict::kHidden), 1U);
 }
 
@@ -244,9 +244,9 @@ TEST(PartAccuracy, ShellIsWrongBeyondItsThickness) {
     const Field baked = fieldOfBoxes({body.bounds, shell});
 
     PartOptions fine;
-    fine.detail = 0.01;
+    fine.min_part = 0.01;
     const PartsAccuracy asked = measured(shaped(mesh, {ShapeAs::kAuto, kThick, {}}), baked, fine);
-    EXPECT_EQ(asked.countOf(PartVerdict::kHeld), 2U);
+    EXPECT_EQ(asked.countOf(PartVerdict::kKept), 2U);
 
     const ShapedMesh by_default = shaped(mesh, {ShapeAs::kAuto, kThick, {}, true});
     EXPECT_DOUBLE_EQ(by_default.parts.parts[1].thickness, kThick);
@@ -263,7 +263,7 @@ TEST(PartAccuracy, ShellIsWrongBeyondItsThickness) {
     EXPECT_GT(absent.parts.front().wrong.false_outside, 40.0);
     shell.min.y = 8.0F - 0.005F;
     shell.max.y = 8.0F + 0.005F;
-    EXPECT_EQ(measured(by_default, fieldOfBoxes({body.bounds, shell}), fine).countOf(PartVerdict::kHeld), 2U);
+    EXPECT_EQ(measured(by_default, fieldOfBoxes({body.bounds, shell}), fine).countOf(PartVerdict::kKept), 2U);
 }
 
 TEST(PartAccuracy, DefaultThicknessDependsOnThePart) {
@@ -317,7 +317,7 @@ TEST(PartAccuracy, IsDeterministic) {
     };
     const PartsAccuracy all = measure();
     const PartsAccuracy again = onThreads(1, measure);
-    EXPECT_EQ(all.countOf(PartVerdict::kRest), 10U);
+    EXPECT_EQ(all.countOf(PartVerdict::kUnmeasured), 10U);
     ASSERT_EQ(all.parts.size(), again.parts.size());
     for (std::size_t i = 0; i < all.parts.size(); ++i) {
         EXPECT_EQ(all.parts[i].part, again.parts[i].part);

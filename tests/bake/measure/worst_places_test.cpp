@@ -62,7 +62,7 @@ TEST(WorstPlaces, AreWhereAMapIsCorrupted) {
         EXPECT_EQ(place.map, 1);
         EXPECT_GT(place.map_percent, 95.0);
         EXPECT_EQ(place.cause, WrongCause::kTexel) << wordOf(place.cause);
-        EXPECT_LT(place.inside_percent, 5.0);
+        EXPECT_LT(place.false_inside_percent, 5.0);
         EXPECT_NEAR(place.texel, texel, 1e-4);
         EXPECT_NEAR(double{place.position.x}, x, 5.0 * texel);
         EXPECT_NEAR(double{place.position.z}, z, 5.0 * texel);
@@ -75,7 +75,7 @@ TEST(WorstPlaces, AreWhereAMapIsCorrupted) {
                   5.0 * static_cast<double>(sound.places.empty() ? 0 : sound.places[0].points));
     }
     EXPECT_TRUE(above && below);
-    EXPECT_GT(found.places[0].share_percent + found.places[1].share_percent, 30.0);
+    EXPECT_GT(found.places[0].contribution_percent + found.places[1].contribution_percent, 30.0);
 }
 
 TEST(WorstPlaces, CoarseMapsCauseTexelErrorsDeterministically) {
@@ -108,7 +108,7 @@ TEST(WorstPlaces, UnseenCavityIsFixedByACube) {
     for (const WorstPlace& place : found.places) {
         EXPECT_EQ(place.cause, WrongCause::kUnseen) << wordOf(place.cause);
         // The exceptions are texels fitted to the cavity, which are wrong in front of it.
-        EXPECT_GT(place.inside_percent, 60.0);
+        EXPECT_GT(place.false_inside_percent, 60.0);
         EXPECT_NEAR(double{glm::length(place.position - glm::vec3(0.2F, 0.0F, 0.0F))}, 0.5, 0.05);
     }
     specs.push_back(std::string("cube:compare=less,size=64,box=-0.4/-0.6/-0.6/0.8/0.6/0.6,decode=plane"));
@@ -129,7 +129,7 @@ TEST(WorstPlaces, PlateCausesSilhouetteErrors) {
     ASSERT_FALSE(found.places.empty());
     EXPECT_EQ(found.places[0].cause, WrongCause::kSilhouette) << wordOf(found.places[0].cause);
     EXPECT_EQ(found.places[0].map, 0);
-    EXPECT_GT(found.places[0].inside_percent, 95.0);
+    EXPECT_GT(found.places[0].false_inside_percent, 95.0);
     EXPECT_NEAR(double{found.places[0].position.y}, 0.01, 0.011);
 }
 

@@ -150,7 +150,7 @@ TEST(RecordedBake, IsOneShellCommand) {
     for (const char* options :
          {"--unit $(reboot)", "--prefer ;reboot", "`reboot` x", "--unit mm;reboot", "--up '+z",
           "--map cube:size=6|reboot", "--unit \"mm\"", "x > file", "--unit a\tb\\", "--unit ~/x",
-          "--unit \xff", "--time-limit 5", "--threads 7", "--from the=future", "--map cube:size=many",
+          "--unit \xff", "--timeout 5", "--threads 7", "--from the=future", "--map cube:size=many",
           "--repair magic", "--as wall", "--thickness -1", "--quality"}) {
         EXPECT_EQ(wordsOf(options), "") << options;
         EXPECT_FALSE(recorded(options).understood) << options;
@@ -214,7 +214,7 @@ TEST(RecordedBake, RecordsWhetherVoidsAreFilled) {
         return required(check(check_request, std::move(collider), makeRooms())).shape.voids;
     };
     EXPECT_EQ(checkedVoids({}, false), 1U);
-    EXPECT_EQ(checkedVoids(VoidsAs::kHollow, false), 0U);
+    EXPECT_EQ(checkedVoids(VoidsAs::kKeep, false), 0U);
     EXPECT_EQ(checkedVoids({}, true), 0U);  // baked by an older version
 }
 

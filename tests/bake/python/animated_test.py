@@ -24,7 +24,7 @@ time = { dt = 0.015625 }
 particles = { capacity = 2048 }
 forces = { gravity = [0, -2, 0], drag = 0 }
 ground = { enabled = false }
-collider = { file = "tool.relief", play = { clip = "rise", repeat = false, resolution = 128 } }
+collider = { file = "tool.relief", play = { clip = "rise", loop = false, resolution = 128 } }
 emitter = { box_min = [-0.8, 1.1, -0.8], box_max = [0.8, 1.6, 0.8], burst = 1000, rate = 0, lifetime = 50, velocity = [0, 0, 0], velocity_spread = [0, 0, 0] }
 """)
     with relief.Simulation(tmp_path / "scene.toml") as simulation:

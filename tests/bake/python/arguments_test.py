@@ -36,8 +36,8 @@ def test_unknown_arguments_suggest_the_nearest_one(collider, scene):
         (lambda: relief.bake(VERTICES, TRIANGLES, zzz=1), r"bake\(\) has no argument 'zzz'; see help\(relief.bake\)"),
         (lambda: relief.check(collider, VERTICES, TRIANGLES, sample=5), r"check\(\) .*'sample'; did you mean 'samples'"),
         (lambda: collider.query(VERTICES, distances="plane"), r"query\(\) .*did you mean 'distance'"),
-        (lambda: collider.save("x.relief", compress=3), r"save\(\) .*did you mean 'compression'"),
-        (lambda: collider.to_bytes(compress=3), r"to_bytes\(\) .*did you mean 'compression'"),
+        (lambda: collider.save("x.relief", compression=3), r"save\(\) .*did you mean 'compress'"),
+        (lambda: collider.to_bytes(compression=3), r"to_bytes\(\) .*did you mean 'compress'"),
         (lambda: relief.Simulation(scene, sed=1), r"Simulation\(\) .*did you mean 'seed'"),
         (lambda: relief.World(paht="w"), r"World\(\) .*did you mean 'path'"),
         (lambda: relief.load(sauce="x"), r"load\(\) .*did you mean 'source'"),
@@ -157,7 +157,7 @@ def test_colliders_can_be_pickled_and_copied(collider):
 @pytest.mark.parametrize("compression", [-1, 20, 1.5, float("nan"), 2**70])
 def test_invalid_compression_levels(compression, collider, tmp_path):
     for write in (lambda: collider.save(tmp_path / "x.relief", compression), lambda: collider.to_bytes(compression)):
-        with pytest.raises(ValueError, match="^compression is .* but must be a whole number from 0 to 19$"):
+        with pytest.raises(ValueError, match="^compress is .* but must be a whole number from 0 to 19$"):
             write()
     assert not (tmp_path / "x.relief").exists()
 

@@ -43,9 +43,9 @@ WAYS = [
     (dict(PATCHES, as_=["sheet=terrain", "box=solid"]), ["--budget", "60kB", "--as", "sheet=terrain", "--as", "box=solid"]),
     (dict(holes="keep", resolution=32), ["--holes", "keep", "--resolution", "32"]),
     (dict(PATCHES, repair="wrap=0.1", strict=True), ["--budget", "60kB", "--repair", "wrap=0.1", "--strict"]),
-    (dict(PATCHES, unit="mm", up="+z", import_memory="1GB", import_time=9, max_triangles=100, time_limit=500),
-     ["--budget", "60kB", "--unit", "mm", "--up", "+z", "--import-memory", "1GB", "--import-time", "9", "--max-triangles", "100",
-      "--time-limit", "500"]),
+    (dict(PATCHES, unit="mm", up="+z", max_import_memory="1GB", import_timeout=9, max_triangles=100, timeout=500),
+     ["--budget", "60kB", "--unit", "mm", "--up", "+z", "--max-import-memory", "1GB", "--import-timeout", "9", "--max-triangles", "100",
+      "--timeout", "500"]),
     (dict(max_error="20%", budget="1MB"), ["--max-error", "20", "--budget", "1MB"]),
     (dict(paper=True, resolution=32), ["--paper", "--resolution", "32"]),
     (dict(maps="cube:size=32"), ["--map", "cube:size=32"]),
@@ -128,8 +128,8 @@ def test_arrays_match_their_file(mesh):
     assert relief.check(collider, vertices, triangles, samples=2000).wrong_percent < 5
 
 
-CHECKS = [dict(samples=3000), dict(samples=3000, detail=0.5),
-          dict(samples=3000, unit="mm", up="+z", import_memory="1GB", import_time=9, max_triangles=100, hidden="keep")]
+CHECKS = [dict(samples=3000), dict(samples=3000, min_part=0.5),
+          dict(samples=3000, unit="mm", up="+z", max_import_memory="1GB", import_timeout=9, max_triangles=100, hidden="keep")]
 
 
 @pytest.mark.parametrize("bake,arguments", [({}, arguments) for arguments in CHECKS] + [
@@ -151,12 +151,12 @@ def test_checks_match_the_tool(bake, arguments, mesh, tmp_path):
     assert accuracy.wrong_percent == pytest.approx(said["verdict"]["wrong_percent"], abs=1e-12)
     assert (accuracy.grade, accuracy.lost_parts) == (said["verdict"]["grade"], said["verdict"]["lost_parts"])
     ignored = said["verdict"]["ignored_parts"]
-    assert accuracy.ignored_parts == ignored["lost"] + ignored["thick"]
-    assert len(accuracy.places) == len(said["worst_places"])
-    for place, other in zip(accuracy.places, said["worst_places"]):
+    assert accuracy.ignored_parts == ignored["lost"] + ignored["thickened"]
+    assert len(accuracy.worst_places) == len(said["worst_places"])
+    for place, other in zip(accuracy.worst_places, said["worst_places"]):
         assert place.position == pytest.approx(other["position"], abs=1e-6)
         assert (place.cause, place.map) == (other["cause"], other["map"])
-        assert place.share_percent == pytest.approx(other["share_percent"])
+        assert place.contribution_percent == pytest.approx(other["contribution_percent"])
     assert [str(one.message) for one in caught] == said["warnings"]
 
 
@@ -190,9 +190,9 @@ def test_type_errors_name_the_argument(arguments):
         relief.bake(np.eye(3), [[0, 1, 2]], **arguments)
 
 
-def test_time_limit(mesh):
-    with pytest.raises(relief.LimitError, match="time_limit"):
-        relief.bake(mesh, budget="64MB", quality="best", time_limit=0.05)
+def test_timeout(mesh):
+    with pytest.raises(relief.LimitError, match="timeout"):
+        relief.bake(mesh, budget="64MB", quality="best", timeout=0.05)
     with pytest.raises(relief.UsageError, match="^unit applies only to a mesh read from a file"):
         relief.bake(np.eye(3), [[0, 1, 2]], unit="mm")
     with pytest.raises(relief.UsageError, match="NAME=KIND applies only to a mesh read from a file"):

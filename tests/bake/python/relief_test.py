@@ -62,7 +62,7 @@ def test_sphere():
     along = np.sum(normal[near] * points[near] / radius[near, None], axis=1)
     assert np.quantile(along, 0.01) > 0.99
     accuracy = relief.check(collider, *sphere(), samples=20_000)
-    assert accuracy.wrong_percent < 0.5 and accuracy.distance_mean < 0.003
+    assert accuracy.wrong_percent < 0.5 and accuracy.distance_error_mean < 0.003
 
 
 def test_queries_match_relief_query(bunny, tmp_path):
@@ -83,7 +83,7 @@ def test_queries_match_relief_query(bunny, tmp_path):
 def test_files_equal_bytes(bunny, tmp_path):
     collider = relief.load(bunny)
     collider.save(tmp_path / "plain.relief")
-    collider.save(tmp_path / "packed.relief", compression=19)
+    collider.save(tmp_path / "packed.relief", compress=19)
     assert (tmp_path / "plain.relief").read_bytes() == bunny.read_bytes()
     assert (tmp_path / "packed.relief").stat().st_size < bunny.stat().st_size
     points = random_points(1000)
@@ -110,7 +110,7 @@ def test_maps_are_arrays():
 
 
 def test_patches_have_a_tree_but_no_depths(tmp_path):
-    one = relief.bake(*sphere(24, 24), maps="patches:bytes=8kB").maps[0]
+    one = relief.bake(*sphere(24, 24), maps="patches:budget=8kB").maps[0]
     assert one.format == "patches" and one.texels.dtype == np.uint16 and one.texels.shape == (1, one.height, one.width, 4)
     roots = one.texels[0, 0, 0, :3].astype(int)
     # The first texels are the header and the root records. At least one root must contain a part of the sphere.

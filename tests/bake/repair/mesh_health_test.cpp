@@ -73,7 +73,7 @@ TEST(MeshHealth, EveryFaultIsCounted) {
         expectError(requireSolid(health, "open.obj"), ErrorCode::kInvalidInput, words);
     }
     // Triangle 4, 7, 6 is missing. Among its edges, 4–6 has the lowest vertices.
-    EXPECT_EQ(health.first_fault->at, glm::vec3(-0.5F, 0.0F, 0.5F));
+    EXPECT_EQ(health.first_fault->position, glm::vec3(-0.5F, 0.0F, 0.5F));
 
     TriangleMesh turned = unitBox({0, 0, 0});
     std::swap(turned.triangles[3].y, turned.triangles[3].z);
@@ -98,7 +98,7 @@ TEST(MeshHealth, EveryFaultIsCounted) {
     EXPECT_EQ(health.nonmanifold_edges, 0U);
     EXPECT_EQ(health.nonmanifold_vertices, 1U);
     EXPECT_EQ(health.components, 2U);
-    EXPECT_EQ(health.first_fault->at, glm::vec3(0.5F));
+    EXPECT_EQ(health.first_fault->position, glm::vec3(0.5F));
 
     health = inspectMesh(reversed(unitBox({0, 0, 0})));
     EXPECT_TRUE(health.inside_out);

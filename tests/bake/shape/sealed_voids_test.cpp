@@ -99,7 +99,7 @@ TEST(SealedVoid, IsFilled) {
 TEST(SealedVoid, HasNoWindowAndCanStayHollow) {
     EXPECT_TRUE(isFull(makeRooms()));
     EXPECT_FALSE(isFull(makeRooms(0.08)));
-    EXPECT_FALSE(isFull(makeRooms(), {.voids = VoidsAs::kHollow}));
+    EXPECT_FALSE(isFull(makeRooms(), {.voids = VoidsAs::kKeep}));
     EXPECT_FALSE(isFull(makeRooms(), {.as = ShapeAs::kShell}));
 }
 

@@ -354,8 +354,8 @@ TEST(Shape, WallThatMayBeAClothedBodyIsReported) {
         expectKinds(report, 1, 1, 0, 0);
         const ShapeReport alone = shaped(joined({inner, outer})).report;
         expectKinds(alone, 0, 1, 0, 0);
-        EXPECT_EQ(alone.unclear_walls, report.unclear_walls);
-        return alone.unclear_walls;
+        EXPECT_EQ(alone.ambiguous_walls, report.ambiguous_walls);
+        return alone.ambiguous_walls;
     };
     EXPECT_EQ(unclear(jacket, torso), 1U);
     EXPECT_EQ(unclear(reversed(jacket), reversed(torso)), 1U);
@@ -364,7 +364,7 @@ TEST(Shape, WallThatMayBeAClothedBodyIsReported) {
     EXPECT_EQ(unclear(reversed(jacket), torso), 0U);
     const ShapedMesh solid = shaped(joined({torso, jacket}), ShapeAs::kSolid);
     expectKinds(solid.report, 0, 2, 0, 0);
-    EXPECT_EQ(solid.report.unclear_walls, 0U);
+    EXPECT_EQ(solid.report.ambiguous_walls, 0U);
     EXPECT_TRUE(queryOf(solid.mesh).inside({0.0F, 0.5F, 0.0F}));
 }
 

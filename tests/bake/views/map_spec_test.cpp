@@ -9,18 +9,18 @@ namespace relief {
 namespace {
 
 TEST(MapSpec, PatchesHaveOnlyBytes) {
-    const MapSpec spec = required(parseMapSpec("patches:bytes=250kB", kPaperDefaults));
+    const MapSpec spec = required(parseMapSpec("patches:budget=250kB", kPaperDefaults));
     EXPECT_EQ(spec.format, MapFormat::kPatches);
     EXPECT_EQ(spec.bytes, 250'000U);
     EXPECT_EQ(spec.decode, Decode::kPlane);
-    EXPECT_EQ(toString(spec), "patches:bytes=250000");
+    EXPECT_EQ(toString(spec), "patches:budget=250000");
     EXPECT_EQ(*parseMapSpec(toString(spec)), spec);
     EXPECT_EQ(toString(*parseMapSpec("patches")), "patches");
-    EXPECT_EQ(toString(*parseMapSpec("patches:texel=0.01,bytes=1MB")), "patches:bytes=1000000,texel=0.01");
+    EXPECT_EQ(toString(*parseMapSpec("patches:texel=0.01,budget=1MB")), "patches:budget=1000000,texel=0.01");
     for (const char* wrong :
          {"patches:size=64", "patches:dir=+x", "patches:decode=plane", "patches:box=tight",
-          "patches:bytes=1023", "patches:bytes=1GB", "patches:bytes=many", "patches:texel=0", "cube:texel=1",
-          "cube:bytes=1MB", "front-back:bytes=1MB"}) {
+          "patches:budget=1023", "patches:budget=1GB", "patches:budget=many", "patches:texel=0",
+          "cube:texel=1", "cube:budget=1MB", "front-back:budget=1MB"}) {
         SCOPED_TRACE(wrong);
         expectError(parseMapSpec(wrong), ErrorCode::kUsage);
     }

@@ -27,7 +27,7 @@ TEST_F(WorldCheck, AdvisesNoBudgetIfFloatsAreTooCoarse) {
     const WorldField field = load("w");
     const WorldAccuracy accuracy = check(field, 10'000);
     EXPECT_GT(accuracy.all.total(), 5.0);
-    EXPECT_EQ(accuracy.places.front().cause, WorldCause::kFloats);
+    EXPECT_EQ(accuracy.places.front().cause, WorldCause::kPrecision);
     const std::string& warning = baked.colliders.front().warnings.back();
     for (const std::string& text : {worldCheckText(field, "w", &accuracy), warning}) {
         EXPECT_EQ(text.find("--budget"), std::string::npos) << text;

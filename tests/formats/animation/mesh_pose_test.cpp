@@ -101,7 +101,7 @@ TEST(MeshPose, BoundsContainEveryVertexAtEveryTime) {
             }
             EXPECT_TRUE(glm::all(glm::lessThanEqual(box.min, exact.min + 1e-6F))) << t;
             EXPECT_TRUE(glm::all(glm::greaterThanEqual(box.max, exact.max - 1e-6F))) << t;
-            EXPECT_TRUE(glm::all(glm::lessThanEqual(box.size(), extent.room))) << t;
+            EXPECT_TRUE(glm::all(glm::lessThanEqual(box.size(), extent.box_size))) << t;
             EXPECT_LE(box.longestSide(), 1.4F * exact.longestSide()) << t;
         }
     }
@@ -121,8 +121,8 @@ TEST(MeshPose, RoomContainsFastRotations) {
     }
     mesh.clips[1].seconds = 1.0F;
     ASSERT_TRUE(validate(mesh)) << validate(mesh).error().message;
-    EXPECT_GE(poseExtent(mesh).room.x, 2.0F * std::sqrt(2.0F));
-    EXPECT_LE(poseExtent(mesh).room.x, 2.0F * std::sqrt(2.0F) * 1.021F);
+    EXPECT_GE(poseExtent(mesh).box_size.x, 2.0F * std::sqrt(2.0F));
+    EXPECT_LE(poseExtent(mesh).box_size.x, 2.0F * std::sqrt(2.0F) * 1.021F);
     EXPECT_TRUE(isCyclic(mesh, mesh.clips[1]));
     EXPECT_FALSE(isCyclic(mesh, mesh.clips[0]));
 }
@@ -133,7 +133,7 @@ TEST(MeshPose, LongIdleClipsAreFast) {
     mesh.clips[0].seconds = kClipSecondsMax;
     mesh.clips[0].channels[0].times = {0.0F, 1.0F, kClipSecondsMax};
     ASSERT_TRUE(validate(mesh)) << validate(mesh).error().message;
-    EXPECT_GT(poseExtent(mesh).room.x, 1.0F);
+    EXPECT_GT(poseExtent(mesh).box_size.x, 1.0F);
 }
 
 /// Assigns the second of two materials to every third triangle.

@@ -428,7 +428,7 @@ TEST(Single, StatesWhyItRejectsAContainer) {
 
     std::vector<std::byte> version_3 = test::written(collider);
     version_3[12] = std::byte{3};
-    EXPECT_EQ(Single(version_3).status, RELIEF_OTHER_VERSION);
+    EXPECT_EQ(Single(version_3).status, RELIEF_WRONG_VERSION);
 
     std::vector<std::byte> later_minor = test::written(collider);
     later_minor[14] = std::byte{7};

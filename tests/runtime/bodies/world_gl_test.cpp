@@ -173,7 +173,7 @@ TEST_P(WorldGlTest, ParticlesMatchThoseOfTestingEveryBody) {
                 textures_->reach(kEverywhere);
             }
             std::vector<ParticleType> types(2, {.radius = balls ? 0.05F : 0.0F, .restitution = 0.5F});
-            types[1].collides = 4U | kCollidesWithGround;
+            types[1].collides_with = 4U | kCollidesWithGround;
             ASSERT_TRUE(particles_->setTypes(types));
             ASSERT_TRUE(particles_->setSweep(balls ? 0.0F : 0.05F));
             Pcg32 births(8);

@@ -33,20 +33,20 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 const std::set<std::pair<std::string, std::string>> kMayBeNull{
     {"relief_collider_free", "collider"},    {"relief_textures_free", "textures"},
-    {"relief_particles_free", "particles"},  {"relief_picture_free", "picture"},
+    {"relief_particles_free", "particles"},  {"relief_renderer_free", "renderer"},
     {"relief_particles_create", "textures"}, {"relief_particles_create", "options"},
-    {"relief_picture_draw", "options"},      {"relief_world_free", "world"},
-    {"relief_animation_free", "animation"},  {"relief_world_add", "room"},
+    {"relief_renderer_draw", "options"},     {"relief_world_free", "world"},
+    {"relief_animation_free", "animation"},  {"relief_world_add", "box_size"},
     {"relief_emitter_free", "emitter"},      {"relief_emitter_create", "group"},
     {"relief_emitter_create", "material"},   {"relief_emitter_create_on", "material"},
 };
 const std::set<std::string> kNeedContext{
-    "relief_particles_create",   "relief_particles_free",  "relief_particles_read",
-    "relief_particles_set",      "relief_particles_step",  "relief_picture_create",
-    "relief_picture_draw",       "relief_picture_free",    "relief_textures_attach",
-    "relief_textures_bind",      "relief_textures_create", "relief_textures_create_world",
-    "relief_textures_free",      "relief_textures_play",   "relief_textures_set_joints",
-    "relief_textures_set_poses", "relief_textures_stream", "relief_textures_stream_world",
+    "relief_particles_create",   "relief_particles_free",    "relief_particles_read",
+    "relief_particles_set",      "relief_particles_step",    "relief_renderer_create",
+    "relief_renderer_draw",      "relief_renderer_free",     "relief_textures_attach",
+    "relief_textures_bind",      "relief_textures_create",   "relief_textures_create_world",
+    "relief_textures_free",      "relief_textures_set_clip", "relief_textures_set_joints",
+    "relief_textures_set_poses", "relief_textures_stream",   "relief_textures_stream_world",
 };
 
 class CApi : public testing::Test {
@@ -194,7 +194,7 @@ TEST_F(CApi, EveryNumberOfEveryStructureIsValidated) {
             std::byte* bytes = stage_.structure(structure.name);
             ASSERT_NE(bytes, nullptr) << structure.name;
             const std::string& given = function.arguments[i].name;
-            const bool one_of_many = given == "births" || given == "poses" || given == "balls";
+            const bool one_of_many = given == "births" || given == "poses" || given == "spheres";
             for (const Field& field : structure.fields) {
                 for (std::size_t k = 0; field.name != "size" && k < field.count; ++k) {
                     std::byte* number = bytes + field.offset + k * field.bytes;
@@ -315,7 +315,7 @@ TEST_F(CApi, FailuresKeepTheirFirstCause) {
     EXPECT_EQ(particles, nullptr) << "these particles would collide with nothing";
     EXPECT_EQ(relief_particles_spawn(particles, stage_.births, kItems), 0U);
     EXPECT_EQ(relief_particles_step(particles, 0.01F), -1);
-    EXPECT_EQ(relief_picture_create(textures, collider), nullptr);
+    EXPECT_EQ(relief_renderer_create(textures, collider), nullptr);
     EXPECT_EQ(relief_error(), cause);
 
     // After the error was read, NULL is valid again.
@@ -339,11 +339,11 @@ TEST_F(CApi, FailuresKeepTheirFirstCause) {
     relief_particles_free(particles);
 }
 
-// Particles and pictures keep their dependencies alive: with freed collider and textures, results are bit-identical.
+// Particles and renderers keep their dependencies alive: with freed collider and textures, results are bit-identical.
 TEST_F(CApi, ObjectsMayBeFreedInAnyOrder) {
     relief_textures* doomed = relief_textures_create(stage_.collider);
     relief_particles* orphan = relief_particles_create(doomed, &stage_.options);
-    relief_picture* shown = relief_picture_create(doomed, stage_.collider);
+    relief_renderer* shown = relief_renderer_create(doomed, stage_.collider);
     ASSERT_TRUE(orphan != nullptr && shown != nullptr) << relief_error();
     relief_textures_free(doomed);
     relief_collider_free(stage_.collider);
@@ -365,8 +365,8 @@ TEST_F(CApi, ObjectsMayBeFreedInAnyOrder) {
         ASSERT_EQ(relief_particles_read(particles, states[which], kItems), static_cast<std::int64_t>(kItems));
         glBindFramebuffer(GL_FRAMEBUFFER, stage_.view.framebuffer);
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-        ASSERT_EQ(relief_picture_draw(which == 0 ? stage_.picture : shown, particles, nullptr, &stage_.view),
-                  0);
+        ASSERT_EQ(
+            relief_renderer_draw(which == 0 ? stage_.renderer : shown, particles, nullptr, &stage_.view), 0);
         glReadPixels(0, 0, 16, 16, GL_RGBA, GL_UNSIGNED_BYTE, pixels[static_cast<std::size_t>(which)].data());
     }
     EXPECT_EQ(std::memcmp(states[0], states[1], sizeof(states[0])), 0);
@@ -377,7 +377,7 @@ TEST_F(CApi, ObjectsMayBeFreedInAnyOrder) {
     }
     relief_collider_free(flat);
     relief_particles_free(orphan);
-    relief_picture_free(shown);
+    relief_renderer_free(shown);
     stage_.revive();
 }
 
@@ -457,7 +457,7 @@ TEST_F(CApi, WorldsMatchTheirBodies) {
 TEST_F(CApi, AnimatedCollidersPlayClips) {
     ASSERT_EQ(relief_animation_clip_count(stage_.animation), 2U);
     EXPECT_STREQ(relief_animation_clip_name(stage_.animation, 0), "bend");
-    EXPECT_EQ(relief_animation_clip_seconds(stage_.animation, 0), 2.0F);
+    EXPECT_EQ(relief_animation_clip_duration(stage_.animation, 0), 2.0F);
     EXPECT_EQ(relief_animation_joint_count(stage_.animation), 2U);
     EXPECT_STREQ(relief_animation_joint_name(stage_.animation, 1), "middle");
     EXPECT_EQ(relief_animation_weight_count(stage_.animation), 1U);
@@ -488,7 +488,7 @@ TEST_F(CApi, AnimatedCollidersPlayClips) {
     double time = 0.0;
     for (int step = 0; step < 60; ++step) {
         time += 1.0 / 60.0;
-        ASSERT_EQ(relief_textures_play(textures, body, "bend", time), 0) << relief_error();
+        ASSERT_EQ(relief_textures_set_clip(textures, body, "bend", time), 0) << relief_error();
         ASSERT_EQ(relief_textures_set_poses(textures, nullptr, nullptr, 0), 0) << relief_error();
         ASSERT_EQ(relief_particles_step(particles, 1.0F / 60.0F), 0) << relief_error();
     }
@@ -498,8 +498,8 @@ TEST_F(CApi, AnimatedCollidersPlayClips) {
     EXPECT_GT(std::ranges::count_if(states, [](const relief_particle& one) { return one.collisions > 0; }),
               200);
 
-    EXPECT_EQ(relief_textures_play(textures, 0, "bend", 0.0), -1) << "a box has no clips";
-    EXPECT_EQ(relief_textures_play(textures, body, "run", 0.0), -1);
+    EXPECT_EQ(relief_textures_set_clip(textures, 0, "bend", 0.0), -1) << "a box has no clips";
+    EXPECT_EQ(relief_textures_set_clip(textures, body, "run", 0.0), -1);
     EXPECT_EQ(relief_textures_set_joints(textures, body, stage_.matrices, 1, stage_.weights, 1), -1);
     stage_.matrices[0] = 50.0F;
     EXPECT_EQ(relief_textures_set_joints(textures, body, stage_.matrices, 2, stage_.weights, 1), -1);
@@ -511,7 +511,7 @@ TEST_F(CApi, AnimatedCollidersPlayClips) {
     relief_textures_free(textures);
 }
 
-// A collider is uploaded when a ball reaches it. A missing one is reported once.
+// A collider is uploaded when a sphere reaches it. A missing one is reported once.
 TEST_F(CApi, WorldsAreStreamed) {
     std::mt19937 random(5);
     const test::TemporaryFolder folder;
@@ -537,22 +537,22 @@ TEST_F(CApi, WorldsAreStreamed) {
 
     relief_textures* textures = relief_textures_stream_world(path.c_str(), 1U << 20U);
     ASSERT_NE(textures, nullptr) << relief_error();
-    relief_ball ball{{10.0F, 0.0F, 0.0F}, 1.0F};
-    EXPECT_EQ(relief_textures_stream(textures, &ball, 1, 1), 0);
+    relief_sphere sphere{{10.0F, 0.0F, 0.0F}, 1.0F};
+    EXPECT_EQ(relief_textures_stream(textures, &sphere, 1, 1), 0);
     EXPECT_STREQ(relief_textures_warning(textures), "");
-    ball.radius = 30.0F;
-    EXPECT_EQ(relief_textures_stream(textures, &ball, 1, 1), 1);
+    sphere.radius = 30.0F;
+    EXPECT_EQ(relief_textures_stream(textures, &sphere, 1, 1), 1);
     EXPECT_NE(std::string(relief_textures_warning(textures)).find("fine 1"), std::string::npos);
     EXPECT_STREQ(relief_textures_warning(textures), "");
-    EXPECT_EQ(relief_textures_stream(textures, &ball, 1, 0), 1);
+    EXPECT_EQ(relief_textures_stream(textures, &sphere, 1, 0), 1);
     const std::uint32_t body = 1;
     EXPECT_EQ(relief_textures_set_poses(textures, &body, stage_.poses, 1), 0) << relief_error();
     relief_particles* particles = relief_particles_create(textures, &stage_.options);
     EXPECT_EQ(relief_particles_step(particles, 0.01F), 0) << relief_error();
     relief_particles_free(particles);
     relief_textures_free(textures);
-    ball.radius = 0.0F;
-    EXPECT_EQ(relief_textures_stream(stage_.world_textures, &ball, 1, 0), -1);
+    sphere.radius = 0.0F;
+    EXPECT_EQ(relief_textures_stream(stage_.world_textures, &sphere, 1, 0), -1);
     EXPECT_EQ(relief_textures_stream_world(path.c_str(), 0), nullptr);
     EXPECT_EQ(relief_textures_stream_world(path.c_str(), 64), nullptr);
 }
@@ -568,7 +568,7 @@ TEST_F(CApi, InvalidPosesAndWorldsAreRejected) {
     stage_.poses[kWrong].rotation[1] = 0.9F;
     refused(stage_.world_textures, "poses[2].rotation");
     refused(stage_.textures, "single collider");
-    EXPECT_EQ(relief_picture_create(stage_.world_textures, stage_.collider), nullptr);
+    EXPECT_EQ(relief_renderer_create(stage_.world_textures, stage_.collider), nullptr);
     EXPECT_EQ(relief_world_load("no such world.json"), nullptr);
     EXPECT_EQ(relief_world_load(stage_.good<const char*>("path")), nullptr) << "a container is not a world";
 }

@@ -43,7 +43,8 @@ TEST_F(CApiEmitter, BirthsLieOnAnAnimatedCollider) {
     for (int step = 0; step <= 5; ++step) {
         const double time = double{kDt} * step;
         const relief_pose place{{static_cast<float>(2.0 * time), 0.0F, 0.0F}, {0.0F, 0.0F, 0.0F, 1.0F}};
-        ASSERT_EQ(relief_textures_play(stage_.animated_textures, body, "bend", time), 0) << relief_error();
+        ASSERT_EQ(relief_textures_set_clip(stage_.animated_textures, body, "bend", time), 0)
+            << relief_error();
         ASSERT_EQ(relief_textures_set_poses(stage_.animated_textures, &body, &place, 1), 0);
     }
     ASSERT_EQ(relief_particles_emit(particles, emitter, stage_.animated_textures, body, kDt), 1000)

@@ -40,7 +40,7 @@ inline void expectError(const std::string& part) {
     EXPECT_NE(std::string(relief_error()).find(part), std::string::npos) << relief_error();
 }
 
-/// Working objects: a collider, textures, particles, a picture and a world; and memory for all inputs and outputs.
+/// Working objects: a collider, textures, particles, a renderer and a world; and memory for all inputs and outputs.
 class Stage {
   public:
     Stage() {
@@ -70,7 +70,7 @@ class Stage {
         revive();
     }
     ~Stage() {
-        relief_picture_free(picture);
+        relief_renderer_free(renderer);
         relief_particles_free(particles);
         relief_textures_free(textures);
         relief_textures_free(world_textures);
@@ -90,7 +90,7 @@ class Stage {
         collider = collider != nullptr ? collider : relief_collider_load(path_.c_str());
         textures = textures != nullptr ? textures : relief_textures_create(collider);
         particles = particles != nullptr ? particles : relief_particles_create(textures, &options);
-        picture = picture != nullptr ? picture : relief_picture_create(textures, collider);
+        renderer = renderer != nullptr ? renderer : relief_renderer_create(textures, collider);
         world = world != nullptr ? world : relief_world_load(world_path_.c_str());
         world_textures = world_textures != nullptr ? world_textures : relief_textures_create_world(world);
         animation = animation != nullptr ? animation : relief_animation_create(collider);
@@ -105,7 +105,7 @@ class Stage {
         ASSERT_TRUE(animation != nullptr && animated_textures != nullptr && emitter != nullptr)
             << relief_error();
         ASSERT_TRUE(collider != nullptr && textures != nullptr && particles != nullptr &&
-                    picture != nullptr && world != nullptr && world_textures != nullptr)
+                    renderer != nullptr && world != nullptr && world_textures != nullptr)
             << relief_error();
     }
     /// Resets everything that a test may have changed to valid values.
@@ -126,14 +126,14 @@ class Stage {
         for (std::uint32_t i = 0; i < kItems; ++i) {
             bodies[i] = i;
             poses[i] = {{0.0F, 0.0F, 0.0F}, {0.0F, 0.6F, 0.0F, 0.8F}};
-            balls[i] = {{0.0F, 0.0F, 0.0F}, 1.0F};
+            spheres[i] = {{0.0F, 0.0F, 0.0F}, 1.0F};
         }
         emitter_options = {};
         emitter_options.size = sizeof(emitter_options);
         emitter_options.rate = 500.0F;
         emitter_options.lifetime_min = emitter_options.lifetime_max = 1.0F;
-        picture_options = {};
-        picture_options.size = sizeof(picture_options);
+        renderer_options = {};
+        renderer_options.size = sizeof(renderer_options);
         view = {};
         view.size = sizeof(view);
         for (int k = 0; k < 4; ++k) {
@@ -175,11 +175,11 @@ class Stage {
         } else if constexpr (std::is_same_v<T, double>) {
             return 0.25;
         } else if constexpr (std::is_same_v<T, const float*>) {
-            return name == "matrices"  ? matrices
-                   : name == "weights" ? weights
-                   : name == "room"    ? room
-                   : name == "normal"  ? normal
-                                       : points;
+            return name == "matrices"   ? matrices
+                   : name == "weights"  ? weights
+                   : name == "box_size" ? box_size
+                   : name == "normal"   ? normal
+                                        : points;
         } else if constexpr (std::is_same_v<T, int>) {
             return 0;
         } else if constexpr (std::is_same_v<T, float*>) {
@@ -197,14 +197,14 @@ class Stage {
     /// The address of the invalid item in the structures of this name that good() returns; null if no function reads
     /// them.
     std::byte* structure(const std::string& name) {
-        void* found = name == "relief_particles_options" ? static_cast<void*>(&options)
-                      : name == "relief_birth"           ? &births[kWrong]
-                      : name == "relief_pose"            ? &poses[kWrong]
-                      : name == "relief_ball"            ? &balls[kWrong]
-                      : name == "relief_picture_options" ? &picture_options
-                      : name == "relief_emitter_options" ? &emitter_options
-                      : name == "relief_view"            ? static_cast<void*>(&view)
-                                                         : nullptr;
+        void* found = name == "relief_particles_options"  ? static_cast<void*>(&options)
+                      : name == "relief_birth"            ? &births[kWrong]
+                      : name == "relief_pose"             ? &poses[kWrong]
+                      : name == "relief_sphere"           ? &spheres[kWrong]
+                      : name == "relief_renderer_options" ? &renderer_options
+                      : name == "relief_emitter_options"  ? &emitter_options
+                      : name == "relief_view"             ? static_cast<void*>(&view)
+                                                          : nullptr;
         return static_cast<std::byte*>(found);
     }
     /// The handle of an argument's type, as a number.
@@ -216,21 +216,21 @@ class Stage {
                : names("textures")  ? reinterpret_cast<std::uintptr_t>(textures)
                : names("particles") ? reinterpret_cast<std::uintptr_t>(particles)
                : names("world")     ? reinterpret_cast<std::uintptr_t>(world)
-                                    : reinterpret_cast<std::uintptr_t>(picture);
+                                    : reinterpret_cast<std::uintptr_t>(renderer);
     }
     /// Call after the object was freed; revive() creates another.
     void forget(std::uintptr_t handle) {
         const auto drop = [handle](auto*& one) {
             one = reinterpret_cast<std::uintptr_t>(one) == handle ? nullptr : one;
         };
-        const auto handles = std::tie(collider, textures, particles, picture, world, animation, emitter);
+        const auto handles = std::tie(collider, textures, particles, renderer, world, animation, emitter);
         std::apply([&](auto&... one) { (drop(one), ...); }, handles);
     }
 
     relief_collider* collider = nullptr;
     relief_textures* textures = nullptr;
     relief_particles* particles = nullptr;
-    relief_picture* picture = nullptr;
+    relief_renderer* renderer = nullptr;
     relief_world* world = nullptr;
     relief_textures* world_textures = nullptr;
     relief_animation* animation = nullptr;
@@ -242,9 +242,9 @@ class Stage {
     std::uint32_t bodies[kItems];
     std::uint32_t bodies_found[kItems];
     relief_pose poses[kItems];
-    relief_ball balls[kItems];
+    relief_sphere spheres[kItems];
     relief_pose pose;  // output
-    relief_picture_options picture_options;
+    relief_renderer_options renderer_options;
     relief_view view;
     relief_particle states[kItems];
     relief_sample samples[kItems];
@@ -252,7 +252,7 @@ class Stage {
     float matrices[32] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1,
                           1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     float weights[1] = {0.0F};
-    float room[3] = {3.0F, 3.0F, 3.0F};
+    float box_size[3] = {3.0F, 3.0F, 3.0F};
     float normal[3] = {0.0F, 1.0F, 0.0F};
     float low[3];
     float high[3];
@@ -280,9 +280,9 @@ class Stage {
     template <class T>
     T pointer(T /*type*/) {
         using Thing = std::remove_const_t<std::remove_pointer_t<T>>;
-        return std::get<Thing*>(std::tuple(collider, textures, world, particles, picture, animation, emitter,
-                                           &options, &births[0], &picture_options, &emitter_options, &view,
-                                           &states[0], &samples[0], &balls[0], &pose, &bodies_found[0]));
+        return std::get<Thing*>(std::tuple(collider, textures, world, particles, renderer, animation, emitter,
+                                           &options, &births[0], &renderer_options, &emitter_options, &view,
+                                           &states[0], &samples[0], &spheres[0], &pose, &bodies_found[0]));
     }
 
     std::unique_ptr<GlContext> context_;
@@ -305,7 +305,7 @@ struct Release {
     static void of(relief_world* made) { relief_world_free(made); }
     static void of(relief_animation* made) { relief_animation_free(made); }
     static void of(relief_emitter* made) { relief_emitter_free(made); }
-    static void of(relief_picture* made) { relief_picture_free(made); }
+    static void of(relief_renderer* made) { relief_renderer_free(made); }
 };
 
 template <class T>
@@ -330,7 +330,7 @@ struct Argument {
     [[nodiscard]] bool isPointer() const { return type.back() == '*'; }
     [[nodiscard]] bool isHandle() const {
         static const std::regex kHandle(
-            "(const )?relief_(collider|textures|particles|picture|world|animation|emitter)\\*");
+            "(const )?relief_(collider|textures|particles|renderer|world|animation|emitter)\\*");
         return std::regex_match(type, kHandle);
     }
 };

@@ -246,7 +246,7 @@ TEST_P(EventsGlTest, AQuarterOfAMillionHitsAreListed) {
     constexpr std::uint32_t kMany = (1U << 18) + 1000;
     make({.capacity = kMany});
     EXPECT_TRUE(particles_->setGround(0.0F));
-    ASSERT_TRUE(setEvents(*particles_, EventOptions{.most = ParticleSystem::kCapacityMax}));
+    ASSERT_TRUE(setEvents(*particles_, EventOptions{.max_per_step = ParticleSystem::kCapacityMax}));
     spawnMany(kMany, [](std::uint32_t i) {
         return Birth{glm::vec3(i, 0.01F, 0.0F), {0.0F, i % 3 == 0 ? 1.0F : -2.0F, 0.0F}};
     });
@@ -272,10 +272,10 @@ TEST_P(EventsGlTest, ListsMatchTheirOptions) {
     const EventOptions everything{.lasting = true, .deaths = true};
     const std::vector<StepEvents> all = run(std::span(&everything, 1));
     ASSERT_EQ(all.size(), 25U);
-    const std::vector<EventOptions> options{{.lasting = true, .most = 1500, .type = 2},
-                                            {.min_speed = 1.5F, .most = 7},
+    const std::vector<EventOptions> options{{.lasting = true, .max_per_step = 1500, .type = 2},
+                                            {.min_speed = 1.5F, .max_per_step = 7},
                                             {.hits = false, .deaths = true},
-                                            {.lasting = true, .most = 2000, .type = 4}};
+                                            {.lasting = true, .max_per_step = 2000, .type = 4}};
     for (const std::size_t count : {1U, 2U, 3U, 4U}) {
         const std::vector<StepEvents> some = run(std::span(options).first(count));
         ASSERT_EQ(some.size(), all.size());
@@ -293,7 +293,7 @@ TEST_P(EventsGlTest, ListsMatchTheirOptions) {
                     return !(hit || (own.deaths && event.death)) ||
                            event.type != own.type.value_or(event.type);
                 });
-                const std::size_t most = std::min<std::size_t>(wanted.size(), own.most);
+                const std::size_t most = std::min<std::size_t>(wanted.size(), own.max_per_step);
                 const std::span<const ParticleEvent> got = some[step].of(list);
                 ASSERT_EQ(got.size(), most) << step;
                 ASSERT_EQ(some[step].lists[list].dropped, wanted.size() - most) << step;
@@ -306,14 +306,14 @@ TEST_P(EventsGlTest, ListsMatchTheirOptions) {
             }
             EXPECT_GT(listed, 100U);
             EXPECT_GT(others, 100U);
-            EXPECT_EQ(dropped > 100, own.most == 7);
+            EXPECT_EQ(dropped > 100, own.max_per_step == 7);
         }
     }
 }
 
 TEST_P(EventsGlTest, ShadersCanReadTheList) {
     make({.capacity = 5000});
-    ASSERT_TRUE(setEvents(*particles_, EventOptions{.lasting = true, .most = 2000}));
+    ASSERT_TRUE(setEvents(*particles_, EventOptions{.lasting = true, .max_per_step = 2000}));
     const Played run = played(*particles_, 60, 40, OnCollision::kBounce, false);
     const StepEvents events = takeEvents();
     ASSERT_GT(events.events.size(), 20U);

@@ -37,7 +37,7 @@ std::vector<Birth> birthsOf(const SpawnSettings& settings, const std::vector<Par
 }
 
 TEST(Spawner, HitsSpawnAsConfigured) {
-    const SpawnSettings settings{.of = {},
+    const SpawnSettings settings{.parent = {},
                                  .material = {},
                                  .type = 1,
                                  .count_min = 200,
@@ -75,7 +75,7 @@ TEST(Spawner, HitsSpawnAsConfigured) {
 }
 
 TEST(Spawner, OnlyMatchingEventsSpawn) {
-    SpawnSettings settings{.of = 1, .min_speed = 2.0F, .material = {}, .count_min = 3, .count_max = 3};
+    SpawnSettings settings{.parent = 1, .min_speed = 2.0F, .material = {}, .count_min = 3, .count_max = 3};
     auto lasting = hitOf(3, 1, 5.0F);
     lasting.lasts = true;
     ParticleEvent age;
@@ -90,7 +90,7 @@ TEST(Spawner, OnlyMatchingEventsSpawn) {
     EXPECT_EQ(hits[0].position.x, 1.0F);
     settings.on = SpawnOn::kDeath;
     EXPECT_EQ(birthsOf(settings, step).size(), 6U) << "one died of age, one was killed";
-    settings.of.reset();
+    settings.parent.reset();
     settings.on = SpawnOn::kCollision;
     settings.min_speed = 0.0F;
     EXPECT_EQ(birthsOf(settings, step).size(), 12U);
@@ -106,7 +106,7 @@ TEST(Spawner, OnlyMatchingEventsSpawn) {
 
 // Births and refusals add up to all that were due, for any limits. The same seed gives the same births.
 TEST(Spawner, RefusedBirthsAreCounted) {
-    SpawnSettings settings{.of = {}, .material = {}, .count_min = 2, .count_max = 6};
+    SpawnSettings settings{.parent = {}, .material = {}, .count_min = 2, .count_max = 6};
     std::vector<ParticleEvent> hits;
     for (std::uint32_t i = 0; i < 1000; ++i) {
         hits.push_back(hitOf(i, 0, 1.0F));
@@ -116,15 +116,15 @@ TEST(Spawner, RefusedBirthsAreCounted) {
     EXPECT_EQ(Spawner(settings, 9).spawn(step, {}, 1'000'000, all), 0U);
     EXPECT_NEAR(static_cast<double>(all.size()), 4000.0, 200.0);
     for (const auto& [most, room] : {std::pair(10'000U, 1500U), std::pair(1234U, 50'000U)}) {
-        settings.most = most;
+        settings.max_per_step = most;
         std::vector<Birth> some;
-        const std::uint64_t refused = Spawner(settings, 9).spawn(step, {}, room, some);
+        const std::uint64_t rejected = Spawner(settings, 9).spawn(step, {}, room, some);
         EXPECT_EQ(some.size(), std::min(most, room));
         EXPECT_EQ(some[77].position, all[77].position);
         EXPECT_EQ(some[77].velocity, all[77].velocity);
-        EXPECT_GT(refused, 2000U);
+        EXPECT_GT(rejected, 2000U);
     }
-    settings.most = 10'000;
+    settings.max_per_step = 10'000;
     settings.count_max = settings.count_min = 5;
     std::vector<Birth> some;
     EXPECT_EQ(Spawner(settings, 9).spawn(step, {}, 4321, some), 5000U - 4321U);
@@ -132,11 +132,11 @@ TEST(Spawner, RefusedBirthsAreCounted) {
 
 // A list that ends after the last usable event.
 TEST(Spawner, AFilteredListGivesTheSameBirths) {
-    SpawnSettings settings{.of = 1, .min_speed = 2.0F, .material = 4, .count_max = 3, .most = 20};
+    SpawnSettings settings{.parent = 1, .min_speed = 2.0F, .material = 4, .count_max = 3, .max_per_step = 20};
     Spawner by_all(settings, 9);
     Spawner by_few(settings, 9);
     const EventOptions options = by_all.eventOptions();
-    EXPECT_EQ(options, (EventOptions{.min_speed = 2.0F, .most = 20, .type = 1, .material = 4}));
+    EXPECT_EQ(options, (EventOptions{.min_speed = 2.0F, .max_per_step = 20, .type = 1, .material = 4}));
     for (std::uint32_t step = 0; step < 5; ++step) {
         std::vector<ParticleEvent> all;
         std::vector<ParticleEvent> few;
@@ -149,13 +149,13 @@ TEST(Spawner, AFilteredListGivesTheSameBirths) {
                 few.push_back(hit);
             }
         }
-        const std::size_t dropped = few.size() - options.most;
-        EXPECT_GT(few.size(), options.most);
-        few.resize(options.most);
+        const std::size_t dropped = few.size() - options.max_per_step;
+        EXPECT_GT(few.size(), options.max_per_step);
+        few.resize(options.max_per_step);
         std::vector<Birth> births;
         std::vector<Birth> same;
-        const std::uint64_t refused = by_all.spawn(stepOf(all), {}, 1000, births);
-        EXPECT_EQ(by_few.spawn(stepOf(few), {}, 1000, same) + dropped, refused);
+        const std::uint64_t rejected = by_all.spawn(stepOf(all), {}, 1000, births);
+        EXPECT_EQ(by_few.spawn(stepOf(few), {}, 1000, same) + dropped, rejected);
         ASSERT_EQ(births.size(), 20U);
         ASSERT_EQ(same.size(), births.size());
         for (std::size_t i = 0; i < births.size(); ++i) {
@@ -166,7 +166,7 @@ TEST(Spawner, AFilteredListGivesTheSameBirths) {
     settings.on = SpawnOn::kDeath;
     settings.material.reset();
     EXPECT_EQ(Spawner(settings, 9).eventOptions(),
-              (EventOptions{.hits = false, .deaths = true, .most = 20, .type = 1}));
+              (EventOptions{.hits = false, .deaths = true, .max_per_step = 20, .type = 1}));
 }
 
 TEST(Spawner, DeathsOfAgeThrowInAllDirectionsOrAlongTheVelocity) {
@@ -174,7 +174,7 @@ TEST(Spawner, DeathsOfAgeThrowInAllDirectionsOrAlongTheVelocity) {
     age.death = true;
     age.velocity = {3.0F, 0.0F, 0.0F};
     SpawnSettings settings{.on = SpawnOn::kDeath,
-                           .of = {},
+                           .parent = {},
                            .material = {},
                            .count_min = 3000,
                            .count_max = 3000,
@@ -196,9 +196,10 @@ TEST(Spawner, DeathsOfAgeThrowInAllDirectionsOrAlongTheVelocity) {
     EXPECT_LT(glm::length(thrown() - glm::vec3(0.0F, 1.0F, 0.0F)), 1e-6F);
 }
 
-// A lost particle's event causes no births: they count as refused.
+// A lost particle's event causes no births: they count as rejected.
 TEST(Spawner, LostParticlesHaveNoChildren) {
-    const SpawnSettings settings{.of = {}, .material = {}, .count_min = 3, .count_max = 3, .inherit = 1.0F};
+    const SpawnSettings settings{
+        .parent = {}, .material = {}, .count_min = 3, .count_max = 3, .inherit = 1.0F};
     for (const float wrong : {std::nanf(""), std::numeric_limits<float>::infinity()}) {
         ParticleEvent lost = hitOf(7, 0, 4.0F);
         lost.velocity.x = wrong;

@@ -145,7 +145,7 @@ TEST_P(AnimatedColliderGlTest, VerticesMatchTheCpu) {
 TEST_P(AnimatedColliderGlTest, InsideMatchesThePosedMesh) {
     const Pose body{{3.0F, -1.0F, 0.5F}, glm::angleAxis(0.7F, glm::normalize(glm::vec3(1, 2, 3))), 1.5F};
     // The tube is 1/25 of the box thick, and half a texel is lost at its silhouettes.
-    makeAnimated(shared(bendingTube()), body, {.resolution = 768, .room = {}});
+    makeAnimated(shared(bendingTube()), body, {.resolution = 768, .box_size = {}});
     EXPECT_LE(wrongFraction(clipPose(animated_->mesh(), "bend", 0.31), 3000), 0.02);
     EXPECT_LE(wrongFraction(clipPose(animated_->mesh(), "grow", 1.0), 3000), 0.02);
     const char* const file = std::getenv("RELIEF_ANIMATED");

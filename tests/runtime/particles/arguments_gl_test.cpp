@@ -97,7 +97,7 @@ TEST_P(ArgumentsGlTest, NumbersOutOfRange) {
     EXPECT_TRUE(refused(particles_->setTypes({})));
     EXPECT_TRUE(refused(particles_->setTypes(std::vector<ParticleType>(kParticleTypesMax + 1))));
     EXPECT_TRUE(refusedType([](ParticleType& type) { type.mass = 0.0F; }));
-    EXPECT_TRUE(refusedType([](ParticleType& type) { type.collides = kCollidesWithAll + 1; }));
+    EXPECT_TRUE(refusedType([](ParticleType& type) { type.collides_with = kCollidesWithAll + 1; }));
     for (float ParticleType::*const member :
          {&ParticleType::radius, &ParticleType::restitution, &ParticleType::friction,
           &ParticleType::friction_threshold, &ParticleType::lifetime_loss}) {
@@ -119,8 +119,9 @@ TEST_P(ArgumentsGlTest, Bodies) {
 }
 
 TEST_P(ArgumentsGlTest, Events) {
-    for (const EventOptions& wrong : {EventOptions{.most = 0}, EventOptions{.most = (1U << 24) + 1},
-                                      EventOptions{.min_speed = -1.0F}, EventOptions{.min_speed = kNan}}) {
+    for (const EventOptions& wrong :
+         {EventOptions{.max_per_step = 0}, EventOptions{.max_per_step = (1U << 24) + 1},
+          EventOptions{.min_speed = -1.0F}, EventOptions{.min_speed = kNan}}) {
         EXPECT_TRUE(refused(setEvents(*particles_, wrong)));
     }
     EXPECT_TRUE(refused(setEvents(*particles_, std::vector<EventOptions>(kEventLists + 1))));

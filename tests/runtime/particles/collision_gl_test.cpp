@@ -129,9 +129,9 @@ TEST_P(CollisionGlTest, EachTypeHasItsReaction) {
 
 TEST_P(CollisionGlTest, TypesPassThroughExcludedBodies) {
     std::vector<ParticleType> types(4);
-    types[1].collides = kCollidesWithGround;
-    types[2].collides = 1;
-    types[3].collides = 0;
+    types[1].collides_with = kCollidesWithGround;
+    types[2].collides_with = 1;
+    types[3].collides_with = 0;
     const Collider box = boxCollider();
     for (const float radius : {0.0F, 0.05F}) {
         for (const float sweep : {0.0F, 0.02F}) {
@@ -176,7 +176,7 @@ TEST_P(CollisionGlTest, MasksSelectBodies) {
     }
     std::vector<ParticleType> types(8);
     for (std::uint32_t i = 0; i < 8; ++i) {
-        types[i].collides = i;
+        types[i].collides_with = i;
         types[i].friction = 1.0F;
         types[i].on_collision = i % 2 == 0 ? OnCollision::kStop : OnCollision::kBounce;
     }

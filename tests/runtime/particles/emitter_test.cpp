@@ -273,7 +273,7 @@ TEST(Emitter, AgesSpreadBirthsOverTheStep) {
     EXPECT_GT(before, 1900U);
     settings.start = 0.0;
     births = burstOf(settings, 10);
-    settings.spread = false;
+    settings.interpolate = false;
     Emitter(settings, 1).emit(1.0, 1'000'000, births);
     EXPECT_EQ(births.size(), 1010U);
     for (const Birth& birth : births) {

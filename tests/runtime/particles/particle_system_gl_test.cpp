@@ -308,7 +308,7 @@ TEST_P(ParticleSystemGlTest, DeathsOnCpuAndGpuAgree) {
         std::map<std::uint32_t, Known> known;  // by id
         std::uint32_t next_id = 0;
         double time = 0.0;
-        std::uint64_t refused = 0;
+        std::uint64_t rejected = 0;
         std::uint32_t least = kCapacity;  // minimum and maximum extent in the second half
         std::uint32_t most = 0;
         for (int step = 0; step < 400; ++step) {
@@ -319,7 +319,7 @@ TEST_P(ParticleSystemGlTest, DeathsOnCpuAndGpuAgree) {
                 birth.lifetime = random.between(1e-6F, 1.5F) * random.uniform() + 1e-7F;
             }
             const std::size_t accepted = particles_->spawn(births).value();
-            refused += births.size() - accepted;
+            rejected += births.size() - accepted;
             for (std::size_t i = 0; i < accepted; ++i) {
                 known[next_id++] = {time, time + static_cast<double>(births[i].lifetime)};
             }
@@ -349,7 +349,7 @@ TEST_P(ParticleSystemGlTest, DeathsOnCpuAndGpuAgree) {
             const ParticleCounts counts = particles_->counts();
             ASSERT_EQ(counts.alive, alive.size());
             ASSERT_EQ(counts.born, counts.alive + counts.died);
-            ASSERT_EQ(counts.refused, refused);
+            ASSERT_EQ(counts.rejected, rejected);
             least = step < 200 ? least : std::min(least, counts.extent);
             most = step < 200 ? most : std::max(most, counts.extent);
         }

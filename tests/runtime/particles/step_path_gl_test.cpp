@@ -134,7 +134,7 @@ class StepPathGlTest : public GlTest {
         std::vector<ParticleType> types{type};
         if (features.masks) {
             types.push_back(type);
-            types[1].collides = 2U | kCollidesWithGround;
+            types[1].collides_with = 2U | kCollidesWithGround;
         }
         EXPECT_TRUE(particles.setTypes(types));
         EXPECT_TRUE(particles.setSweep(features.sweep));

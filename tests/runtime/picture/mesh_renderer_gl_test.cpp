@@ -137,7 +137,7 @@ TEST_P(MeshRendererGlTest, RainDarkensSurfaces) {
 }
 
 TEST_P(MeshRendererGlTest, FogHasTheBackgroundColor) {
-    MeshStyle style{.background = {0.2F, 0.3F, 0.9F}, .fog = 0.1F};
+    MeshStyle style{.background = {0.2F, 0.3F, 0.9F}, .fog_distance = 0.1F};
     draw(style, meadow());
     const ShadedPixel far = at(open_);
     EXPECT_GT(far.b, far.r + 80.0F);

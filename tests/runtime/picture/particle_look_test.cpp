@@ -43,7 +43,7 @@ TEST(ParticleLook, InvalidTracksAreRejected) {
     EXPECT_TRUE(refused([](ParticleLook& l) {
         l.rotation = {{0.0F, std::numeric_limits<float>::quiet_NaN()}};
     }));
-    EXPECT_TRUE(refused([](ParticleLook& l) { l.spin = std::numeric_limits<float>::infinity(); }));
+    EXPECT_TRUE(refused([](ParticleLook& l) { l.spin_spread = std::numeric_limits<float>::infinity(); }));
     EXPECT_TRUE(refused([](ParticleLook& l) { l.stretch = -1.0F; }));
     EXPECT_TRUE(refused([](ParticleLook& l) { l.cell_first = 2; }));
     EXPECT_FALSE(packLooks(std::vector<ParticleLook>(kLooksMax + 1), {}));

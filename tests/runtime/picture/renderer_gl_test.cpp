@@ -215,7 +215,7 @@ TEST_P(RendererGlTest, CallerStateIsKeptAndIgnored) {
         const auto atlas = SpriteAtlas::create(std::vector<std::uint8_t>(16, 200), 2, 2, 2, 1);
         check("SpriteAtlas::create");
         ParticleStyle quads{.diameter = 0.3F, .sprite = Sprite::kQuad, .blend = Blend::kAdditive};
-        quads.soft = 0.1F;
+        quads.soft_distance = 0.1F;
         quads.atlas = &*atlas;
         quads.looks.resize(1);
         quads.looks[0].cell_first = 0;

@@ -360,7 +360,7 @@ TEST_P(SpriteGlTest, AlphaFollowsTheOrder) {
 // opacity.
 TEST_P(SpriteGlTest, SoftEdgesFadeByDistance) {
     style_.looks = {look(glm::vec3(1.0F), 1.0F, 0.5F)};
-    style_.soft = 0.4F;
+    style_.soft_distance = 0.4F;
     spawnTypes({0}, 1.0F);
     for (const auto& [behind, wanted] :
          {std::pair{0.0F, 0.0F}, {0.1F, 0.25F}, {0.2F, 0.5F}, {0.3F, 0.75F}, {0.4F, 1.0F}, {9.0F, 1.0F}}) {
@@ -382,12 +382,12 @@ TEST_P(SpriteGlTest, SoftEdgesFadeByDistance) {
 TEST_P(SpriteGlTest, RandomRotationsArePerParticle) {
     useAtlas();
     ParticleLook one = cells(1, 1);
-    one.turn = std::numbers::pi_v<float>;
+    one.rotation_spread = std::numbers::pi_v<float>;
     drawOne(one);
     const std::vector<float> first = pixels_;
     drawOne(one, 2.0F);
     EXPECT_EQ(pixels_, first) << "the initial angle is constant";
-    style_.looks[0].spin = 1.0F;
+    style_.looks[0].spin_spread = 1.0F;
     draw();
     EXPECT_NE(pixels_, first) << "the angular speed rotates it";
 }
@@ -408,7 +408,7 @@ TEST_P(SpriteGlTest, InvalidStylesAreRejected) {
     EXPECT_FALSE(refused());
     for (const float soft :
          {-1.0F, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
-        style_.soft = soft;
+        style_.soft_distance = soft;
         EXPECT_TRUE(refused());
     }
     const std::vector<std::uint8_t> rgba(4 * 6 * 4);

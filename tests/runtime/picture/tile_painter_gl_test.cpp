@@ -146,9 +146,9 @@ TEST_P(TilePainterGlTest, EveryStyleMatchesPoints) {
     spawn(1500);
     expectSamePicture("in order", true, true);
     expectSamePicture("as they come", false, false);
-    style_.soft = 0.3F;
+    style_.soft_distance = 0.3F;
     expectSamePicture("soft", true, true);
-    style_.soft = 0.0F;
+    style_.soft_distance = 0.0F;
     style_.blend = Blend::kAdditive;
     style_.opacity = 0.1F;
     expectSamePicture("added", false, true);
@@ -189,7 +189,7 @@ TEST_P(TilePainterGlTest, QuadsCellsAndStretchedSpritesMatch) {
     style_.diameter = 0.08F;
     style_.looks.resize(3);
     style_.looks[0].cell_first = 0;
-    style_.looks[0].turn = 3.0F;
+    style_.looks[0].rotation_spread = 3.0F;
     style_.looks[1].cell_first = 1;
     style_.looks[1].cell_last = 1;
     style_.looks[1].rotation = {{0.0F, 0.6F}};

@@ -85,17 +85,17 @@ name = "drop"
 on_collision = "die"
 [[type]]
 name = "splash"
-collides = ["ground"]
+collides_with = ["ground"]
 [[spawn]]
 on = "collision"
-of = "drop"
+parent = "drop"
 type = "splash"
 count = [1, 3]
 most = 60
 lifetime = [0.2, 0.4]
 [[spawn]]
 on = "death"
-of = "drop"
+parent = "drop"
 type = "splash"
 most = 30
 )";
@@ -115,14 +115,14 @@ most = 30
         }
         EXPECT_TRUE(made.finishEvents());
         EXPECT_EQ(next, log ? 61U : 1U);
-        EXPECT_GT(made.refused(), 100U);
-        return std::pair(made.refused(), made.particles().readState().value());
+        EXPECT_GT(made.rejected(), 100U);
+        return std::pair(made.rejected(), made.particles().readState().value());
     };
     std::size_t longest = 0;
-    const auto [refused, plain] = run(false, longest);
-    const auto [refused_logged, logged] = run(true, longest);
+    const auto [rejected, plain] = run(false, longest);
+    const auto [rejected_logged, logged] = run(true, longest);
     EXPECT_GT(longest, 60U) << "more events than spawns can use";
-    EXPECT_EQ(refused_logged, refused);
+    EXPECT_EQ(rejected_logged, rejected);
     ASSERT_EQ(logged.size(), plain.size());
     std::size_t splashes = 0;
     for (std::size_t i = 0; i < plain.size(); ++i) {

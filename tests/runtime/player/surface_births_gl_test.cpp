@@ -39,7 +39,7 @@ class SurfaceBirthsGlTest : public GlTest {
         const std::string scene =
             "time = { dt = 0.02, steps = 60 }\nparticles = { capacity = 20000 }\n"
             "forces = { gravity = [0, 0, 0], drag = 0 }\nground = { enabled = false }\n[[type]]\n" +
-            std::string(collides ? "" : "collides = []\n") + "[[collider]]\nfile = \"tube.relief\"\n" +
+            std::string(collides ? "" : "collides_with = []\n") + "[[collider]]\nfile = \"tube.relief\"\n" +
             collider + "[[emitter]]\nshape = \"surface\"\nattach = 0\nlifetime = 9\n" + emitter;
         loaded_ = std::make_unique<LoadedScene>();
         auto loaded = required(loadAll(folder_.write("scene.toml", scene), {}));

@@ -57,12 +57,12 @@ TEST(SceneEmitter, ReadsShapes) {
 
 TEST(SceneEmitter, ReadsTimesAndSpeeds) {
     const SceneEmitter timed =
-        good("start = 1.5\nburst = 10\nburst_every = 0.5\nduration = 3\nspread = false\n");
+        good("start = 1.5\nburst = 10\nburst_every = 0.5\nduration = 3\ninterpolate = false\n");
     EXPECT_EQ(timed.start, 1.5);
     EXPECT_EQ(timed.burst, 10U);
     EXPECT_EQ(timed.burst_every, 0.5);
     EXPECT_EQ(timed.duration, 3.0);
-    EXPECT_FALSE(timed.spread);
+    EXPECT_FALSE(timed.interpolate);
     const EmitterAim span = *good("direction = [0, 2, 0]\ncone = 20\nspeed = [1, 4]\n").aim;
     EXPECT_EQ(*span.direction, glm::vec3(0, 2, 0));
     EXPECT_EQ(span.cone_degrees, 20.0F);
@@ -100,17 +100,17 @@ TEST(SceneSpawn, ReadsEveryKey) {
     const Scene scene =
         goodScene(kSceneHead +
                   "[[type]]\nname = \"drop\"\n[[type]]\nname = \"splash\"\n"
-                  "[[spawn]]\non = \"collision\"\nof = \"drop\"\ntype = \"splash\"\ncount = [2, 5]\n"
-                  "most = 70\nlifetime = [0.5, 2]\ninherit = 0.25\nspeed = [1, 3]\nkick = 0.5\n"
+                  "[[spawn]]\non = \"collision\"\nparent = \"drop\"\ntype = \"splash\"\ncount = [2, 5]\n"
+                  "max_per_step = 70\nlifetime = [0.5, 2]\ninherit = 0.25\nspeed = [1, 3]\nkick = 0.5\n"
                   "cone = 20\nmin_speed = 0.75\nseed = 6\n[[spawn]]\non = \"death\"\nspeed = 2\n"
                   "[[spawn]]\non = \"collision\"\n");
-    const SpawnSettings wanted{.of = 0,
+    const SpawnSettings wanted{.parent = 0,
                                .min_speed = 0.75F,
                                .material = {},
                                .type = 1,
                                .count_min = 2,
                                .count_max = 5,
-                               .most = 70,
+                               .max_per_step = 70,
                                .lifetime_min = 0.5F,
                                .lifetime_max = 2.0F,
                                .inherit = 0.25F,
@@ -121,7 +121,7 @@ TEST(SceneSpawn, ReadsEveryKey) {
     EXPECT_TRUE(SpawnSettings(scene.spawns.at(0)) == wanted);
     EXPECT_EQ(scene.spawns[0].seed, 6U);
     const SpawnSettings death{
-        .on = SpawnOn::kDeath, .of = {}, .material = {}, .speed_min = 2.0F, .speed_max = 2.0F};
+        .on = SpawnOn::kDeath, .parent = {}, .material = {}, .speed_min = 2.0F, .speed_max = 2.0F};
     EXPECT_TRUE(SpawnSettings(scene.spawns.at(1)) == death);
     EXPECT_EQ(scene.spawns.at(2).cone_degrees, 60.0F);
 }

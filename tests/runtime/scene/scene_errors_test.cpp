@@ -58,9 +58,9 @@ TEST(SceneErrors, TableCounts) {
 
 TEST(SceneErrors, TimeAndFrames) {
     expectErrors(kSceneHead, {{"[time]\ndt = 1e-5\nprewarm = 101\n", "5:11", "time.dt"},
-                              {"[render]\nfirst = 5\nlast = 4\n", "5:8", "render.first"},
-                              {"[render]\nfirst = 301\n", "4:9", "choose 0 to 300"},
-                              {"[render]\nlast = 301\n", "4:8", "choose 0 to 300"},
+                              {"[render]\nfirst_frame = 5\nlast_frame = 4\n", "5:14", "render.first_frame"},
+                              {"[render]\nfirst_frame = 301\n", "4:15", "choose 0 to 300"},
+                              {"[render]\nlast_frame = 301\n", "4:14", "choose 0 to 300"},
                               {"[render]\nsort_frames = 1\n", "4:15", "2 to 200"}});
 }
 
@@ -124,12 +124,13 @@ TEST(SceneErrors, TypesAndMaterials) {
                               {"[[type]]\nstretch = 0.1\n", "4:11", "render.sprite"},
                               {"[[material]]\nname = \"a\"\n[[material]]\nname = \"a\"\n", "6:8", "material"},
                               {"[[spawn]]\non = \"death\"\nmaterial = \"a\"\n", "5:12", "collision"}});
-    expectErrors("[[collider]]\nfile = \"a.relief\"\n[[collider]]\nfile = \"b.relief\"\n",
-                 {{"[[type]]\ncollides = 0\n", "6:12", "numbers of colliders"},
-                  {"[[type]]\ncollides = [2]\n", "6:13", "choose 0 to 1"},
-                  {"[[type]]\ncollides = [1.5]\n", "6:13", "numbers of colliders"},
-                  {"[[type]]\ncollides = [\"floor\"]\n", "6:13", "ground"},
-                  {"[ground]\nenabled = false\n[[type]]\ncollides = [\"ground\"]\n", "8:13", "disables"}});
+    expectErrors(
+        "[[collider]]\nfile = \"a.relief\"\n[[collider]]\nfile = \"b.relief\"\n",
+        {{"[[type]]\ncollides_with = 0\n", "6:17", "numbers of colliders"},
+         {"[[type]]\ncollides_with = [2]\n", "6:18", "choose 0 to 1"},
+         {"[[type]]\ncollides_with = [1.5]\n", "6:18", "numbers of colliders"},
+         {"[[type]]\ncollides_with = [\"floor\"]\n", "6:18", "ground"},
+         {"[ground]\nenabled = false\n[[type]]\ncollides_with = [\"ground\"]\n", "8:18", "disables"}});
 }
 
 TEST(SceneErrors, LooksAndPictures) {
@@ -159,7 +160,7 @@ TEST(SceneErrors, LooksAndPictures) {
                   {"[[type]]\nopacity = [[0, 1], [1, 2]]\n", "4:24", "choose 0 to 1"},
                   {"[[type]]\ncolor = [1, 1]\n", "4:9", "[r, g, b]"},
                   {"[[type]]\ncolor = [[0, 1, 1]]\n", "4:10", "[r, g, b]"},
-                  {"[render]\nfog = 5\n", "4:7", "render.meshes"},
+                  {"[render]\nfog_distance = 5\n", "4:16", "render.meshes"},
                   {"[render]\n[[render.weather]]\nsnow = 1\n", "4:1", "render.meshes"},
                   {"[render]\nmeshes = \"m\"\n[[render.weather]]\ntime = 1\n[[render.weather]]\ntime = 1\n",
                    "8:8", "is not ascending"}});

@@ -135,25 +135,27 @@ TEST_F(DrawnMeshesTest, MissingFilesAreErrors) {
 TEST(SceneWeather, InterpolatesLinearly) {
     const std::string meshes = kSceneHead + "[render]\nmeshes = \"m\"\n";
     const Scene scene = goodScene(meshes +
-                                  "fog = 5\n[[render.weather]]\ntime = 1\nsnow = 0.2\nsun = 0.5\n"
+                                  "fog_distance = 5\n[[render.weather]]\ntime = 1\nsnow = 0.2\nsun = 0.5\n"
                                   "[[render.weather]]\ntime = 3\nsnow = 0.6\nwet = 1\n");
     EXPECT_EQ(meshStyle(scene, 0.0).snow, 0.2F);
     EXPECT_FLOAT_EQ(meshStyle(scene, 2.0).snow, 0.4F);
     EXPECT_FLOAT_EQ(meshStyle(scene, 2.0).wet, 0.5F);
     EXPECT_FLOAT_EQ(meshStyle(scene, 2.0).sun, 0.75F);
     EXPECT_EQ(meshStyle(scene, 9.0).snow, 0.6F);
-    EXPECT_EQ(meshStyle(scene, 9.0).fog, 5.0F);
+    EXPECT_EQ(meshStyle(scene, 9.0).fog_distance, 5.0F);
     EXPECT_EQ(meshStyle(goodScene(meshes), 1.0).sun, 1.0F);
 }
 
 TEST(SceneLooks, ReadsEveryKey) {
     const Scene scene = sceneWith(
-        "[render]\nsprite = \"quad\"\nblend = \"additive\"\nsoft = 0.5\natlas = \"a.png\"\natlas_cells = [4, "
+        "[render]\nsprite = \"quad\"\nblend = \"additive\"\nsoft_distance = 0.5\natlas = "
+        "\"a.png\"\natlas_cells = [4, "
         "2]\n"
         "mesh = \"m.obj\"\n[[type]]\nsize = 0.25\ncolor = [1, 0, 0.5]\n"
         "[[type]]\nsize = [[0, 1], [0.5, 2]]\ncolor = [[0, 1, 0, 0], [1, 0, 1, 0]]\nopacity = [[0, 0], [1, "
         "1]]\n"
-        "rotation = [[0.25, -3]]\nturn = 1\nspin = 2\ncell = [3, 7]\nlit = false\n[[type]]\ncell = 6\nfade = "
+        "rotation = [[0.25, -3]]\nrotation_spread = 1\nspin_spread = 2\ncell = [3, 7]\nlit = "
+        "false\n[[type]]\ncell = 6\nfade = "
         "[1, 2]\nstretch = 0.25\n");
     EXPECT_EQ(scene.render.atlas, std::filesystem::path("dir/a.png"));
     EXPECT_EQ(scene.render.atlas_columns, 4U);
@@ -169,8 +171,8 @@ TEST(SceneLooks, ReadsEveryKey) {
                             .color = {{0.0F, {1.0F, 0.0F, 0.0F}}, {1.0F, {0.0F, 1.0F, 0.0F}}},
                             .opacity = {{0.0F, 0.0F}, {1.0F, 1.0F}},
                             .rotation = {{0.25F, -3.0F}},
-                            .turn = 1.0F,
-                            .spin = 2.0F,
+                            .rotation_spread = 1.0F,
+                            .spin_spread = 2.0F,
                             .cell_first = 3,
                             .cell_last = 7,
                             .lit = false,

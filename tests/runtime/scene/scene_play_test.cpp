@@ -23,13 +23,13 @@ const std::string kTubeCollider = "[[collider]]\nfile = \"tube.relief\"\n";
 
 TEST(ScenePlay, IsLoadedWithItsClip) {
     const std::string keys =
-        "clip = \"bend\", start = 0.5, speed = -2, repeat = false, room = 1.5, resolution = 64";
+        "clip = \"bend\", start = 0.5, speed = -2, loop = false, bounds_scale = 1.5, resolution = 64";
     EXPECT_EQ(goodScene(kTubeCollider + "play = { " + keys + " }\n").colliders.front().play,
               (ScenePlay{"bend", 0.5F, -2.0F, false, 1.5F, 64}));
     const test::TemporaryFolder folder;
     ASSERT_TRUE(saveCollider(folder.path() / "tube.relief", animatedContainer(bendingTube(12, 8))));
     const std::string two = kTubeCollider + "position = [3, 0, 0]\nplay = { clip = \"bend\" }\n" +
-                            kTubeCollider + "play = { clip = \"grow\", start = 0.25, repeat = false }\n" +
+                            kTubeCollider + "play = { clip = \"grow\", start = 0.25, loop = false }\n" +
                             kTubeCollider;
     const auto loaded = required(loadAll(folder.write("scene.toml", two), {}));
     ASSERT_TRUE(loaded.played[0] && loaded.played[1]);

@@ -28,13 +28,13 @@ TEST(Scene, FramesMatchTheirSteps) {
     };
     using Steps = std::vector<std::uint32_t>;
     EXPECT_EQ(due(""), (Steps{10, 20, 25}));
-    EXPECT_EQ(due("every = 30\n"), (Steps{25}));
-    EXPECT_EQ(due("every = 30\n", "steps = 0\n"), (Steps{0}));
-    EXPECT_EQ(due("first = 0\n"), (Steps{0, 10, 20, 25}));
-    EXPECT_EQ(due("first = 3\nlast = 17\nevery = 7\n"), (Steps{3, 10, 17}));
-    EXPECT_EQ(due("first = 3\nlast = 18\nevery = 7\n"), (Steps{3, 10, 17, 18}));
-    EXPECT_EQ(due("last = 5\n"), (Steps{5}));
-    EXPECT_EQ(due("first = 4\nlast = 4\n"), (Steps{4}));
+    EXPECT_EQ(due("steps_per_frame = 30\n"), (Steps{25}));
+    EXPECT_EQ(due("steps_per_frame = 30\n", "steps = 0\n"), (Steps{0}));
+    EXPECT_EQ(due("first_frame = 0\n"), (Steps{0, 10, 20, 25}));
+    EXPECT_EQ(due("first_frame = 3\nlast_frame = 17\nsteps_per_frame = 7\n"), (Steps{3, 10, 17}));
+    EXPECT_EQ(due("first_frame = 3\nlast_frame = 18\nsteps_per_frame = 7\n"), (Steps{3, 10, 17, 18}));
+    EXPECT_EQ(due("last_frame = 5\n"), (Steps{5}));
+    EXPECT_EQ(due("first_frame = 4\nlast_frame = 4\n"), (Steps{4}));
 }
 
 TEST(Scene, PrewarmIsWholeSteps) {
@@ -47,10 +47,11 @@ TEST(Scene, PrewarmIsWholeSteps) {
 
 TEST(Scene, CollidesMasksBodies) {
     const auto collides = [](const std::string& list, const std::string& more = "") {
-        const Scene scene = goodScene(kSceneHead + kSceneHead + more + "[[type]]\ncollides = " + list + "\n");
-        return particleTypes(scene).at(0).collides;
+        const Scene scene =
+            goodScene(kSceneHead + kSceneHead + more + "[[type]]\ncollides_with = " + list + "\n");
+        return particleTypes(scene).at(0).collides_with;
     };
-    EXPECT_EQ(particleTypes(sceneWith("[[type]]\n")).at(0).collides, kCollidesWithAll);
+    EXPECT_EQ(particleTypes(sceneWith("[[type]]\n")).at(0).collides_with, kCollidesWithAll);
     EXPECT_EQ(collides("[]"), 0U);
     EXPECT_EQ(collides("[1]"), 2U);
     EXPECT_EQ(collides("[0, \"ground\"]"), 1U + kCollidesWithGround);
@@ -98,7 +99,7 @@ TEST(Scene, SurvivesPrefixesAndFlippedBytes) {
         "[time]\ndt = 0.01\nsteps = 10\n[[emitter]]\nbox_min = [0, 0, 0]\nbox_max = [1, 1, 1]\n"
         "lifetime = [1, 2]\n[render]\nsize = [4, 4]\ncolor = [1, 1, 1]\n[[emitter]]\nburst = 5\nseed = 7\n"
         "shape = \"disc\"\ncenter = [0, 0, 0]\nradius = 1\ncone = 9\nspeed = { mean = 1, deviation = 1 }\n"
-        "type = 3\n[[emitter]]\npoints = \"p\"\nspeed = [1, 2]\nburst = 4\nburst_every = 0.5\nspread = "
+        "type = 3\n[[emitter]]\npoints = \"p\"\nspeed = [1, 2]\nburst = 4\nburst_every = 0.5\ninterpolate = "
         "true\n";
     ASSERT_TRUE(sceneOf(text)) << sceneOf(text).error().message;
     for (std::size_t i = 0; i < text.size(); ++i) {

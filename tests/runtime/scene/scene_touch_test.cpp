@@ -29,7 +29,7 @@ struct Born {
 };
 struct Played {
     std::vector<Born> births;
-    std::uint64_t refused = 0;
+    std::uint64_t rejected = 0;
 };
 
 /// Whether a birth is kept; nullopt if it is so near to the rule's edge that map errors may decide.
@@ -67,7 +67,7 @@ class SceneTouch : public testing::Test {
         const std::vector<EmitterMotion> motions = emitterMotions(*loaded);
         for (int step = 0; step < std::lround(seconds / kDt); ++step) {
             std::vector<Birth> births;
-            made.refused += emitAll(loaded->emitters, kDt, room, births, motions, step * kDt);
+            made.rejected += emitAll(loaded->emitters, kDt, room, births, motions, step * kDt);
             for (const Birth& birth : births) {
                 made.births.push_back({birth, step * kDt - double{birth.age}});
             }
@@ -247,9 +247,9 @@ TEST_F(SceneTouch, DroppedBirthsUseNoCapacity) {
     const std::string earth = "touching = { within = 0.05, material = \"earth\" }\n";
     const Played whole = run(scene + earth, 0.2);
     const Played tight = run(scene + earth, 0.2, 20);
-    EXPECT_EQ(whole.refused, 0U);
+    EXPECT_EQ(whole.rejected, 0U);
     EXPECT_EQ(tight.births.size(), 200U);
-    EXPECT_EQ(tight.births.size() + tight.refused, whole.births.size());
+    EXPECT_EQ(tight.births.size() + tight.rejected, whole.births.size());
     EXPECT_EQ(tight.births[19].birth.position, whole.births[19].birth.position);
 }
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# relief bake --time-limit: stops in time with one line that names the current stage, and leaves the existing files, no
+# relief bake --timeout: stops in time with one line that names the current stage, and leaves the existing files, no
 # incomplete file and no worker. Also the progress line, which shows the stage.
 . "$(dirname "$0")/lib.sh"
 mkdir out
@@ -10,7 +10,7 @@ limited() {
     shift
     code=0
     setsid --wait bash -c 'echo $$ >group; exec "$@"' - "$relief" bake "$@" -o out/a.relief --depfile out/a.d \
-        --time-limit "$seconds" >stdout 2>stderr </dev/null || code=$?
+        --timeout "$seconds" >stdout 2>stderr </dev/null || code=$?
     gone "$(cat group)" || die "a process outlived the time limit"
 }
 
@@ -27,14 +27,14 @@ start=$(date +%s%N)
 limited 1 "$bunny" --max-error 0.001% -q
 took=$((($(date +%s%N) - start) / 1000000))
 [ "$code" -eq 6 ] && [ "$(wc -l <stderr)" -eq 1 ] || die "exit code $code: $(cat stderr)"
-grep -qE "^relief: error: '.*bunny\.obj': the bake did not end within 1 s; it was [a-z ]+, for [0-9.]+ s; .*--time-limit" stderr ||
+grep -qE "^relief: error: '.*bunny\.obj': the bake did not end within 1 s; it was [a-z ]+, for [0-9.]+ s; .*--timeout" stderr ||
     die "the error says: $(cat stderr)"
 [ "$took" -lt 5000 ] || die "it took $took ms"
 outputs_are old || die "a stopped bake leaves $(ls -lA out)"
 
 # An import that would never end. The worker ends, too.
 unfold unfold.dae
-limited 0.5 unfold.dae --import-time 600 --import-memory 100GB
+limited 0.5 unfold.dae --import-timeout 600 --max-import-memory 100GB
 [ "$code" -eq 6 ] && grep -q "unfold\.dae.*within 0\.5 s; it was reading the mesh" stderr || die "exit code $code: $(cat stderr)"
 outputs_are old || die "an import whose time is up leaves $(ls -lA out)"
 
@@ -60,7 +60,7 @@ restore_old
 limited 600 "$bunny" --budget 30kB
 [ "$code" -eq 0 ] && outputs_are new || die "with enough time: exit code $code: $(cat stderr)"
 
-expect_error 1 'time-limit' "$relief" bake "$bunny" -o x.relief --time-limit=1s
+expect_error 1 'timeout' "$relief" bake "$bunny" -o x.relief --timeout=1s
 
 # The progress line: only on a terminal, erased at the end, and not with -q.
 cat >terminal.py <<'P'
@@ -84,7 +84,7 @@ print('\n'.join(line for line in lines if re.search(r'bunny\.obj\': .*, \d+ s$',
 assert shown.rfind(' s\x1b[K') <= shown.rfind('\r\x1b[K'), 'the line stays'
 sys.exit(os.waitstatus_to_exitcode(status))
 P
-python3 terminal.py "$relief" bake "$bunny" -o x.relief --max-error 0.5% -j 1 --time-limit 600 >lines || die "on a terminal: $(cat lines)"
+python3 terminal.py "$relief" bake "$bunny" -o x.relief --max-error 0.5% -j 1 --timeout 600 >lines || die "on a terminal: $(cat lines)"
 grep -qE "bunny\.obj': searching for the smallest budget, [0-9]+ s" lines || die "the line is: $(head -3 lines)"
 python3 terminal.py "$relief" bake "$bunny" -o x.relief --paper --resolution 1024 -j 1 --quality best >lines || die "on a terminal: $(cat lines)"
 grep -qE "bunny\.obj': baking the maps \[#+\.*\] [0-9]+ %, [0-9]+ s" lines || die "the line is: $(head -3 lines)"
