@@ -19,7 +19,8 @@ function setCollider(device, { texels, width, height, floats, integers }, radius
         uniform ivec4 reliefPlace;
         uniform float reliefRadius;`);
     chunks.set("particleUpdaterEndPS", `
-        ReliefCollider collider = ReliefCollider(reliefRows[0], reliefRows[1], reliefRows[2], reliefRows[3], reliefPlace);
+        mat4 rows = reliefRows;
+        ReliefCollider collider = ReliefCollider(rows[0], rows[1], rows[2], rows[3], reliefPlace);
         outPos = reliefCollide(reliefTexels, collider, outPos, outVel, reliefRadius, 0.0, 0.0).position;
         writeOutput();
     }`);
@@ -42,8 +43,8 @@ export async function start() {
     const systems = Array.from({ length: Math.ceil(kParticles / perSystem) }, () => {
         const entity = new pc.Entity();
         entity.addComponent("particlesystem", {
-            numParticles: perSystem, lifetime: 3, rate: 3 / perSystem, emitterShape: pc.EMITTERSHAPE_BOX, preWarm: false,
-            emitterExtents: new pc.Vec3(max[0] - min[0], 0.05 * side, max[2] - min[2]),
+            numParticles: perSystem, lifetime: 3, rate: 3 / perSystem, preWarm: false,
+            emitterShape: pc.EMITTERSHAPE_BOX, emitterExtents: new pc.Vec3(max[0] - min[0], 0.05 * side, max[2] - min[2]),
             velocityGraph: new pc.CurveSet([[0, 0], [0, -0.5 * side], [0, 0]]),
             scaleGraph: new pc.Curve([0, 0.004 * side]), colorGraph: new pc.CurveSet([[0, 0.75], [0, 0.84], [0, 0.92]]),
         });

@@ -29,9 +29,8 @@ const moving = (result) => `${glsl}
         gl_FragColor = vec4(motion.${result}, 1.0);
     }`;
 
-const kWidth = 400;
-
 export async function start() {
+    const kWidth = 400; // of the textures of particles
     const collider = openCollider(await (await fetch(new URL("body.relief", import.meta.url))).arrayBuffer());
     const renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
     renderer.setSize(innerWidth, innerHeight);

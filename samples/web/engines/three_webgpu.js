@@ -8,7 +8,8 @@ import { cameraOf, kParticles, randomPlaces, sceneOf } from "./snow.js";
 // The collider: a texture, a matrix and a vector, the arguments of a WGSL function.
 function colliderNodes({ texels, width, height, floats, integers }) {
     // WebGPURenderer has no format RGBA16UI: four words of 32 bits hold the same numbers.
-    const image = new THREE.DataTexture(Uint32Array.from(texels), width, height, THREE.RGBAIntegerFormat, THREE.UnsignedIntType);
+    const words = Uint32Array.from(texels);
+    const image = new THREE.DataTexture(words, width, height, THREE.RGBAIntegerFormat, THREE.UnsignedIntType);
     image.needsUpdate = true;
     return { texels: texture(image), rows: uniform(new THREE.Matrix4().fromArray(floats)),
              place: uniform(new THREE.Vector4(...integers), "ivec4") };
