@@ -76,7 +76,7 @@ test("npm pack, install and vite build give a working page", { timeout: 300_000 
 
 // As RELIEF.md of the export states it.
 for (const engine of ["three", "playcanvas"]) {
-    test(`vite build bundles the exported page of ${engine}`, { timeout: 300_000 }, async (t) => {
+    test(`vite build bundles the exported page of ${engine}`, { timeout: 600_000 }, async (t) => {
         const folder = scratch(t);
         const page = path.join(folder, "page");
         run("relief", "bake", bunny, "-q", "-o", path.join(folder, "bunny.relief"), "--budget", "20kB");
