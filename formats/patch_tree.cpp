@@ -13,7 +13,6 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t kTexel = 8;
 constexpr int kBaseZero = 2048;
 constexpr int kOffsetZero = 128;  // code of a coarse plane through the cell's centre; also the steps per cell
 constexpr int kCoarseHalfRange = 63;
@@ -213,8 +212,9 @@ PatchHeights PatchHeights::of(std::span<const double> heights, std::uint32_t sid
 
 PatchRecord PatchHeights::texel(std::uint32_t index) const {
     PatchRecord record;
-    for (std::uint32_t i = 0; i < kTexel; ++i) {
-        (i < 4 ? record.low : record.high) |= std::uint32_t{codes[kTexel * index + i]} << 8U * (i % 4);
+    for (std::uint32_t i = 0; i < kPatchTexelBytes; ++i) {
+        (i < 4 ? record.low : record.high) |= std::uint32_t{codes[kPatchTexelBytes * index + i]}
+                                              << 8U * (i % 4);
     }
     return record;
 }
@@ -273,7 +273,7 @@ PatchRecord PatchRecord::patch(const PatchFrame& frame, bool outside_below, cons
 
 PatchRecord patchTexel(PatchTexels texels, std::uint32_t index) {
     PatchRecord record;
-    std::memcpy(&record, texels.data() + std::size_t{index} * kTexel, kTexel);
+    std::memcpy(&record, texels.data() + std::size_t{index} * kPatchTexelBytes, kPatchTexelBytes);
     return record;
 }
 
@@ -356,7 +356,7 @@ std::optional<PatchVote> votePatches(PatchTexels texels, const glm::vec3& p) {
 }
 
 Result<void> validatePatches(PatchTexels texels) {
-    const std::size_t count = texels.size() / kTexel;
+    const std::size_t count = texels.size() / kPatchTexelBytes;
     if (count == 0 || count > kPatchTexelsMax) {
         return invalidInput("its tree of patches has " + std::to_string(count) + " texels, 1 to " +
                             std::to_string(kPatchTexelsMax) + " are allowed");

@@ -38,13 +38,15 @@
 #include <glm/vec3.hpp>
 
 #include "formats/base/result.h"
+#include "formats/texel.h"
 
 namespace relief {
 
 inline constexpr std::uint32_t kPatchLevelsMax = 15;  ///< splits below a root
 inline constexpr std::uint32_t kPatchTexelsMax = std::uint32_t{1} << 24;
+inline constexpr std::size_t kPatchTexelBytes = texelSize(MapFormat::kPatches);
 inline constexpr std::uint64_t kPatchBytesMin = 1024;  ///< minimum budget of a baker
-inline constexpr std::uint64_t kPatchBytesMax = 8 * std::uint64_t{kPatchTexelsMax};
+inline constexpr std::uint64_t kPatchBytesMax = std::uint64_t{kPatchTexelBytes} * kPatchTexelsMax;
 inline constexpr std::uint32_t kPatchSideMax = 5;  ///< heights per side
 
 /// The axes of a patch: depth w, and u and v across. For points in the cell's unit cube, u and v are in 0…1; w is in

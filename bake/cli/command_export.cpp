@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <functional>
-#include <iterator>
 #include <span>
 #include <string_view>
 
@@ -79,13 +78,18 @@ Result<void> exportImages(const std::vector<NamedImage>& images, const std::file
     return {};
 }
 
-/// Creates a folder for these files. Fails if they would overwrite another file of the run.
-Result<void> prepareFolder(const std::filesystem::path& folder, const std::vector<std::string>& names,
-                           const char* option, FileGuard& files) {
-    for (const std::string& name : names) {
-        RELIEF_TRY(files.writes(folder / name, option, folder));
+/// Creates the folders of these files. Fails if the files would overwrite another file of the run.
+/// \param outputs  of type NamedImage or EngineFile.
+template <class Outputs>
+Result<void> prepareFolder(const std::filesystem::path& folder, const Outputs& outputs, const char* option,
+                           FileGuard& files) {
+    for (const auto& output : outputs) {
+        RELIEF_TRY(files.writes(folder / output.name, option, (folder / output.name).parent_path()));
     }
-    return files.makes(folder, option);
+    for (const auto& output : outputs) {
+        RELIEF_TRY(files.makes((folder / output.name).parent_path(), option));
+    }
+    return {};
 }
 
 Result<void> checkTogether(const ExportCommand& command) {
@@ -132,11 +136,8 @@ Result<void> exportForEngine(const Source& source, Engine engine, const ExportCo
     const std::vector<EngineFile> exported =
         RELIEF_TRY(withPrefix(shownInput(command.file), engineFiles(source, name, engine)));
     const std::filesystem::path folder = command.engine.back();
+    RELIEF_TRY(prepareFolder(folder, exported, "--engine", files));
     for (const EngineFile& file : exported) {
-        RELIEF_TRY(files.writes(folder / file.name, "--engine", (folder / file.name).parent_path()));
-    }
-    for (const EngineFile& file : exported) {
-        RELIEF_TRY(files.makes((folder / file.name).parent_path(), "--engine"));
         RELIEF_TRY(writeFile(folder / file.name, file.bytes));
     }
     spdlog::info("wrote {} files into {}; RELIEF.md there lists the next steps", exported.size(),
@@ -192,9 +193,7 @@ Result<void> runExport(const ExportCommand& command, FileGuard& files) {
     }
     const std::vector<NamedImage> images = imagesOf(collider, command.resolution.value_or(kResolution));
     if (!command.output.empty()) {
-        std::vector<std::string> names;
-        std::ranges::transform(images, std::back_inserter(names), &NamedImage::name);
-        RELIEF_TRY(prepareFolder(command.output, names, "-o", files));
+        RELIEF_TRY(prepareFolder(command.output, images, "-o", files));
     }
     if (engine) {
         RELIEF_TRY(exportForEngine(collider, *engine, command, files));

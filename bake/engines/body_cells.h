@@ -14,7 +14,7 @@ namespace relief {
 
 /// A body of a level: 7 texels of RGBA32F.
 struct EngineBody {
-    EngineConstants constants;  ///< in world space
+    PatchConstants constants;  ///< in world space
     std::array<float, 4>
         min_restitution{};  ///< minimum of the world-space box; factor of the particle's restitution
     std::array<float, 4> max_friction{};  ///< maximum; friction of the body

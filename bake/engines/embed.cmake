@@ -26,7 +26,7 @@ foreach(path IN LISTS texts)
     file(READ ${ROOT}/${path} text)
     if(path MATCHES "[.]md$")
         # The last sections are about the project.
-        string(REGEX REPLACE "\n## (Try the pages?|Tests|The function)\n.*" "" text "${text}")
+        string(REGEX REPLACE "\n## (Tests|The function)\n.*" "" text "${text}")
         string(REGEX REPLACE "!\\[[^]]*\\]\\([^)]*\\)\n*" "" text "${text}")  # pictures
         string(REGEX REPLACE "\\[([^]]*)\\]\\([^)h#][^)]*\\)" "\\1" text "${text}")
     endif()

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bake/engines/engine_constants.h"
 
-#include <glm/gtc/quaternion.hpp>
 #include <string>
-
-#include "formats/patch_tree.h"
 
 namespace relief {
 
@@ -20,33 +17,12 @@ Result<const DepthMap*> engineMap(const Collider& collider) {
     return &collider.maps.front();
 }
 
-EngineConstants engineConstants(const DepthMap& map, std::uint32_t first) {
-    const auto [roots, levels] = patchTreeSize(map.texels);
-    EngineConstants constants;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const glm::vec4& row = map.object_to_map.row[i];
-        constants.rows[i] = {row.x, row.y, row.z, row.w};
+PatchConstants placedConstants(PatchConstants constants, const Pose& pose) {
+    for (glm::vec4& row : constants.row) {
+        row = fromWorld(pose, row);
     }
-    constants.size = {map.object_per_map.x, static_cast<float>(roots.x), static_cast<float>(roots.y),
-                      static_cast<float>(roots.z)};
-    constants.place = {static_cast<std::int32_t>(first), static_cast<std::int32_t>(roots.x),
-                       static_cast<std::int32_t>(roots.x * roots.y), static_cast<std::int32_t>(levels)};
+    constants.size.x *= pose.scale;
     return constants;
-}
-
-EngineConstants placedConstants(const EngineConstants& constants, const Pose& pose) {
-    EngineConstants placed = constants;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const auto& row = constants.rows[i];
-        // row · conj(q) (p − position) / scale + w, in doubles: a level may be large.
-        const glm::dquat rotation(pose.rotation);
-        const glm::dvec3 turned = rotation * glm::dvec3(row[0], row[1], row[2]) / double{pose.scale};
-        const double offset = double{row[3]} - glm::dot(turned, glm::dvec3(pose.position));
-        placed.rows[i] = {static_cast<float>(turned.x), static_cast<float>(turned.y),
-                          static_cast<float>(turned.z), static_cast<float>(offset)};
-    }
-    placed.size[0] *= pose.scale;
-    return placed;
 }
 
 void fillRow(std::vector<std::byte>& texels, std::size_t row) {

@@ -47,10 +47,12 @@ constexpr CopiedText kTexts[] = {
     {Engine::kUnreal, "samples/unreal/README.md", "RELIEF.md"},
     {Engine::kUnreal, "shaders/engines/relief.hlsl", "relief.hlsl"},
     {Engine::kThree, "samples/web/engines/three.md", "RELIEF.md"},
+    {Engine::kThree, "samples/web/engines/three.html", "index.html"},
     {Engine::kThree, "samples/web/engines/three_webgl.js", "three_webgl.js"},
     {Engine::kThree, "samples/web/engines/three_webgpu.js", "three_webgpu.js"},
     {Engine::kThree, "samples/web/engines/snow.js", "snow.js"},
     {Engine::kPlaycanvas, "samples/web/engines/playcanvas.md", "RELIEF.md"},
+    {Engine::kPlaycanvas, "samples/web/engines/playcanvas.html", "index.html"},
     {Engine::kPlaycanvas, "samples/web/engines/playcanvas.js", "playcanvas.js"},
     {Engine::kPlaycanvas, "samples/web/engines/snow.js", "snow.js"},
 };
@@ -70,6 +72,19 @@ std::string literal(std::string_view text) {
         result += c;
     }
     return result + "`";
+}
+
+/// Returns a file name as part of a URL.
+std::string inUrl(std::string_view name) {
+    constexpr std::string_view kDigits = "0123456789ABCDEF";
+    constexpr std::string_view kPlain = "0123456789-._abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
+    std::string result;
+    for (const char c : name) {
+        const auto byte = static_cast<unsigned char>(c);
+        result += kPlain.find(c) != kPlain.npos ? std::string{c}
+                                                : std::string{'%', kDigits[byte / 16], kDigits[byte % 16]};
+    }
+    return result;
 }
 
 std::vector<std::byte> bytesOf(std::string_view text) {
@@ -97,7 +112,7 @@ void appendTexts(std::vector<EngineFile>& files, Engine engine, std::string_view
             std::string text(engineText(copied.path));
             if (copied.name.ends_with(".js")) {
                 replaceAll(text, "relief-particles/collider", "./relief/index.js");
-                replaceAll(text, "body.relief", std::string(name) + ".relief");
+                replaceAll(text, "body.relief", inUrl(name) + ".relief");
             }
             files.push_back({std::string(copied.name), bytesOf(text)});
         }
@@ -130,7 +145,7 @@ Result<std::vector<EngineFile>> engineFiles(const Collider& collider, std::strin
         std::vector<std::byte> texels = map->texels;
         fillRow(texels);
         files.push_back({std::string(name) + ".texels", std::move(texels)});
-        files.push_back({std::string(name) + ".constants", bytesOf(std::vector{engineConstants(*map)})});
+        files.push_back({std::string(name) + ".constants", bytesOf(std::vector{patchConstants(*map)})});
     }
     appendTexts(files, engine, name);
     return files;
@@ -138,17 +153,17 @@ Result<std::vector<EngineFile>> engineFiles(const Collider& collider, std::strin
 
 Result<std::vector<EngineFile>> engineFiles(const LoadedWorld& loaded, std::string_view name, Engine engine) {
     std::vector<std::byte> texels;
-    std::vector<EngineConstants> colliders;
+    std::vector<PatchConstants> colliders;
     for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
         const DepthMap* map =
             RELIEF_TRY(withPrefix(loaded.world.colliders[i].file, engineMap(loaded.colliders[i])));
-        const std::size_t first = texels.size() / kEngineTexelBytes;
-        if (first + map->texels.size() / kEngineTexelBytes > kEngineTexelsMax) {
+        const std::size_t first = texels.size() / kPatchTexelBytes;
+        if (first + map->texels.size() / kPatchTexelBytes > kEngineTexelsMax) {
             return fail(ErrorCode::kLimit, "the colliders of this level exceed the " +
                                                std::to_string(kEngineTexelsMax) +
                                                " texels of one texture; bake it with a smaller --budget");
         }
-        colliders.push_back(engineConstants(*map, static_cast<std::uint32_t>(first)));
+        colliders.push_back(patchConstants(*map, first));
         texels.insert(texels.end(), map->texels.begin(), map->texels.end());
     }
     fillRow(texels);

@@ -13,8 +13,6 @@
 
 namespace relief {
 
-inline constexpr double kPatchTexelBytes = 8.0;
-
 /// The contents of a leaf with a surface.
 struct PatchShape {
     std::uint32_t side = 0;  ///< heights along a side; 0: no surface
@@ -26,7 +24,7 @@ struct PatchShape {
     }
     /// Bytes in addition to a bit in the parent's record.
     [[nodiscard]] constexpr double bytes() const {
-        return side > 0 ? kPatchTexelBytes * (1.0 + texels()) : 0.0;
+        return side > 0 ? double{kPatchTexelBytes} * (1.0 + texels()) : 0.0;
     }
 };
 /// Shapes in the order in which they are tried: outside and inside without a surface first.

@@ -290,7 +290,7 @@ class Planner {
             texels += std::max(0.0, node.bytes / kPatchTexelBytes - 1.0);
         }
         const PatchMapSize size = patchMapSize(static_cast<std::size_t>(texels));
-        return kPatchTexelBytes * size.width * size.height;
+        return double{kPatchTexelBytes} * size.width * size.height;
     }
 
     /// A bracket of the worth of a byte, with the bytes of the trees: `dear` fits, `cheap` does not; `cheap` is 0 if
@@ -342,7 +342,7 @@ class Planner {
     [[nodiscard]] double spareBytes() const {
         const double all = static_cast<double>(options_.bytes);
         const PatchMapSize size = patchMapSize(static_cast<std::size_t>(all / kPatchTexelBytes));
-        return all - takenBytes() - kPatchTexelBytes * size.width;
+        return all - takenBytes() - double{kPatchTexelBytes} * size.width;
     }
 
     /// Shrinks the tree if depth planes are worth more than its last bytes.
@@ -458,7 +458,7 @@ class Planner {
         }
         makeRoots();
         texels_ = 0;
-        texels_most_ = options_.bytes / static_cast<std::uint64_t>(kPatchTexelBytes);
+        texels_most_ = options_.bytes / kPatchTexelBytes;
         roots_done_ = 0;
         forEachIndex(0, nodes_.size(), 1, [&](std::size_t i) {
             refine(nodes_[i], levels_);

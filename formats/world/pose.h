@@ -32,6 +32,15 @@ struct Pose {
     return world;
 }
 
+/// Returns a row of a transform from object space as that of the transform from world space: in doubles, because a world
+/// may be large.
+[[nodiscard]] inline glm::vec4 fromWorld(const Pose& pose, const glm::vec4& row) {
+    const glm::dvec3 turned =
+        glm::mat3_cast(glm::dquat(pose.rotation)) * glm::dvec3(row) / double{pose.scale};
+    return {glm::vec3(turned),
+            static_cast<float>(double{row.w} - glm::dot(turned, glm::dvec3(pose.position)))};
+}
+
 [[nodiscard]] inline glm::vec3 toObject(const Pose& pose, const glm::vec3& p) {
     return (glm::conjugate(pose.rotation) * (p - pose.position)) / pose.scale;
 }

@@ -82,9 +82,7 @@ BlockMap placedMap(const BlockMap& map, const Pose& pose) {
     const double scale = pose.scale;
     BlockMap placed = map;
     for (int i = 0; i < 3; ++i) {
-        const glm::dvec3 row = turn * glm::dvec3(map.row[i]) / scale;
-        placed.row[i] =
-            glm::vec4(glm::dvec4(row, double{map.row[i].w} - glm::dot(row, glm::dvec3(pose.position))));
+        placed.row[i] = fromWorld(pose, map.row[i]);
         placed.column[i] = glm::vec4(glm::vec3(scale * (turn * glm::dvec3(map.column[i]))), map.column[i].w);
     }
     placed.object_per_map.x *= pose.scale;

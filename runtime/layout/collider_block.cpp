@@ -5,7 +5,7 @@
 #include <cstring>
 #include <glm/glm.hpp>
 
-#include "formats/patch_tree.h"
+#include "formats/patch_constants.h"
 #include "shaders/collider/constants.h"
 
 namespace relief {
@@ -35,7 +35,6 @@ BlockMap blockMap(const PlacedMap& placed, const MapPlace& at) {
     BlockMap block{};
     const bool cube = map.projection() == Projection::kCube;
     const bool patches = map.projection() == Projection::kLocal;
-    const PatchTreeSize tree = patches ? patchTreeSize(map.texels) : PatchTreeSize{};
     const glm::vec3 size = cube || patches ? glm::vec3(1.0F) : glm::vec3(map.width, map.height, 1.0F);
     const float last[3] = {0.0F, static_cast<float>(map.width - 1), static_cast<float>(map.height - 1)};
     for (int i = 0; i < 3; ++i) {
@@ -45,19 +44,14 @@ BlockMap blockMap(const PlacedMap& placed, const MapPlace& at) {
         block.column[i] = glm::vec4(row * map.object_per_map[i] * map.object_per_map[i] / size[i],
                                     patches ? 0.0F : last[i]);
     }
-    block.object_per_map = patches ? glm::vec4(map.object_per_map.x, glm::vec3(tree.roots))
-                                   : glm::vec4(map.object_per_map, 0.0F);
-    const auto width = static_cast<std::int32_t>(map.width);
+    const PatchConstants patch = patches ? patchConstants(map, at.first) : PatchConstants{};
+    block.object_per_map = patches ? patch.size : glm::vec4(map.object_per_map, 0.0F);
     const auto height = static_cast<std::int32_t>(map.height);
-    const auto first = static_cast<std::int32_t>(at.first);
-    const auto along_y = static_cast<std::int32_t>(tree.roots.x);
-    const std::int32_t place[4] = {
-        first, patches ? along_y : at.pitch,
-        patches ? along_y * static_cast<std::int32_t>(tree.roots.y) : at.pitch * height,
-        patches ? static_cast<std::int32_t>(tree.levels) : width};
+    const glm::ivec4 place =
+        patches ? patch.place : glm::ivec4(at.first, at.pitch, at.pitch * height, map.width);
     const std::int32_t info[4] = {height, static_cast<std::int32_t>(map.format), flagsOf(placed),
                                   static_cast<std::int32_t>(at.motion_first)};
-    std::memcpy(block.place, place, sizeof(place));
+    std::memcpy(block.place, &place, sizeof(place));
     std::memcpy(block.info, info, sizeof(info));
     return block;
 }

@@ -10,7 +10,7 @@ vec3 reliefPatchRoots(int i) {
 ReliefVote reliefVotePatches(int i, ivec4 info, vec3 p, bool whole) {
     bool encloses = reliefHas(info, RELIEF_ENCLOSES);
     ReliefVote vote = ReliefVote(encloses ? RELIEF_FAR_OUTSIDE : RELIEF_FAR_INSIDE, RELIEF_NO_CODE);
-    if (all(greaterThanEqual(p, vec3(0.0))) && all(lessThan(p, reliefPatchRoots(i)))) {
+    if (reliefInRoots(p, reliefPatchRoots(i))) {
         vec4 surface = reliefPatches(u_relief_front_back, reliefMapPlace(i), p, whole);
         float root_size = reliefObjectPerMap(i).x;
         bool known = surface.w < RELIEF_FAR_OUTSIDE;

@@ -43,7 +43,6 @@ float reliefRow(vec4 row, vec3 p) {
 vec3 reliefUnit(vec3 v) {
     return v * inversesqrt(v.x * v.x + v.y * v.y + v.z * v.z);
 }
-
 // Returns the point of the octahedron with an index of 0 to 2 half_range in each direction, in index steps.
 vec3 reliefFold(vec2 index, float half_range) {
     vec2 st = index - vec2(half_range, half_range);
@@ -51,7 +50,6 @@ vec3 reliefFold(vec2 index, float half_range) {
     float beyond = max(-z, 0.0);  // below the equator, both are reflected by their excess
     return vec3(st.x - (st.x < 0.0 ? -beyond : beyond), st.y - (st.y < 0.0 ? -beyond : beyond), z);
 }
-
 // Returns the two words of a texel.
 uvec2 reliefPatchTexel(highp usampler2D texels, int index) {
     uint row = uint(index) >> uint(RELIEF_LOG2_WIDTH);
@@ -64,7 +62,6 @@ int reliefBitCount(uint bits) {
     uint nibbles = (pairs & 0x33u) + ((pairs >> 2u) & 0x33u);
     return int((nibbles + (nibbles >> 4u)) & 0xfu);
 }
-
 // Transforms q into the frame of a patch: u, v and the depth w.
 vec3 reliefPatchAcross(uvec2 record, vec3 q) {
     uint diagonal = (record.x >> 5u) & 3u;
@@ -203,6 +200,10 @@ vec4 reliefPatches(highp usampler2D texels, ivec4 place, vec3 p, bool whole) {
     return vote;
 }
 
+// q: map space. roots: their numbers along x, y and z.
+bool reliefInRoots(vec3 q, vec3 roots) {
+    return q.x >= 0.0 && q.y >= 0.0 && q.z >= 0.0 && q.x < roots.x && q.y < roots.y && q.z < roots.z;
+}
 // As reliefDistance(), but extrapolates the surface up to `reach` beyond the root cells.
 ReliefSurface reliefNear(highp usampler2D texels, ReliefCollider collider, vec3 p, float reach) {
     ReliefSurface surface;
@@ -212,11 +213,10 @@ ReliefSurface reliefNear(highp usampler2D texels, ReliefCollider collider, vec3 
     vec3 held = clamp(q, vec3(0.0, 0.0, 0.0), 0.99999994 * collider.size.yzw);  // in the root cells
     vec3 to = collider.size.x * collider.size.x * (q - held);
     vec3 way = collider.row_x.xyz * to.x + (collider.row_y.xyz * to.y + collider.row_z.xyz * to.z);
-    bool within = held.x == q.x && held.y == q.y && held.z == q.z;
+    bool within = reliefInRoots(q, collider.size.yzw);
     if (within || (reach > 0.0 && reliefDot(way, way) < reach * reach)) {
         vec4 vote = collider.size.x * reliefPatches(texels, collider.place, held, true);
-        vec3 yz = collider.row_y.xyz * vote.y + collider.row_z.xyz * vote.z;
-        surface.normal = collider.row_x.xyz * vote.x + yz;
+        surface.normal = collider.row_x.xyz * vote.x + (collider.row_y.xyz * vote.y + collider.row_z.xyz * vote.z);
         float d = within ? vote.w : vote.w + reliefDot(way, surface.normal);
         surface.distance = vote.w > -3.4e38 ? d : 1.0e30;  // an overflow is not inside
     }

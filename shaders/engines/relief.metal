@@ -44,7 +44,6 @@ inline float reliefRow(float4 row, float3 p) {
 inline float3 reliefUnit(float3 v) {
     return v * rsqrt(v.x * v.x + v.y * v.y + v.z * v.z);
 }
-
 // Returns the point of the octahedron with an index of 0 to 2 half_range in each direction, in index steps.
 inline float3 reliefFold(float2 index, float half_range) {
     float2 st = index - float2(half_range, half_range);
@@ -52,7 +51,6 @@ inline float3 reliefFold(float2 index, float half_range) {
     float beyond = max(-z, 0.0);  // below the equator, both are reflected by their excess
     return float3(st.x - (st.x < 0.0 ? -beyond : beyond), st.y - (st.y < 0.0 ? -beyond : beyond), z);
 }
-
 // Returns the two words of a texel.
 inline uint2 reliefPatchTexel(texture2d<uint> texels, int index) {
     uint row = uint(index) >> uint(RELIEF_LOG2_WIDTH);
@@ -65,7 +63,6 @@ inline int reliefBitCount(uint bits) {
     uint nibbles = (pairs & 0x33u) + ((pairs >> 2u) & 0x33u);
     return int((nibbles + (nibbles >> 4u)) & 0xfu);
 }
-
 // Transforms q into the frame of a patch: u, v and the depth w.
 inline float3 reliefPatchAcross(uint2 record, float3 q) {
     uint diagonal = (record.x >> 5u) & 3u;
@@ -204,6 +201,10 @@ inline float4 reliefPatches(texture2d<uint> texels, int4 place, float3 p, bool w
     return vote;
 }
 
+// q: map space. roots: their numbers along x, y and z.
+inline bool reliefInRoots(float3 q, float3 roots) {
+    return q.x >= 0.0 && q.y >= 0.0 && q.z >= 0.0 && q.x < roots.x && q.y < roots.y && q.z < roots.z;
+}
 // As reliefDistance(), but extrapolates the surface up to `reach` beyond the root cells.
 inline ReliefSurface reliefNear(texture2d<uint> texels, ReliefCollider collider, float3 p, float reach) {
     ReliefSurface surface;
@@ -213,11 +214,10 @@ inline ReliefSurface reliefNear(texture2d<uint> texels, ReliefCollider collider,
     float3 held = clamp(q, float3(0.0, 0.0, 0.0), 0.99999994 * collider.size.yzw);  // in the root cells
     float3 to = collider.size.x * collider.size.x * (q - held);
     float3 way = collider.row_x.xyz * to.x + (collider.row_y.xyz * to.y + collider.row_z.xyz * to.z);
-    bool within = held.x == q.x && held.y == q.y && held.z == q.z;
+    bool within = reliefInRoots(q, collider.size.yzw);
     if (within || (reach > 0.0 && reliefDot(way, way) < reach * reach)) {
         float4 vote = collider.size.x * reliefPatches(texels, collider.place, held, true);
-        float3 yz = collider.row_y.xyz * vote.y + collider.row_z.xyz * vote.z;
-        surface.normal = collider.row_x.xyz * vote.x + yz;
+        surface.normal = collider.row_x.xyz * vote.x + (collider.row_y.xyz * vote.y + collider.row_z.xyz * vote.z);
         float d = within ? vote.w : vote.w + reliefDot(way, surface.normal);
         surface.distance = vote.w > -3.4e38 ? d : 1.0e30;  // an overflow is not inside
     }

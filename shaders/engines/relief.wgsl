@@ -39,7 +39,6 @@ fn reliefRow(row: vec4f, p: vec3f) -> f32 {
 fn reliefUnit(v: vec3f) -> vec3f {
     return v * inverseSqrt(v.x * v.x + v.y * v.y + v.z * v.z);
 }
-
 // Returns the point of the octahedron with an index of 0 to 2 half_range in each direction, in index steps.
 fn reliefFold(index: vec2f, half_range: f32) -> vec3f {
     let st = index - vec2f(half_range, half_range);
@@ -47,7 +46,6 @@ fn reliefFold(index: vec2f, half_range: f32) -> vec3f {
     let beyond = max(-z, 0.0);  // below the equator, both are reflected by their excess
     return vec3f(st.x - (select(beyond, -beyond, st.x < 0.0)), st.y - (select(beyond, -beyond, st.y < 0.0)), z);
 }
-
 // Returns the two words of a texel.
 fn reliefPatchTexel(texels: texture_2d<u32>, index: i32) -> vec2u {
     let row = u32(index) >> u32(RELIEF_LOG2_WIDTH);
@@ -60,7 +58,6 @@ fn reliefBitCount(bits: u32) -> i32 {
     let nibbles = (pairs & 0x33u) + ((pairs >> 2u) & 0x33u);
     return i32((nibbles + (nibbles >> 4u)) & 0xfu);
 }
-
 // Transforms q into the frame of a patch: u, v and the depth w.
 fn reliefPatchAcross(record: vec2u, q: vec3f) -> vec3f {
     let diagonal = (record.x >> 5u) & 3u;
@@ -199,6 +196,10 @@ fn reliefPatches(texels: texture_2d<u32>, place: vec4i, p: vec3f, whole: bool) -
     return vote;
 }
 
+// q: map space. roots: their numbers along x, y and z.
+fn reliefInRoots(q: vec3f, roots: vec3f) -> bool {
+    return q.x >= 0.0 && q.y >= 0.0 && q.z >= 0.0 && q.x < roots.x && q.y < roots.y && q.z < roots.z;
+}
 // As reliefDistance(), but extrapolates the surface up to `reach` beyond the root cells.
 fn reliefNear(texels: texture_2d<u32>, collider: ReliefCollider, p: vec3f, reach: f32) -> ReliefSurface {
     var surface: ReliefSurface;
@@ -208,11 +209,10 @@ fn reliefNear(texels: texture_2d<u32>, collider: ReliefCollider, p: vec3f, reach
     let held = clamp(q, vec3f(0.0, 0.0, 0.0), 0.99999994 * collider.size.yzw);  // in the root cells
     let to = collider.size.x * collider.size.x * (q - held);
     let way = collider.row_x.xyz * to.x + (collider.row_y.xyz * to.y + collider.row_z.xyz * to.z);
-    let within = held.x == q.x && held.y == q.y && held.z == q.z;
+    let within = reliefInRoots(q, collider.size.yzw);
     if (within || (reach > 0.0 && reliefDot(way, way) < reach * reach)) {
         let vote = collider.size.x * reliefPatches(texels, collider.place, held, true);
-        let yz = collider.row_y.xyz * vote.y + collider.row_z.xyz * vote.z;
-        surface.normal = collider.row_x.xyz * vote.x + yz;
+        surface.normal = collider.row_x.xyz * vote.x + (collider.row_y.xyz * vote.y + collider.row_z.xyz * vote.z);
         let d = select(vote.w + reliefDot(way, surface.normal), vote.w, within);
         surface.distance = select(1.0e30, d, vote.w > -3.4e38);  // an overflow is not inside
     }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Uses relief.h as C99 and as C++: single COLLIDER.relief prints the field and a collision at 20,000 points of a grid in
- * and around the collider, as bits, so that the output of different compilers and processors can be compared. Before,
- * checks that no truncated file is accepted. Each line: point, distance, normal, then position and velocity after a
- * collision, each as 8 hexadecimal digits. */
+/* Uses relief.h as C99 and as C++: single COLLIDER.relief... prints the field and a collision at 20,000 points of a grid
+ * in and around each collider, as bits, so that the output of different compilers and processors can be compared.
+ * Before, checks that no truncated file is accepted. For each collider, a line of constants, then one for each point:
+ * point, distance, normal, then position and velocity after a collision, each as 8 hexadecimal digits. */
 #define RELIEF_IMPLEMENTATION
 #include "relief.h"
 
@@ -46,16 +46,16 @@ static int opens_truncated(const char* path) {
     return 0;
 }
 
-int main(int argc, char** argv) {
+static int print_collider(const char* path) {
     relief_collider collider;
-    relief_status status = argc == 2 ? relief_load(&collider, argv[1], NULL) : RELIEF_CANNOT_READ;
+    relief_status status = relief_load(&collider, path, NULL);
     const relief_constants* constants = &collider.constants;
     int i, k;
     if (status != RELIEF_OK) {
         printf("%s\n", relief_message(status));
         return 1;
     }
-    if (opens_truncated(argv[1])) {
+    if (opens_truncated(path)) {
         printf("a truncated file opens\n");
         return 1;
     }
@@ -82,4 +82,12 @@ int main(int argc, char** argv) {
     }
     relief_close(&collider);
     return 0;
+}
+
+int main(int argc, char** argv) {
+    int i, failed = argc < 2;
+    for (i = 1; i < argc && !failed; ++i) {
+        failed = print_collider(argv[i]);
+    }
+    return failed;
 }

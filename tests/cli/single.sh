@@ -8,16 +8,23 @@ cp "$RELIEF_SOURCE/tests/cli/single.c" "$RELIEF_SOURCE/samples/own_engine/bounce
 [ "$(wc -l <"$header/relief.h")" -le 1500 ] || die "relief.h has more than 1,500 lines"
 warnings=(-Wall -Wextra -pedantic -Werror -I"$header")
 "$relief" bake "$bunny" -q -o bunny.relief --budget 300kB
+"$relief" bake "${bunny%/*}/horse.3ds" -q -o horse.relief --budget 50kB
+"$relief" bake "${bunny%/*}/cat.3ds" -q -o cat.relief --budget 50kB
 
 # needs PROGRAM PACKAGE: fails if a program is missing.
 needs() { command -v "$1" >/dev/null || die "$1 is missing; install $2 (scripts/setup.sh)"; }
+
+needs node nodejs
+node --input-type=module -e "import { writeTrees } from '$RELIEF_SOURCE/tests/web/lib/trees.mjs'; writeTrees('.')"
+colliders=(bunny horse cat tree{1..7})
+files=("${colliders[@]/%/.relief}")
 
 # compiled NAME COMMAND…: compiles a program, which must print what the first one printed.
 compiled() {
     local name=$1
     shift
     "$@" "${warnings[@]}" -o "$name" single.c -lm || die "relief.h does not compile: $*"
-    "./$name" bunny.relief >"$name.out" || die "$name fails: $(cat "$name.out")"
+    "./$name" "${files[@]}" >"$name.out" || die "$name fails: $(cat "$name.out")"
     cmp "$name.out" c99.out || die "results differ: $*"
 }
 
@@ -40,34 +47,40 @@ fi
 echo "linux: $(wc -l <c99.out) lines, the same from every compiler"
 
 # The library gives the same numbers.
-python3 - c99.out <<'P'
+python3 - "${colliders[@]}" <<'P'
 import struct, sys
 single = lambda word: struct.unpack('>f', bytes.fromhex(word))[0]
-with open('points.csv', 'w') as out:
-    for line in open(sys.argv[1]).read().splitlines()[1:]:
-        out.write(','.join('%.9g' % single(word) for word in line.split()[:3]) + '\n')
+lines = open('c99.out').read().splitlines()
+assert len(lines) == 20_001 * len(sys.argv[1:])
+for i, name in enumerate(sys.argv[1:]):
+    with open(name + '.csv', 'w') as out:
+        for line in lines[20_001 * i + 1:20_001 * (i + 1)]:
+            out.write(','.join('%.9g' % single(word) for word in line.split()[:3]) + '\n')
 P
-"$relief" query bunny.relief --points points.csv -o reference.csv --distance plane
-python3 - c99.out <<'P' || die "relief.h and relief query disagree"
+for name in "${colliders[@]}"; do
+    "$relief" query "$name.relief" --points "$name.csv" -o "$name.reference.csv" --distance plane
+done
+python3 - "${colliders[@]}" <<'P' || die "relief.h and relief query disagree"
 import csv, struct, sys
 single = lambda word: struct.unpack('>f', bytes.fromhex(word))[0]
 rounded = lambda text: struct.unpack('f', struct.pack('f', float(text)))[0]
-lines = open(sys.argv[1]).read().splitlines()[1:]
-reference = list(csv.DictReader(open('reference.csv')))
-assert len(lines) == len(reference) == 20_000
-near = inside = hit = 0
-for line, b in zip(lines, reference):
-    words = line.split()
-    values = [single(word) for word in words]
-    if b['f'] in ('', 'inf'):
-        assert values[3] == rounded('1e30') and values[4:7] == [0, 0, 0], (line, b)
-    else:
-        assert values[3:7] == [rounded(b[key]) for key in ('f', 'nx', 'ny', 'nz')], (line, b)
-        near += 1
-    inside += values[3] < 0
-    hit += words[:3] != words[7:10]
-print(f'relief query: {near} near, {inside} inside, {hit} hit')
-sys.exit(0 if near > 5000 and inside > 1000 and hit > inside else 1)
+lines = open('c99.out').read().splitlines()
+for i, name in enumerate(sys.argv[1:]):
+    reference = list(csv.DictReader(open(name + '.reference.csv')))
+    assert len(reference) == 20_000
+    near = inside = hit = 0
+    for line, b in zip(lines[20_001 * i + 1:], reference):
+        words = line.split()
+        values = [single(word) for word in words]
+        if b['f'] in ('', 'inf'):
+            assert values[3] == rounded('1e30') and values[4:7] == [0, 0, 0], (name, line, b)
+        else:
+            assert values[3:7] == [rounded(b[key]) for key in ('f', 'nx', 'ny', 'nz')], (name, line, b)
+            near += 1
+        inside += values[3] < 0
+        hit += words[:3] != words[7:10]
+    print(f'{name}: {near} near, {inside} inside, {hit} hit')
+    assert near > 5000 and inside > 500 and hit > inside
 P
 
 # Balls come to rest on the surface.
@@ -100,7 +113,7 @@ wine=$(command -v wine64 || command -v wine || echo /usr/lib/wine/wine64)
 needs "$wine" wine64
 x86_64-w64-mingw32-gcc -std=c99 -O2 "${warnings[@]}" single.c -o single.exe || die "it does not compile for Windows"
 export WINEPREFIX=$work/wine WINEDEBUG=-all DISPLAY=
-"$wine" single.exe bunny.relief >windows.out 2>log || die "single.exe fails: $(tail -5 log windows.out)"
+"$wine" single.exe "${files[@]}" >windows.out 2>log || die "single.exe fails: $(tail -5 log windows.out)"
 tr -d '\r' <windows.out | cmp - c99.out || die "results differ on Windows"
 server=$(command -v wineserver || echo /usr/lib/wine/wineserver64)
 "$server" -k || true # it would outlive its folder
@@ -109,9 +122,8 @@ echo "windows: the same"
 
 # WebAssembly.
 needs emcc "emscripten (scripts/setup.sh web)"
-needs node nodejs
 NODE_PATH=/usr/share/nodejs emcc -std=c99 -O2 "${warnings[@]}" single.c -o single.js -sNODERAWFS=1 \
     -sALLOW_MEMORY_GROWTH=1 -sSINGLE_FILE=1 2>log || die "it does not compile to WebAssembly: $(tail -5 log)"
-node single.js bunny.relief >web.out 2>log || die "single.js fails: $(tail -c 500 log web.out)"
+node single.js "${files[@]}" >web.out 2>log || die "single.js fails: $(tail -c 500 log web.out)"
 cmp web.out c99.out || die "results differ in WebAssembly"
 echo "wasm: the same"

@@ -62,7 +62,8 @@ for engine in c godot unity unreal three playcanvas; do
     done
     page=engine_$engine/RELIEF.md
     [ -s $page ] && ! grep -qE '\]\(\.|scripts/|tests/' $page || die "$engine has no page, or one that needs the project: $(cat $page)"
-    for file in $(find engine_$engine -name '*.js' -exec grep -ohE "[\"'][a-z./_]+\.(js|relief)[\"']" {} + | tr -d \"\'); do
+    for file in $(find engine_$engine \( -name '*.js' -o -name '*.html' \) -exec grep -ohE "[\"'][a-z./_]+\.(js|relief)[\"']" {} + |
+        grep -v node_modules | tr -d \"\'); do
         [ -n "$(find engine_$engine -name "${file##*/}")" ] || die "$engine lacks $file"
     done
 done

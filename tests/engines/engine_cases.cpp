@@ -274,14 +274,7 @@ Case makeCase(std::string name, Collider collider, std::size_t count, std::uint3
               std::uint32_t before) {
     Random random(seed);
     const DepthMap& map = collider.maps.at(0);
-    const PatchTreeSize size = patchTreeSize(map.texels);
-    Case one{std::move(name), {}, {}, {}, makeQueries(collider, count, random)};
-    for (std::size_t i = 0; i < 3; ++i) {
-        one.constants.rows[i] = map.object_to_map.row[i];
-    }
-    one.constants.size = {map.object_per_map.x, size.roots.x, size.roots.y, size.roots.z};
-    one.constants.place = {static_cast<int>(before), static_cast<int>(size.roots.x),
-                           static_cast<int>(size.roots.x * size.roots.y), static_cast<int>(size.levels)};
+    Case one{std::move(name), {}, patchConstants(map, before), {}, makeQueries(collider, count, random)};
     const std::size_t texels = before + map.texels.size() / sizeof(PatchRecord);
     one.texels.resize((texels + kWidth - 1) / kWidth * kWidth * 4);
     std::generate_n(one.texels.begin(), 4 * before, [&] { return static_cast<std::uint16_t>(random()); });

@@ -13,18 +13,11 @@
 #include <vector>
 
 #include "formats/collider.h"
+#include "formats/patch_constants.h"
 
 namespace relief::engines {
 
 inline constexpr std::uint32_t kWidth = 2048;  ///< texels per row of the texture
-
-/// The 80 bytes of ReliefCollider in relief.glsl.
-struct Constants {
-    std::array<glm::vec4, 3> rows;
-    glm::vec4 size;
-    std::array<std::int32_t, 4> place;
-};
-static_assert(sizeof(Constants) == 80);
 
 /// The inputs of reliefDistance() and reliefCollide(); object space. The last number of point and velocity is unused.
 struct Query {
@@ -44,7 +37,7 @@ struct Answer {
 struct Case {
     std::string name;
     Collider collider;  ///< one map of patches
-    Constants constants;
+    PatchConstants constants;
     std::vector<std::uint16_t> texels;  ///< rows of kWidth texels, four words each
     std::vector<Query> queries;
 

@@ -69,10 +69,10 @@ template <class Collider, class Texture>
 void expectTheCpuField(std::size_t points, auto distance, auto collide) {
     for (const Case& one : casesOf(points)) {
         SCOPED_TRACE(one.name);
-        const Constants& own = one.constants;
-        const Collider collider{real4(own.rows[0]),
-                                real4(own.rows[1]),
-                                real4(own.rows[2]),
+        const PatchConstants& own = one.constants;
+        const Collider collider{real4(own.row[0]),
+                                real4(own.row[1]),
+                                real4(own.row[2]),
                                 real4(own.size),
                                 {own.place[0], own.place[1], own.place[2], own.place[3]}};
         const Texture texels{&one.texels};

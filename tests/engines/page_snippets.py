@@ -3,8 +3,8 @@
 """Compiles the HLSL of samples/unity/README.md and samples/unreal/README.md with glslangValidator.
 
 A comment `<!-- hlsl: FILE ENTRY -->` precedes each block; without ENTRY, STUBS calls the function. Any path of
-relief.hlsl or relief.ush becomes shaders/engines/relief.hlsl. Other includes, which are those of the engines, are
-removed.
+relief.hlsl or relief.ush becomes shaders/engines/relief.hlsl, and any path of an earlier block that block. Other
+includes, which are those of the engines, are removed.
 """
 import pathlib
 import re
@@ -19,6 +19,10 @@ OUTPUT = "RWStructuredBuffer<float4> out_values;\n[numthreads(1, 1, 1)]\nvoid ma
 # Declarations of the engine before a file, and a caller of its function.
 ATTRIBUTES = "struct VFXAttributes {\n    float3 position;\n    float3 velocity;\n    bool alive;\n};\n"
 STUBS = {
+    "ReliefCollider.hlsl": ("", OUTPUT + """
+    out_values[0].xyz = reliefDistance(relief_texels, relief_collider, out_values[1].xyz).normal;
+}
+"""),
     "ReliefBounce.hlsl": (ATTRIBUTES, OUTPUT + """
     VFXAttributes attributes;
     attributes.position = out_values[0].xyz;
@@ -38,14 +42,16 @@ STUBS = {
 }
 
 
-def included(match):
-    return '#include "relief.hlsl"' if re.search(r"(^|/)relief\.(hlsl|ush)$", match[1]) else ""
+def included(path, blocks):
+    name = re.sub("^relief\\.ush$", "relief.hlsl", path.split("/")[-1])
+    return f'#include "{name}"' if name == "relief.hlsl" or name in blocks else ""
 
 
 def main():
     count = 0
     with tempfile.TemporaryDirectory() as folder:
         for page in PAGES:
+            blocks = []
             text = (ROOT / page).read_text()
             snippets = SNIPPET.findall(text)
             if len(snippets) != text.count("```hlsl") or not snippets:
@@ -53,9 +59,11 @@ def main():
             for name, entry, code in snippets:
                 code = code.replace("{ParameterName}", "Relief")
                 before, after = ("", "") if entry else STUBS[name]
-                source = re.sub(r'#include "(.*)"', included, before + code + after)
-                file = pathlib.Path(folder, name)
-                file.write_text("#extension GL_GOOGLE_include_directive : require\n" + source)
+                code = re.sub(r'#include "(.*)"', lambda match: included(match[1], blocks), code)
+                pathlib.Path(folder, name).write_text(code)
+                blocks.append(name)
+                file = pathlib.Path(folder, "main.hlsl")
+                file.write_text("#extension GL_GOOGLE_include_directive : require\n" + before + code + after)
                 command = ["glslangValidator", "-D", "-V", "-S", "comp", "-e", entry or "main", "--auto-map-bindings",
                            f"-I{ROOT}/shaders/engines", "-o", file.with_suffix(".spv"), file]
                 run = subprocess.run(command, text=True, stdout=subprocess.PIPE)

@@ -7,7 +7,8 @@ import path from "node:path";
 import test from "node:test";
 
 import { gpuQuery } from "./lib/gpu_query.js";
-import { generator, run, scratch } from "./lib/native.mjs";
+import { run, scratch } from "./lib/native.mjs";
+import { generator } from "./lib/random.mjs";
 import { keptDepths, openFile, viewer } from "./lib/view.mjs";
 
 const animated = "/usr/share/assimp/models/glTF2/glTF-Sample-Models/AnimatedMorphCube-glTF/AnimatedMorphCube.gltf";

@@ -17,8 +17,9 @@ import { gzipSync } from "node:zlib";
 
 import { collide, distance, openCollider } from "../../out/npm/engines.js";
 import { launch, modules, openPage, root, serve } from "./lib/browser.mjs";
-import { bin, bunny, generator, run, scratch } from "./lib/native.mjs";
-import { containerOf, randomTree, seal } from "./lib/trees.mjs";
+import { bin, bunny, run, scratch } from "./lib/native.mjs";
+import { generator } from "./lib/random.mjs";
+import { containerOf, randomTree, seal, writeTrees } from "./lib/trees.mjs";
 
 const kPoints = 10_000; // per collider
 const kUlps = 4;
@@ -31,18 +32,7 @@ const decompress = (packed, size) => unzstd(packed, new Uint8Array(size));
 
 /** Ten colliders with points in and around them: trees of every kind of leaf, and baked meshes. */
 function makeColliders(folder) {
-    const turned = { transform: [0, 0, 2, 1, 0, -2, 0, 2.5, 2, 0, 0, 0.25], root: 0.5 };
-    const kinds = { flat: 0, split: 0, pair: 0, patches: Array(39).fill(0) };
-    const made = [[1, [1, 2, 1], 5], [2, [3, 2, 4], 3], [3, [3, 2, 4], 3], [4, [7, 1, 2], 4], [5, [4, 4, 4], 1], [6, [2, 2, 2], 4],
-                  [7, [5, 4, 3], 3]].map(([seed, roots, levels]) => {
-        const tree = randomTree(seed, roots, levels);
-        assert.ok(tree.kinds.split > 0);
-        ["flat", "split", "pair"].forEach((kind) => (kinds[kind] += tree.kinds[kind]));
-        tree.kinds.patches.forEach((n, i) => (kinds.patches[i] += n));
-        writeFileSync(path.join(folder, `tree${seed}.relief`), containerOf(tree.words, seed % 2 === 0 ? turned : {}).bytes);
-        return `tree${seed}.relief`;
-    });
-    assert.ok(Math.min(kinds.flat, kinds.split, kinds.pair, ...kinds.patches) >= 5, JSON.stringify(kinds));
+    const made = writeTrees(folder);
     for (const mesh of ["bunny.obj", "horse.3ds", "cat.3ds"]) {
         made.push(`${mesh}.relief`);
         run("relief", "bake", path.join(path.dirname(bunny), mesh), "-q", "-o", path.join(folder, made.at(-1)), "--budget", "50kB");

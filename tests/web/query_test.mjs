@@ -9,7 +9,8 @@ import path from "node:path";
 import test from "node:test";
 
 import { libraryPage } from "./lib/library.mjs";
-import { bunny, generator, run, scratch } from "./lib/native.mjs";
+import { bunny, run, scratch } from "./lib/native.mjs";
+import { generator } from "./lib/random.mjs";
 
 const kPoints = 10_000;
 const kColliders = {

@@ -9,7 +9,7 @@ import test from "node:test";
 
 import { launch, openPage, root, serve } from "./lib/browser.mjs";
 import { bakeCube } from "./lib/boxes.mjs";
-import { scratch } from "./lib/native.mjs";
+import { bunny, run, scratch } from "./lib/native.mjs";
 
 const kMain = `import { Relief, ParticleSystem } from "relief-particles";
 const gl = document.querySelector("canvas").getContext("webgl2");
@@ -21,17 +21,19 @@ for (let i = 0; i < 10; ++i) {
 window.answer = { ...system.info, error: gl.getError() };
 `;
 
+const kVite = "vite@5.4.21";
+const kQuiet = ["--no-audit", "--no-fund", "--loglevel=error", "--prefer-offline", "--ignore-scripts"];
+
 test("npm pack, install and vite build give a working page", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
-    const npm = (...words) => execFileSync("npm", [...words, "--no-audit", "--no-fund", "--loglevel=error"],
-                                           { cwd: folder, encoding: "utf8" });
+    const npm = (...words) => execFileSync("npm", [...words, ...kQuiet], { cwd: folder, encoding: "utf8" });
     const [packed] = JSON.parse(npm("pack", path.join(root, "out/npm"), "--json"));
     assert.equal(packed.name, "relief-particles");
     assert.deepEqual(packed.files.map((file) => file.path).sort(), [
-        "LICENSE", "README.md", "SCENE.md", "arguments.js", "collider.js", "context.js", "fetch.js", "package.json", "particle_system.js",
+        "LICENSE", "README.md", "SCENE.md", "arguments.js", "collider.js", "context.js", "engines.d.ts", "engines.js", "fetch.js", "package.json", "particle_system.js",
         "pass_state.js", "relief.d.ts", "relief.js", "relief_wasm.mjs", "relief_wasm.wasm", "wasm.js", "world.js"]);
     writeFileSync(path.join(folder, "package.json"), '{ "name": "page", "private": true, "type": "module" }');
-    npm("install", "--prefer-offline", "--ignore-scripts", `./${packed.filename}`, "vite@5.4.21");
+    npm("install", `./${packed.filename}`, kVite);
     const installed = path.join(folder, "node_modules/relief-particles");
     for (const name of readdirSync(installed).filter((one) => one.endsWith(".md"))) {
         for (const [, target] of readFileSync(path.join(installed, name), "utf8").matchAll(/\]\(([^)\s#]+)/g)) {
@@ -71,3 +73,27 @@ test("npm pack, install and vite build give a working page", { timeout: 300_000 
         assert.deepEqual(messages.filter((line) => !/\[vite\]/.test(line)), []);
     }
 });
+
+// As RELIEF.md of the export states it.
+for (const engine of ["three", "playcanvas"]) {
+    test(`vite build bundles the exported page of ${engine}`, { timeout: 600_000 }, async (t) => {
+        const folder = scratch(t);
+        const page = path.join(folder, "page");
+        run("relief", "bake", bunny, "-q", "-o", path.join(folder, "bunny.relief"), "--budget", "20kB");
+        run("relief", "export", path.join(folder, "bunny.relief"), "--engine", engine, page, "-q");
+        const [, install] = /^ *npm (install .*)$/m.exec(readFileSync(path.join(page, "RELIEF.md"), "utf8"));
+        execFileSync("npm", [...install.split(" "), kVite, ...kQuiet], { cwd: page });
+        execFileSync(process.execPath, ["node_modules/vite/bin/vite.js", "build", "--logLevel", "error"], { cwd: page });
+        const server = await serve({ "/": path.join(page, "dist") });
+        const browser = await launch();
+        t.after(async () => {
+            await browser.close();
+            server.close();
+        });
+        const { page: opened, messages } = await openPage(browser, `${server.url}/?webgl`);
+        await opened.waitForFunction("window.sample || document.getElementById('note').textContent");
+        const places = await opened.evaluate("window.sample.read()");
+        assert.ok(Object.keys(places).length >= 400_000 && Object.values(places).every(Number.isFinite));
+        assert.deepEqual(messages.filter((line) => !line.includes("GPU stall due to ReadPixels")), []);
+    });
+}

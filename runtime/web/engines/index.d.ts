@@ -13,7 +13,7 @@ export type Vec3 = readonly [number, number, number] | readonly number[] | Float
 export interface Collider {
     /** The uniform block ReliefCollider in the layout std140: 80 bytes. `floats` and `integers` are views of it. */
     readonly constants: ArrayBuffer;
-    /** 16 floats: row_x, row_y, row_z and size of ReliefCollider, four each. */
+    /** 16 floats: row_x, row_y, row_z and size of ReliefCollider, four each; as a mat4, its columns. */
     readonly floats: Float32Array;
     /** Four integers: place of ReliefCollider. */
     readonly integers: Int32Array;

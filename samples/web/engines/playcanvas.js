@@ -2,39 +2,40 @@
 // Snow on a bunny: PlayCanvas steps its particles in a fragment shader, and reliefCollide() in GLSL stops them.
 import * as pc from "playcanvas";
 import { glsl, openCollider } from "relief-particles/collider";
-import { kParticles } from "./snow.js";
+import { kParticles, sceneOf } from "./snow.js";
 
-// The collider: a texture, and four vectors of floats and one of integers, for all particle systems of the device.
-function setCollider(device, { texels, width, height, floats, integers }) {
-    const texture = new pc.Texture(device, {
-        width, height, format: pc.PIXELFORMAT_RGBA16U, levels: [texels], mipmaps: false,
-        minFilter: pc.FILTER_NEAREST, magFilter: pc.FILTER_NEAREST,
-    });
+// The collider: a texture, a matrix and a vector, for all particle systems of the device.
+function setCollider(device, { texels, width, height, floats, integers }, radius) {
+    const format = pc.PIXELFORMAT_RGBA16U;
+    const texture = new pc.Texture(device, { width, height, format, levels: [texels], mipmaps: false });
     device.scope.resolve("reliefTexels").setValue(texture);
-    device.scope.resolve("reliefRows[0]").setValue(floats);
+    device.scope.resolve("reliefRows").setValue(floats);
     device.scope.resolve("reliefPlace").setValue(integers);
-
+    device.scope.resolve("reliefRadius").setValue(radius);
     const chunks = pc.ShaderChunks.get(device, pc.SHADERLANGUAGE_GLSL);
     chunks.set("particleUpdaterInitPS", `${chunks.get("particleUpdaterInitPS")}\n${glsl}
         uniform highp usampler2D reliefTexels;
-        uniform vec4 reliefRows[4];
-        uniform ivec4 reliefPlace;`);
+        uniform mat4 reliefRows;
+        uniform ivec4 reliefPlace;
+        uniform float reliefRadius;`);
     chunks.set("particleUpdaterEndPS", `
-        ReliefCollider collider = ReliefCollider(reliefRows[0], reliefRows[1], reliefRows[2], reliefRows[3], reliefPlace);
-        outPos = reliefCollide(reliefTexels, collider, outPos, outVel, 0.005, 0.0, 0.0).position;
+        mat4 rows = reliefRows;
+        ReliefCollider collider = ReliefCollider(rows[0], rows[1], rows[2], rows[3], reliefPlace);
+        outPos = reliefCollide(reliefTexels, collider, outPos, outVel, reliefRadius, 0.0, 0.0).position;
         writeOutput();
     }`);
 }
 
 export async function start() {
-    const collider = openCollider(await (await fetch("body.relief")).arrayBuffer());
+    const collider = openCollider(await (await fetch(new URL("body.relief", import.meta.url))).arrayBuffer());
     const canvas = document.body.appendChild(document.createElement("canvas"));
     const app = new pc.Application(canvas, { graphicsDeviceOptions: { preserveDrawingBuffer: true } });
     app.setCanvasFillMode(pc.FILLMODE_FILL_WINDOW);
     app.setCanvasResolution(pc.RESOLUTION_AUTO);
     app.start();
-    cancelAnimationFrame(app.frameRequestId); // index.html calls step() and draw()
-    setCollider(app.graphicsDevice, collider);
+    cancelAnimationFrame(app.frameRequestId); // snow.js calls step() and draw()
+    const { center: [x, y, z], side, top, radius } = sceneOf(collider.bounds);
+    setCollider(app.graphicsDevice, collider, radius);
 
     // A particle system has at most as many particles as a texture has columns.
     const perSystem = Math.min(kParticles, 8000);
@@ -42,19 +43,20 @@ export async function start() {
     const systems = Array.from({ length: Math.ceil(kParticles / perSystem) }, () => {
         const entity = new pc.Entity();
         entity.addComponent("particlesystem", {
-            numParticles: perSystem, lifetime: 3, rate: 3 / perSystem, emitterShape: pc.EMITTERSHAPE_BOX, preWarm: false,
-            emitterExtents: new pc.Vec3(max[0] - min[0], 0.1, max[2] - min[2]),
-            velocityGraph: new pc.CurveSet([[0, 0], [0, -1], [0, 0]]),
-            scaleGraph: new pc.Curve([0, 0.008]), colorGraph: new pc.CurveSet([[0, 0.75], [0, 0.84], [0, 0.92]]),
+            numParticles: perSystem, lifetime: 3, rate: 3 / perSystem, preWarm: false,
+            emitterShape: pc.EMITTERSHAPE_BOX, emitterExtents: new pc.Vec3(max[0] - min[0], 0.05 * side, max[2] - min[2]),
+            velocityGraph: new pc.CurveSet([[0, 0], [0, -0.5 * side], [0, 0]]),
+            scaleGraph: new pc.Curve([0, 0.004 * side]), colorGraph: new pc.CurveSet([[0, 0.75], [0, 0.84], [0, 0.92]]),
         });
-        entity.setPosition(0, max[1] + 0.2, 0);
+        entity.setPosition(x, top - 0.9 * side, z);
         app.root.addChild(entity);
         return entity.particlesystem;
     });
     const camera = new pc.Entity();
-    camera.addComponent("camera", { fov: 35, clearColor: new pc.Color(0.133, 0.188, 0.235) });
-    camera.setPosition(2, 1.2, 4.2);
-    camera.lookAt(0, 0.1, 0);
+    camera.addComponent("camera", { fov: 35, nearClip: 0.05 * side, farClip: 10 * side,
+                                    clearColor: new pc.Color(0.133, 0.188, 0.235) });
+    camera.setPosition(x + side, y + 0.6 * side, z + 2.1 * side);
+    camera.lookAt(x, y, z);
     app.root.addChild(camera);
 
     return {

@@ -3,53 +3,51 @@
 import * as THREE from "three";
 import { GPUComputationRenderer } from "three/addons/misc/GPUComputationRenderer.js";
 import { glsl, openCollider } from "relief-particles/collider";
-import { kParticles, lookAt, randomPlaces } from "./snow.js";
+import { cameraOf, kParticles, randomPlaces, sceneOf } from "./snow.js";
 
-// The collider: a texture, and a structure of five vectors.
+// The collider: a texture, a matrix and a vector.
 function colliderUniforms({ texels, width, height, floats, integers }) {
     const image = new THREE.DataTexture(texels, width, height, THREE.RGBAIntegerFormat, THREE.UnsignedShortType);
-    image.internalFormat = "RGBA16UI";
     image.needsUpdate = true;
-    const row = (at) => new THREE.Vector4(...floats.subarray(at, at + 4));
-    const value = { row_x: row(0), row_y: row(4), row_z: row(8), size: row(12), place: new THREE.Vector4(...integers) };
-    return { texels: { value: image }, collider: { value } };
+    return { texels: { value: image }, rows: { value: floats }, place: { value: integers } };
 }
 
 /** The shader that writes `result` of the motion. */
 const moving = (result) => `${glsl}
     uniform highp usampler2D texels;
-    uniform ReliefCollider collider;
+    uniform mat4 rows;
+    uniform ivec4 place;
+    uniform vec4 snow;
     uniform float dt;
     void main() {
         vec2 uv = gl_FragCoord.xy / resolution.xy;
-        vec3 p = texture2D(places, uv).xyz;
-        if (p.y < -1.5) {
-            p.y += 4.0; // below the picture: falls again
-        }
-        vec3 v = texture2D(velocities, uv).xyz;
-        v += dt * (vec3(0.0, -3.0, 0.0) - v);
-        ReliefMotion motion = reliefCollide(texels, collider, p + dt * v, v, 0.005, 0.2, 0.1);
+        vec3 v = mix(texture2D(velocities, uv).xyz, vec3(0.0, -snow.z, 0.0), dt);
+        vec3 p = texture2D(places, uv).xyz + dt * v;
+        p.y += p.y < snow.x ? snow.y : 0.0; // falls again
+        ReliefCollider collider = ReliefCollider(rows[0], rows[1], rows[2], rows[3], place);
+        ReliefMotion motion = reliefCollide(texels, collider, p, v, snow.w, 0.2, 0.1);
         gl_FragColor = vec4(motion.${result}, 1.0);
     }`;
 
-const kWidth = 400;
-
 export async function start() {
-    const collider = openCollider(await (await fetch("body.relief")).arrayBuffer());
+    const kWidth = 400; // of the textures of particles
+    const collider = openCollider(await (await fetch(new URL("body.relief", import.meta.url))).arrayBuffer());
     const renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
     renderer.setSize(innerWidth, innerHeight);
     document.body.append(renderer.domElement);
 
     const computation = new GPUComputationRenderer(kWidth, kParticles / kWidth, renderer);
+    const scene = sceneOf(collider.bounds);
+    const snow = { value: new THREE.Vector4(scene.top - scene.height, scene.height, scene.speed, scene.radius) };
     const dt = { value: 0 };
     const add = (name, result, data) => {
         const image = computation.createTexture();
         image.image.data.set(data);
         const variable = computation.addVariable(name, moving(result), image);
-        Object.assign(variable.material.uniforms, colliderUniforms(collider), { dt });
+        Object.assign(variable.material.uniforms, colliderUniforms(collider), { snow, dt });
         return variable;
     };
-    const variables = [add("places", "position", randomPlaces(collider.bounds, 4)),
+    const variables = [add("places", "position", randomPlaces(collider.bounds)),
                        add("velocities", "velocity", new Float32Array(4 * kParticles))];
     variables.forEach((variable) => computation.setVariableDependencies(variable, variables));
     const fault = computation.init();
@@ -69,12 +67,12 @@ export async function start() {
             }`,
         fragmentShader: "void main() { gl_FragColor = vec4(0.75, 0.84, 0.92, 1.0); }",
     });
-    const snow = new THREE.Points(geometry, material);
-    snow.frustumCulled = false;
-    const scene = new THREE.Scene();
-    scene.background = new THREE.Color(0x22303c);
-    scene.add(snow);
-    const camera = lookAt(THREE);
+    const flakes = new THREE.Points(geometry, material);
+    flakes.frustumCulled = false;
+    const picture = new THREE.Scene();
+    picture.background = new THREE.Color(0x22303c);
+    picture.add(flakes);
+    const camera = cameraOf(THREE, scene);
 
     const target = () => computation.getCurrentRenderTarget(variables[0]);
     return {
@@ -85,7 +83,7 @@ export async function start() {
         },
         draw: () => {
             material.uniforms.places.value = target().texture;
-            renderer.render(scene, camera);
+            renderer.render(picture, camera);
         },
         /** Four floats for each particle: its place, 1. */
         read: async () => {

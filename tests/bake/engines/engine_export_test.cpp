@@ -17,13 +17,13 @@
 namespace relief::test {
 namespace {
 
-float row(const std::array<float, 4>& r, const glm::vec3& p) {
+float row(const glm::vec4& r, const glm::vec3& p) {
     return r[0] * p.x + (r[1] * p.y + (r[2] * p.z + r[3]));
 }
 
 /// The distance from the exported bytes, with the C++ vote.
-float distanceOf(const EngineConstants& constants, std::span<const std::byte> texels, const glm::vec3& p) {
-    const glm::vec3 q(row(constants.rows[0], p), row(constants.rows[1], p), row(constants.rows[2], p));
+float distanceOf(const PatchConstants& constants, std::span<const std::byte> texels, const glm::vec3& p) {
+    const glm::vec3 q(row(constants.row[0], p), row(constants.row[1], p), row(constants.row[2], p));
     const auto vote = votePatches(texels.subspan(8 * static_cast<std::size_t>(constants.place[0])), q);
     return vote ? constants.size[0] * vote->distance : kFarOutside;
 }
@@ -35,7 +35,7 @@ TEST(EngineExport, DataOfAColliderGivesItsDistances) {
               collider.maps.front().texels);
     const std::vector<std::byte>& texels = fileNamed(files, "ball.texels").bytes;
     EXPECT_EQ(texels.size() % (8 * kEngineTextureWidth), 0U);
-    EngineConstants constants;
+    PatchConstants constants;
     ASSERT_EQ(fileNamed(files, "ball.constants").bytes.size(), sizeof(constants));
     std::memcpy(&constants, fileNamed(files, "ball.constants").bytes.data(), sizeof(constants));
     std::mt19937 random(1);

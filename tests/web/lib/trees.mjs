@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Containers of patches written by hand: random trees with every kind of leaf, and damaged files whose checksums are right.
+// Needs only Node.
+import assert from "node:assert/strict";
+import { writeFileSync } from "node:fs";
+import path from "node:path";
+
 import { xxh3 } from "../../../runtime/web/engines/xxh3.js";
-import { generator } from "./native.mjs";
+import { generator } from "./random.mjs";
 
 /** The 13 frames: [diagonal, first axis, mirrored]. */
 const kFrames = [[0, 0, 0], [0, 1, 0], [0, 2, 0], [1, 0, 0], [1, 1, 0], [1, 2, 0], [1, 0, 1], [1, 1, 1], [1, 2, 1],
@@ -139,7 +144,8 @@ class Writer {
 
 /**
  * A container with one map of patches. Its last bytes are the payload.
- * transform: 12 numbers, the rows of object_to_map; root: the edge of a root cell; map: other values of its fields.
+ * transform: 12 numbers, the rows of object_to_map, a rotation with scale; root: the edge of a root cell; map: other
+ * values of its fields. The bounds are those of the root cells.
  * @returns { bytes, hashAt, payloadAt }: the container, and places in it
  */
 export function containerOf(words, { transform = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0], root = 1, ...map } = {}) {
@@ -157,7 +163,12 @@ export function containerOf(words, { transform = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 
     const floats = (values) => [4 * values.length, 4, () => writer.floats(values)];
     writer.number(0, 4);
     writer.bytes.push(...Buffer.from("RLF2"));
-    const collider = writer.table(0, [floats([0, 0, 0]), floats([1, 1, 1]), offset, offset, offset]);
+    const roots = [words[0] & 0xffff, words[0] >>> 16, words[1] & 0xffff];
+    const ends = [0, 1, 2].map((i) => roots.reduce(([low, high], count, k) => {
+        const along = [0, count].map((q) => root ** 2 * transform[4 * k + i] * (q - transform[4 * k + 3]));
+        return [low + Math.min(...along), high + Math.max(...along)];
+    }, [0, 0]));
+    const collider = writer.table(0, [floats(ends.map(([low]) => low)), floats(ends.map(([, high]) => high)), offset, offset, offset]);
     writer.text(collider[2], "m");
     const provenance = writer.table(collider[3], [offset, offset, [8, 8, () => writer.number(12, 8)], offset]);
     writer.text(provenance[0], "tree.obj");
@@ -202,4 +213,21 @@ export function seal(bytes, hashAt, payloadAt) {
     }
     view.setBigUint64(56, xxh3(bytes.subarray(0, 56)), true);
     return bytes;
+}
+
+/** Writes seven trees with every kind of leaf, three of them turned and scaled. @returns the names of the files */
+export function writeTrees(folder) {
+    const turned = { transform: [0, 0, 2, 1, 0, -2, 0, 2.5, 2, 0, 0, 0.25], root: 0.5 };
+    const kinds = { flat: 0, split: 0, pair: 0, patches: Array(39).fill(0) };
+    const names = [[1, [1, 2, 1], 5], [2, [3, 2, 4], 3], [3, [3, 2, 4], 3], [4, [7, 1, 2], 4], [5, [4, 4, 4], 1], [6, [2, 2, 2], 4],
+                   [7, [5, 4, 3], 3]].map(([seed, roots, levels]) => {
+        const tree = randomTree(seed, roots, levels);
+        assert.ok(tree.kinds.split > 0);
+        ["flat", "split", "pair"].forEach((kind) => (kinds[kind] += tree.kinds[kind]));
+        tree.kinds.patches.forEach((n, i) => (kinds.patches[i] += n));
+        writeFileSync(path.join(folder, `tree${seed}.relief`), containerOf(tree.words, seed % 2 === 0 ? turned : {}).bytes);
+        return `tree${seed}.relief`;
+    });
+    assert.ok(Math.min(kinds.flat, kinds.split, kinds.pair, ...kinds.patches) >= 5, JSON.stringify(kinds));
+    return names;
 }
