@@ -28,6 +28,13 @@ RawFormat formatOf(const HeightsSpec& spec) {
     return {spec.type.value_or(SampleType::kUint16), spec.order.value_or(ByteOrder::kLittle)};
 }
 
+/// Whether a 16-bit sample is -32768 in int16, which usually stands for no data. The search for better settings ignores
+/// these samples in every format: they are spikes that hide how smooth the ground is.
+bool isUsualHole(float sample, SampleType type) {
+    return (type == SampleType::kInt16 && sample == -32768.0F) ||
+           (type == SampleType::kUint16 && sample == 32768.0F);
+}
+
 /// Returns NaN unless `spec` states both the hole and this format.
 double holeOf(const HeightsSpec& spec, const RawFormat& format) {
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -119,7 +126,7 @@ std::optional<Variation> variationOf(std::span<const std::byte> bytes, const Hei
     constexpr float kLeast = 1e-20F;  // small integers read as floats are smaller
     const auto isHeight = [&](float sample) {
         return std::abs(double{sample}) <= kHeightMax && double{sample} != hole &&
-               (sample == 0.0F || std::abs(sample) >= kLeast);
+               !isUsualHole(sample, format.type) && (sample == 0.0F || std::abs(sample) >= kLeast);
     };
     double sum = 0.0;
     double count = 0.0;
@@ -146,18 +153,23 @@ std::optional<Variation> variationOf(std::span<const std::byte> bytes, const Hei
     return variation;
 }
 
-/// The numbers of distinct low and high bytes in 16-bit samples.
+/// The numbers of distinct low and high bytes in 16-bit samples, except those that isUsualHole() in the other order.
 struct ByteValues {
     std::size_t low = 0;
     std::size_t high = 0;
 };
 ByteValues byteValues(std::span<const std::byte> bytes, ByteOrder order) {
     std::array<std::bitset<256>, 2> values;
-    for (std::size_t i = 0; i < bytes.size(); ++i) {
-        values.at(i % 2).set(std::to_integer<std::size_t>(bytes[i]));
-    }
     const std::size_t low = order == ByteOrder::kLittle ? 0 : 1;
-    return {values.at(low).count(), values.at(1 - low).count()};
+    for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) {
+        const auto low_byte = std::to_integer<std::size_t>(bytes[i + low]);
+        const auto high_byte = std::to_integer<std::size_t>(bytes[i + 1 - low]);
+        if (low_byte != 0x80 || high_byte != 0) {
+            values[0].set(low_byte);
+            values[1].set(high_byte);
+        }
+    }
+    return {values[0].count(), values[1].count()};
 }
 
 /// Whether 16-bit samples are at both ends of their type's range with nothing between, and neighbours at different ends
@@ -184,7 +196,7 @@ bool wrapsAround(std::span<const std::byte> bytes, const HeightsSpec& spec, cons
         static_cast<void>(rows.next(row));
         const float* before = nullptr;
         for (const float& sample : row) {
-            if (double{sample} == hole) {
+            if (double{sample} == hole || isUsualHole(sample, format.type)) {
                 before = nullptr;
                 continue;
             }
@@ -256,10 +268,11 @@ LikelierFormat likelierRawFormat(std::span<const std::byte> bytes, const Heights
     }
     const RawFormat first = formats.at(best);
     constexpr double kNoise = 1.3;
+    constexpr double kLess = 0.95;  // more than ignored samples change
     if (first.order != own.order || first == own) {
         double least = 0.5 * std::min(roughness.at(best), kNoise);
         for (std::size_t i = 0; i < formats.size(); ++i) {
-            if (roughness.at(i) < least) {
+            if (roughness.at(i) < kLess * least) {
                 least = roughness.at(i);
                 best = i;
             }

@@ -385,7 +385,7 @@ class Bake {
             baked_.report.warnings.push_back(
                 mesh_->name + ": the texel is " + shortest(static_cast<float>(tree.texel)) + ", not " +
                 shortest(job.spec.texel) + " as requested, which would take more than " +
-                std::to_string(job.spec.bytes) + " bytes; give a larger --budget or --texel");
+                std::to_string(job.spec.bytes) + " bytes; give more bytes or a larger texel");
         }
         return {};
     }
@@ -395,15 +395,15 @@ class Bake {
         if (std::all_of(maps.begin(), maps.end(), [](const MapReport& map) { return map.covered == 0; })) {
             const auto tree = std::find_if(jobs_.begin(), jobs_.end(),
                                            [](const Job& job) { return kindOf(job) == Kind::kPatches; });
-            return fail(
-                ErrorCode::kFailure,
-                mesh_->name + ": no map sees the surface of the mesh" +
-                    (tree != jobs_.end() ? ": its parts are smaller than a texel of " +
-                                               shortest(static_cast<float>(finestTexel())) + " in a box of " +
-                                               shortest(mesh_->bounds.longestSide()) +
-                                               "; bake parts that are far apart separately, or " +
-                                               (tree->spec.texel > 0.0F ? "lower --texel" : "raise --budget")
-                                         : "; raise the sizes of the maps, or change their dir or box"));
+            return fail(ErrorCode::kFailure,
+                        mesh_->name + ": no map sees the surface of the mesh" +
+                            (tree != jobs_.end()
+                                 ? ": its parts are smaller than a texel of " +
+                                       shortest(static_cast<float>(finestTexel())) + " in a box of " +
+                                       shortest(mesh_->bounds.longestSide()) +
+                                       "; bake parts that are far apart separately, or " +
+                                       (tree->spec.texel > 0.0F ? "lower the texel" : "give more bytes")
+                                 : "; raise the sizes of the maps, or change their dir or box"));
         }
         return {};
     }

@@ -51,13 +51,14 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
             raise SystemExit(f"no {module.name} was built: the module requires Debian's Python; use /usr/bin/python3 -m pip")
         python = "cp" + sysconfig.get_config_var("py_version_nodot")
         tag = f"{python}-{python}-{sysconfig.get_platform().replace('-', '_').replace('.', '_')}"
-        about = f"{project['name']}-{version}.dist-info"
+        distribution = f"{project['name'].replace('-', '_')}-{version}"
+        about = f"{distribution}.dist-info"
         files = {f"relief/{path.name}": (path.read_bytes(), path.stat().st_mode) for path in sorted(package.iterdir())}
         texts = {"METADATA": metadata(project, version),
                  "WHEEL": f"Wheel-Version: 1.0\nGenerator: relief\nRoot-Is-Purelib: false\nTag: {tag}\n"}
         files |= {f"{about}/{name}": (text.encode(), 0o100644) for name, text in texts.items()}
         files[f"{about}/LICENSE"] = ((SOURCE / "LICENSE").read_bytes(), 0o100644)
-    name = f"{project['name']}-{version}-{tag}.whl"
+    name = f"{distribution}-{tag}.whl"
     write(pathlib.Path(wheel_directory) / name, files, f"{about}/RECORD")
     return name
 

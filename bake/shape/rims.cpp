@@ -30,6 +30,9 @@ constexpr double kNearRimGap = 1.5;
 constexpr double kUnmatchedArea = 0.5;
 /// Maximum volume of a wall, as a fraction of the volume within its outer shell.
 constexpr double kWallVolume = 0.95;
+/// A spike's base is shorter than this fraction of its sides, and at most one in so many corners is a spike.
+constexpr double kSpike = 0.5;
+constexpr std::size_t kSpikesOfCorners = 8;
 /// Maximum number of corner pairs that are compared.
 constexpr std::size_t kRimPairs = 100'000'000;
 
@@ -39,6 +42,8 @@ struct Rim {
     std::vector<glm::dvec3> places;  ///< positions of the vertices
     Bounds bounds;
     glm::dvec3 normal{0.0};  ///< Newell's normal
+    /// Triangles at the rim that the mesh lacks; the corners beside them are neighbours.
+    std::vector<glm::uvec3> missing;
 };
 
 struct RimmedShell {
@@ -70,6 +75,36 @@ std::vector<const Rim*> pointersTo(const std::vector<Rim>& rims) {
     return pointers;
 }
 
+/// Cuts spikes off a rim, each of which is a missing triangle, unless a large fraction of the corners are spikes.
+void cutSpikes(Rim& rim) {
+    const std::size_t count = rim.vertices.size();
+    std::vector<bool> cut(count, false);
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t before = (i + count - 1) % count;
+        const std::size_t after = (i + 1) % count;
+        const double base = distance(rim.places[before], rim.places[after]);
+        const double sides =
+            std::min(distance(rim.places[before], rim.places[i]), distance(rim.places[i], rim.places[after]));
+        if (!cut[before] && !cut[after] && base < kSpike * sides) {
+            cut[i] = true;
+            rim.missing.emplace_back(rim.vertices[before], rim.vertices[i], rim.vertices[after]);
+        }
+    }
+    if (kSpikesOfCorners * rim.missing.size() > count) {
+        rim.missing.clear();
+        return;
+    }
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (!cut[i]) {
+            rim.vertices[kept] = rim.vertices[i];
+            rim.places[kept++] = rim.places[i];
+        }
+    }
+    rim.vertices.resize(kept);
+    rim.places.resize(kept);
+}
+
 RimmedShell rimmedShell(const OpenShell& shell, std::size_t index) {
     RimmedShell rimmed{index, &shell, 0, {}, 0.0};
     const glm::dvec3 size = shell.mesh.bounds.size();
@@ -80,7 +115,10 @@ RimmedShell rimmedShell(const OpenShell& shell, std::size_t index) {
         for (const BorderStep& step : loop) {
             rim.vertices.push_back(step.from);
             rim.places.emplace_back(open->positions[step.from]);
-            rim.bounds.add(rim.places.back());
+        }
+        cutSpikes(rim);
+        for (const glm::dvec3& place : rim.places) {
+            rim.bounds.add(place);
         }
         for (std::size_t i = 1; i + 1 < rim.places.size(); ++i) {
             rim.normal += cross(rim.places[i] - rim.places[0], rim.places[i + 1] - rim.places[0]);
@@ -202,6 +240,11 @@ std::optional<ShellWall> wallBetween(const RimmedShell& outer, const RimmedShell
     }
     wall.labels.insert(wall.labels.end(), within.labels.begin(), within.labels.end());
     for (const auto& [a, b] : pairs) {
+        wall.triangles.insert(wall.triangles.end(), a->missing.begin(), a->missing.end());
+        for (const glm::uvec3& t : b->missing) {
+            wall.triangles.push_back(first + (turn ? glm::uvec3(t.x, t.z, t.y) : t));
+        }
+        wall.cap_triangles += a->missing.size() + b->missing.size();
         std::vector<std::uint32_t> rim = b->vertices;
         for (std::uint32_t& vertex : rim) {
             vertex += first;

@@ -33,6 +33,25 @@ std::string megabytes(double bytes) {
                         : std::to_string((tenths + 9) / 10) + "MB";
 }
 
+/// Returns the option that bakes smaller texels into the patches of a collider, by the options of its bake: of --map,
+/// --texel or --budget; "" if it would take too many bytes. \param needed  texel, object units
+std::string finerPatches(const Collider& collider, double needed) {
+    std::string map;
+    bool by_map = true;
+    for (const RecordedOption& option : collider.provenance.options) {
+        map = option.name == "map" && option.value.starts_with("patches:") ? option.value : map;
+        by_map = by_map && option.name != "budget" && option.name != "texel";
+    }
+    by_map = by_map && !map.empty();
+    if (map.starts_with("patches:texel=")) {
+        return (by_map ? "--map patches:texel=" : "--texel ") + roughly(needed);
+    }
+    // Cells are split where the errors are, so other parts do not take much more.
+    const double bytes = kMorePatches * static_cast<double>(collider.texelBytes());
+    return bytes > kBudgetAdvisedMax ? ""
+                                     : (by_map ? "--map patches:bytes=" : "--budget ") + megabytes(bytes);
+}
+
 /// Returns the finest texel of patches in a box. Samples 27 points, because the centre may be in a large cell without
 /// patches.
 double finestIn(const Bounds& box, const DepthMap& map) {
@@ -159,12 +178,11 @@ std::string partCure(const SurfacePart& part, const Collider& collider) {
         return cure;
     }
     if (patches) {
-        // Cells are split where the errors are, so other parts do not take much more.
-        const double bytes = kMorePatches * static_cast<double>(collider.texelBytes());
+        const std::string finer = finerPatches(collider, needed);
         cure += cure.empty()
                     ? "the heights of its patches are " + lengthText(texel, collider.unit) + " apart; try "
                     : ", and try ";
-        cure += bytes <= kBudgetAdvisedMax ? "--budget " + megabytes(bytes) + ", or " : "";
+        cure += finer.empty() ? "" : finer + ", or ";
     } else {
         std::uint32_t side = 0;
         for (const DepthMap& map : collider.maps) {

@@ -261,6 +261,8 @@ Result<void> Simulation::change(std::optional<std::vector<Emitter>> emitters) {
         emitters_ = std::move(*emitters);
         emitter_balls_ = emitterBalls(emitters_);
         sweep_.add(*scene_, emitters_);
+    } else {
+        sweep_.change(*scene_);
     }
     motions_ = emitterMotions(*loaded_);
     types_ = particleTypes(*scene_);

@@ -156,9 +156,12 @@ SceneSweep::SceneSweep(const Scene& scene, std::span<const std::shared_ptr<const
 
 void SceneSweep::add(const Scene& scene, std::span<const Emitter> emitters) {
     const auto motions = emitterMotions(scene.emitters, scene.colliders);
+    births_.clear();
     for (std::size_t i = 0; i < emitters.size(); ++i) {
-        add(scene, birthsOf(emitters[i], motions[i], scene));
+        const std::vector<Birth> births = birthsOf(emitters[i], motions[i], scene);
+        births_.insert(births_.end(), births.begin(), births.end());
     }
+    change(scene);
 }
 
 void SceneSweep::add(const Scene& scene, std::span<const Birth> births) {

@@ -28,8 +28,10 @@ class SceneSweep {
     SceneSweep(const Scene& scene, std::span<const std::shared_ptr<const Collider>> colliders,
                std::span<const Emitter> emitters, const Bounds& bounds);
 
-    /// Accounts for new emitters.
+    /// Accounts for new emitters, before their first birth.
     void add(const Scene& scene, std::span<const Emitter> emitters);
+    /// Accounts for changed forces and types.
+    void change(const Scene& scene) { add(scene, births_); }
     /// Accounts for births that do not come from emitters.
     void add(const Scene& scene, std::span<const Birth> births);
 
@@ -49,6 +51,7 @@ class SceneSweep {
     [[nodiscard]] static std::string thinWarning(std::span<const Thin> all, bool sweeps);
 
     Bounds bounds_;
+    std::vector<Birth> births_;  // the first ones of the emitters
     std::vector<Body> bodies_;
     std::vector<std::map<float, float>> groups_;  // per group: particle radius to the highest speed
     float longest_ = 0.0F;                        // longest step, seconds

@@ -117,6 +117,18 @@ struct ReliefSearch {
     uint hash;   // hash of the cell
 };
 
+// Starts the list of the next level for the cell of p, and returns its first entry: body and hash.
+uvec2 reliefFirstEntry(inout ReliefSearch search, vec3 p) {
+    ivec4 cells = u_relief_levels[search.level];
+    ivec3 cell = ivec3(floor(clamp(p * intBitsToFloat(cells.x), -1e9, 1e9)));
+    search.hash = reliefCellHash(cell);
+    uvec4 list = reliefWords(cells.y + int(search.hash & uint(cells.z)));
+    search.entry = list.x;
+    search.end = list.y;
+    ++search.level;
+    return list.zw;
+}
+
 // Returns the next bodies whose boxes contain p, from x on; -1: none. There may be more if w is set.
 ivec4 reliefNextBodies(inout ReliefSearch search, vec3 p, float radius) {
     ivec4 found = ivec4(-1);
@@ -126,14 +138,7 @@ ivec4 reliefNextBodies(inout ReliefSearch search, vec3 p, float radius) {
             entry = reliefWords(int(search.entry)).xy;
             ++search.entry;
         } else {
-            ivec4 cells = u_relief_levels[search.level];
-            ivec3 cell = ivec3(floor(clamp(p * intBitsToFloat(cells.x), -1e9, 1e9)));
-            search.hash = reliefCellHash(cell);
-            uvec4 list = reliefWords(cells.y + int(search.hash & uint(cells.z)));
-            search.entry = list.x;
-            search.end = list.y;
-            entry = list.zw;
-            ++search.level;
+            entry = reliefFirstEntry(search, p);
         }
         int body = int(entry.x);
         bool holds = entry.y == search.hash && body >= 0;

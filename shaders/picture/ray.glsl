@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Steps along a ray through the collider's field. With placed bodies (world.glsl), points outside all boxes skip to the
-// next box on the ray. Needs collider.glsl.
+// Steps along a ray through the collider's field. A ray skips empty cells of trees of patches and, between placed bodies
+// (world.glsl), the space outside their boxes. Needs collider.glsl.
 
 // Returns where a ray p + t d enters and leaves the three slabs of a box.
 void slabs(vec3 p, vec3 d, vec3 box_min, vec3 box_max, out vec3 near, out vec3 far) {
@@ -11,33 +11,108 @@ void slabs(vec3 p, vec3 d, vec3 box_min, vec3 box_max, out vec3 near, out vec3 f
     far = max(a, b);
 }
 
+#if defined(RELIEF_HAS_PATCHES) && (RELIEF_BODIES == 0 || RELIEF_PLACED)
+
+// Returns the t at which a ray from q meets the range of heights of a patch; 0 in that range.
+float aheadOfHeights(uvec2 record, vec3 q, vec3 d) {
+    float z = reliefPatchAcross(record, q).z - (float((record.x >> 11u) & 0xfffu) - 2048.0) * (1.0 / 512.0);
+    float dz = reliefPatchAcross(record, d).z - reliefPatchAcross(record, vec3(0.0)).z;
+    float thick = 255.0 * reliefPatchStep(record);
+    float to = z > thick ? thick - z : z < 0.0 ? -z : 0.0;
+    return to == 0.0 || to * dz > 0.0 ? to / dz : 1e30;
+}
+
+// Returns a t up to which a ray from p, outside, meets no surface of map i: at most where it leaves the cell of p.
+float emptyAhead(int i, vec3 p, vec3 d) {
+    int first = reliefMapPlace(i).x;
+    ReliefLeaf leaf = reliefPatchLeaf(u_relief_front_back, reliefMapPlace(i), p);
+    uvec2 record = leaf.record;
+    if ((record.x & 3u) == 2u) {  // an octant without a record
+        leaf.q = 2.0 * leaf.q - step(vec3(1.0), 2.0 * leaf.q);
+        leaf.cell *= 0.5;
+    }
+    vec3 way = d / leaf.cell;
+    vec3 near, far;
+    slabs(leaf.q, way, vec3(0.0), vec3(1.0), near, far);
+    float ahead = min(far.x, min(far.y, far.z));
+    if ((record.x & 15u) == 15u) {
+        int pair = first + int(record.y & 0xffffffu);
+        ahead = min(ahead, aheadOfHeights(reliefPatchTexel(u_relief_front_back, pair), leaf.q, way));
+        ahead = min(ahead, aheadOfHeights(reliefPatchTexel(u_relief_front_back, pair + 1), leaf.q, way));
+    } else if ((record.x & 3u) == 3u) {
+        ahead = min(ahead, aheadOfHeights(record, leaf.q, way));
+    }
+    return ahead;
+}
+
+// Returns a t up to which map i of patches is outside on the ray if it is outside at `from`, at least `from`.
+float emptyUntil(int i, vec3 origin, vec3 d, float from) {
+    if (!reliefHas(reliefMapInfo(i), RELIEF_ENCLOSES)) {
+        return from;
+    }
+    vec3 v = vec3(reliefDot(reliefMapRow(i, 0).xyz, d), reliefDot(reliefMapRow(i, 1).xyz, d), reliefDot(reliefMapRow(i, 2).xyz, d));
+    vec3 p = reliefInMap(i, origin + from * d);  // exactly as in the sample that is outside
+    vec3 roots = reliefPatchRoots(i);
+    if (all(greaterThanEqual(p, vec3(0.0))) && all(lessThan(p, roots))) {
+        return from + emptyAhead(i, p, v);
+    }
+    vec3 near, far;
+    slabs(reliefInMap(i, origin), v, vec3(0.0), roots, near, far);
+    float enters = max(near.x, max(near.y, near.z));
+    float leaves = min(far.x, min(far.y, far.z));
+    return enters > leaves || leaves < from ? 1e30 : max(enters, from);
+}
+
+#endif
+
 #if RELIEF_BODIES > 0 && RELIEF_PLACED
 
-const int BOXES_MAX = 1024;  // with more bodies, the search would take longer than the steps
+const int CELLS_MAX = 1024;  // of a level
+const int BODIES_FEW = 32;   // are visited faster without the broad phase
 
-// Returns the first t from `from` on at which the ray is in the box of a body, or `end`.
-float nextBox(vec3 origin, vec3 d, float from, float end) {
-    int bodies = reliefBodyCount();
-    float next = bodies > BOXES_MAX ? from : end;
-    for (int b = 0; b < bodies && next > from; ++b) {
-        vec3 o = reliefInMap(b, origin);
-        vec3 v = vec3(reliefDot(reliefMapRow(b, 0).xyz, d), reliefDot(reliefMapRow(b, 1).xyz, d), reliefDot(reliefMapRow(b, 2).xyz, d));
-        vec3 low, high;
-        slabs(o, v, vec3(0.0), reliefPatchRoots(b), low, high);
-        float enters = max(max(low.x, low.y), max(low.z, from));
-        bool meets = enters <= min(high.x, min(high.y, high.z));
-        next = reliefHas(reliefMapInfo(b), RELIEF_ENCLOSES) ? (meets ? min(next, enters) : next) : from;
+// Returns a t up to which no body has a surface on the ray, if it is outside all bodies at `from`; at most `end`.
+float nextSurface(vec3 origin, vec3 d, float from, float end) {
+    float next = end;
+    if (reliefBodyCount() <= BODIES_FEW) {
+        for (int b = 0; b < reliefBodyCount() && next > from; ++b) {
+            next = min(next, emptyUntil(b, origin, d, from));
+        }
+        return next;
+    }
+    for (int level = u_relief_world_place.w - 1; level >= 0; --level) {
+        float cells = intBitsToFloat(u_relief_levels[level].x);  // per world unit
+        float beyond = 1e-3 / (cells * max(abs(d.x), max(abs(d.y), abs(d.z))));  // into the next cell despite rounding
+        float t = from;
+        for (int i = 0; i < CELLS_MAX && t < next; ++i) {
+            vec3 p = origin + t * d;
+            ReliefSearch list = ReliefSearch(level, 0u, 0u, 0u);
+            uvec2 entry = reliefFirstEntry(list, p);
+            bool more = true;
+            while (more) {
+                if (entry.y == list.hash && int(entry.x) >= 0) {
+                    next = min(next, emptyUntil(int(entry.x), origin, d, from));
+                }
+                more = list.entry < list.end;
+                if (more) {
+                    entry = reliefWords(int(list.entry)).xy;
+                    ++list.entry;
+                }
+            }
+            vec3 near, far;
+            slabs(fract(cells * p), cells * d, vec3(0.0), vec3(1.0), near, far);
+            t += min(far.x, min(far.y, far.z)) + beyond;
+        }
+        next = min(next, t);
     }
     return next;
 }
 
 // Returns whether the ray is inside at t. `next`: the next t to test while outside, at least `stride` further.
 bool insideAt(vec3 origin, vec3 d, float t, float stride, float end, out float next) {
-    int body;
-    bool inside = reliefInside(reliefUnion(origin + t * d, 0.0, false, body));
+    bool inside = reliefInside(reliefSolid(origin + t * d));
     next = min(t + stride, end);
-    if (body < 0) {
-        next = nextBox(origin, d, next, end);
+    if (!inside) {
+        next = max(next, nextSurface(origin, d, t, end));
     }
     return inside;
 }
@@ -45,8 +120,14 @@ bool insideAt(vec3 origin, vec3 d, float t, float stride, float end, out float n
 #else
 
 bool insideAt(vec3 origin, vec3 d, float t, float stride, float end, out float next) {
+    ReliefField field = reliefSolid(origin + t * d);
     next = min(t + stride, end);
-    return reliefInside(reliefSolid(origin + t * d));
+#if defined(RELIEF_HAS_PATCHES) && RELIEF_BODIES == 0
+    if (field.map >= 0 && field.distance >= 0.0 && reliefIsPatches(reliefMapInfo(field.map))) {
+        next = max(next, min(emptyUntil(field.map, origin, d, t), end));
+    }
+#endif
+    return reliefInside(field);
 }
 
 #endif

@@ -35,7 +35,7 @@ bake_fails() { # CODE PATTERN ARGUMENT…
     expect_error "$1" "$2" "$relief" bake "$mesh" -o old.relief "${@:3}"
     [ "$(cat old.relief)" = precious ] || die "an existing output was changed: ${*:3}"
 }
-bake_fails 4 'lower --texel$' --texel 1e6
+bake_fails 4 'lower the texel$' --texel 1e6
 expect 0 "$relief" bake "$bunny" -o b.relief --max-error 0.5% --json
 json stdout 'd["patches"]["search"]["wrong_percent"] <= 0.5 and d["gpu_bytes"] < 250000'
 json stdout 'len(d["patches"]["search"]["trials"]) >= 3 and d["patches"]["search"]["max_error_percent"] == 0.5'

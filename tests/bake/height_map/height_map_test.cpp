@@ -397,6 +397,24 @@ TEST_F(HeightMaps, LikelierFormatOfLowlandIsSuggested) {
         EXPECT_EQ(found(-most, most, "written=big," + uint16), "type=int16,order=big");
         EXPECT_EQ(found(-most, most, "written=big,type=int16"), "order=big");
     }
+    // A former fault: an undeclared hole of -32768 hid the other settings.
+    constexpr int kHole = -32768;
+    for (const auto& [low, high] : {std::pair(0, 3), {0, 5}, {0, 100}, {0, 255}, {0, 300}, {30, 2000}}) {
+        SCOPED_TRACE(high);
+        EXPECT_EQ(found(low, high, uint16, kHole), "");
+        EXPECT_EQ(found(low, high, "type=int16", kHole), "");
+        EXPECT_EQ(found(low, high, "written=big,type=int16,order=big", kHole), "");
+        EXPECT_EQ(found(low, high, "written=big," + uint16, kHole), "order=big");
+        EXPECT_EQ(found(low, high, "written=big,type=int16", kHole), "order=big");
+        EXPECT_EQ(found(low, high, "type=int16,order=big", kHole), "order=little");
+    }
+    for (const int most : {2, 3, 8, 100, 10000}) {
+        SCOPED_TRACE(most);
+        EXPECT_EQ(found(-most, most, "type=int16", kHole), "");
+        EXPECT_EQ(found(-most, most, uint16, kHole), "type=int16");
+        EXPECT_EQ(found(-most, most, "written=big," + uint16, kHole), "type=int16,order=big");
+        EXPECT_EQ(found(-most, most, "written=big,type=int16", kHole), "order=big");
+    }
     EXPECT_EQ(found(0, 5, uint16, -1), "type=int16");
     EXPECT_EQ(found(0, 5, uint16 + ",hole=65535", -1), "");
     EXPECT_EQ(found(300, 500, uint16 + ",hole=65535", -1), "");

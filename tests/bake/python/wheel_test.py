@@ -54,9 +54,9 @@ print(sorted(path.name for path in home.iterdir() if path.is_file()))
 
 def test_pip_shows_and_uninstalls(python):
     pip = [python, "-m", "pip"]
-    shown = subprocess.run([*pip, "show", "-f", "relief"], check=True, env=ENVIRONMENT, capture_output=True, text=True).stdout
+    shown = subprocess.run([*pip, "show", "-f", "relief-collider"], check=True, env=ENVIRONMENT, capture_output=True, text=True).stdout
     assert f"Version: {VERSION}" in shown and "Requires: numpy" in shown and "relief/relief-import" in shown
-    subprocess.run([*pip, "uninstall", "-q", "-y", "relief"], check=True, env=ENVIRONMENT)
+    subprocess.run([*pip, "uninstall", "-q", "-y", "relief-collider"], check=True, env=ENVIRONMENT)
     assert not list(python.parents[1].rglob("relief*"))
 
 
@@ -70,9 +70,9 @@ def test_wheels_are_valid_and_reproducible(tmp_path):
     for folder in (tmp_path / "a", tmp_path / "b"):
         folder.mkdir()
         names.append(build_wheel.build_wheel(folder, {"build-dir": str(BUILD)}))
-    assert names[0] == names[1] == f"relief-{VERSION}-cp311-cp311-linux_x86_64.whl"
+    assert names[0] == names[1] == f"relief_collider-{VERSION}-cp311-cp311-linux_x86_64.whl"
     assert (tmp_path / "a" / names[0]).read_bytes() == (tmp_path / "b" / names[0]).read_bytes()
-    record = f"relief-{VERSION}.dist-info/RECORD"
+    record = f"relief_collider-{VERSION}.dist-info/RECORD"
     with zipfile.ZipFile(tmp_path / "a" / names[0]) as wheel:
         rows = dict(row.split(",", 1) for row in wheel.read(record).decode().splitlines())
         assert rows.keys() == set(wheel.namelist())

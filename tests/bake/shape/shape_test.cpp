@@ -273,6 +273,18 @@ TEST(Shape, ShellsWithUnlikeRimsFormAWall) {
         triangles.erase(triangles.begin() + static_cast<std::ptrdiff_t>(middle));
         return finished(mesh.positions, triangles);
     };
+    // The rim then has a spike as long as the wall is high.
+    const auto lessOneAtRim = [](const TriangleMesh& mesh) {
+        std::vector<glm::uvec3> triangles = mesh.triangles;
+        triangles.erase(std::ranges::find_if(triangles, [&](const glm::uvec3& t) {
+            int high = 0;
+            for (int i = 0; i < 3; ++i) {
+                high += mesh.positions[t[i]].y == mesh.bounds.max.y ? 1 : 0;
+            }
+            return high == 2;
+        }));
+        return finished(mesh.positions, triangles);
+    };
     const TriangleMesh mug = turn({{0.0, 0.0}, {0.5, 0.0}, {0.5, 1.2}});
     const TriangleMesh liner = turn({{0.0, 0.02}, {0.48, 0.02}, {0.48, 1.2}});
     const TriangleMesh vase = turn({{0.0, 0.0}, {0.5, 0.0}, {0.6, 0.5}, {0.15, 1.2}});
@@ -295,7 +307,10 @@ TEST(Shape, ShellsWithUnlikeRimsFormAWall) {
          {0, 0.6, 0},
          {-0.4, 0.6, 0}},
         {mug, lessOne(liner), {0, 0.6, 0}, {0.1, 0.01, 0}},
-        {lessOne(mug), liner, {0, 0.6, 0}, {0.1, 0.01, 0}}};
+        {lessOne(mug), liner, {0, 0.6, 0}, {0.1, 0.01, 0}},
+        {mug, lessOneAtRim(liner), {0, 0.6, 0}, {0.1, 0.01, 0}},
+        {lessOneAtRim(mug), liner, {0, 0.6, 0}, {0.1, 0.01, 0}},
+        {lessOneAtRim(mug), lessOneAtRim(liner), {0, 0.6, 0}, {0.1, 0.01, 0}}};
     for (std::size_t i = 0; i < walls.size(); ++i) {
         SCOPED_TRACE(i);
         const ShapedMesh shape = shaped(joined({walls[i].outer, walls[i].inner}));

@@ -5,6 +5,7 @@
 
 #include "bake/verdict/parts_report.h"
 #include "tests/formats/analytic_shapes.h"
+#include "tests/formats/random_patches.h"
 
 namespace relief {
 namespace {
@@ -40,6 +41,26 @@ TEST(PartCure, NamedMapsNeedResolutionNotBudget) {
     EXPECT_EQ(partCure(rod, collider),
               "its texels are 0.062 wide; texels of 0.016 need --resolution 256 (--map: size=256), or a "
               "separate bake of this part");
+}
+
+// A former fault: --budget was advised for colliders that were baked with --map or --texel.
+TEST(PartCure, PatchesNeedTheOptionOfTheirBake) {
+    Collider collider;
+    collider.maps = {test::patchesOf(
+        {{1, 1, 1}, 1}, {PatchRecord::patch({}, false, PatchHeights::of({{0.2, 0.2, 0.2, 0.2}}, 2), 0)})};
+    SurfacePart rod;
+    rod.bounds = {glm::vec3(0.0F), {1.0F, 0.3F, 0.3F}};
+    const auto cure = [&](std::vector<RecordedOption> options) {
+        collider.provenance.options = std::move(options);
+        return partCure(rod, collider);
+    };
+    EXPECT_NE(cure({{"map", "patches:bytes=4000"}, {"budget", "4000"}}).find("try --budget 0.1MB, or"),
+              std::string::npos);
+    EXPECT_NE(cure({{"map", "patches:bytes=4000"}}).find("try --map patches:bytes=0.1MB, or"),
+              std::string::npos);
+    EXPECT_NE(cure({{"map", "patches:texel=1"}}).find("try --map patches:texel=0.1, or"), std::string::npos);
+    EXPECT_NE(cure({{"map", "patches:texel=1"}, {"texel", "1"}}).find("try --texel 0.1, or"),
+              std::string::npos);
 }
 
 }  // namespace

@@ -181,5 +181,31 @@ forces = { gravity = [0, 0, 0], drag = 0 }
         << "with a larger, faster emitter";
 }
 
+// A former fault: a change of forces or types without new emitters left the sweep as it was.
+TEST_P(SimulationGlTest, ChangedForcesAndTypesSetTheSweep) {
+    const test::TemporaryFolder folder;
+    const analytic::Shape floor = analytic::box({-2.0, -0.105, -2.0}, {2.0, 0.0, 2.0});
+    ASSERT_TRUE(saveCollider(folder.path() / "floor.relief", analytic::frontBackCollider(floor, 64)));
+    auto loaded = required(loadAll(folder.write("scene.toml", R"(
+collider = { file = "floor.relief" }
+particles = { capacity = 1000 }
+ground = { enabled = false }
+time = { dt = 0.02 }
+forces = { gravity = [0, 0, 0], drag = 0 }
+emitter = { box_min = [-1, 1, -1], box_max = [1, 2, 1], rate = 0, burst = 1000, lifetime = 9 }
+)"),
+                                   {}));
+    auto made = required(Simulation::create(loaded));
+    ASSERT_TRUE(made.step());
+    loaded.scene.forces.gravity = glm::vec3(0.0F, -200.0F, 0.0F);
+    ASSERT_TRUE(made.change(std::nullopt));
+    for (int step = 0; step < 20; ++step) {
+        ASSERT_TRUE(made.step());
+    }
+    for (const ParticleState& one : required(made.particles().readState())) {
+        ASSERT_GT(one.position.y, -0.105F);
+    }
+}
+
 }  // namespace
 }  // namespace relief
