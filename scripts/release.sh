@@ -66,7 +66,7 @@ cpack --preset packages >/dev/null
 cp build/packages/deb/*.deb "$out/"
 
 # Debian's Python, which the module is built for.
-/usr/bin/python3 -B - "$out" <<'P'
+/usr/bin/python3 -B - "$out" >/dev/null <<'P'
 import sys
 sys.path.insert(0, "bake/python")
 import build_wheel
