@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Makes a release: scripts/release.sh VERSION
 #
-# Sets the version in CMakeLists.txt and in the pages that quote it, commits and tags v<VERSION>, builds the artefacts, and
+# Sets the version in CMakeLists.txt and in the files that quote it, commits and tags v<VERSION>, builds the artefacts, and
 # writes them with SHA256SUMS to out/release/<VERSION>: source archive, Debian packages, Python wheel, npm package, and the
 # page that plays scenes. VERSION is the topmost heading of CHANGELOG.md. Run scripts/test.sh and scripts/nightly.sh on the
 # commit before; this script runs no tests. Pushes nothing.
@@ -28,10 +28,20 @@ tag=v$version
 if tagged=$(git rev-parse -q --verify "refs/tags/$tag^{commit}"); then
     [ "$tagged" = "$(git rev-parse HEAD)" ] || die "$tag is another commit; check it out, or choose another version"
 else
-    sed -i "s/^project(Relief VERSION $old/project(Relief VERSION $version/" CMakeLists.txt
-    sed -i "s/find_package(Relief ${old%.*} /find_package(Relief ${version%.*} /" README.md scripts/install/README.md \
+    # replace OLD NEW FILE…: every FILE must contain OLD.
+    replace() {
+        local file text
+        for file in "${@:3}"; do
+            text=$(<"$file")
+            [[ $text == *"$1"* ]] || die "$file does not contain '$1'; name the version there, or leave it out of release.sh"
+            printf '%s\n' "${text//"$1"/"$2"}" >"$file"
+        done
+    }
+    replace "project(Relief VERSION $old " "project(Relief VERSION $version " CMakeLists.txt
+    replace "find_package(Relief ${old%.*} " "find_package(Relief ${version%.*} " README.md scripts/install/README.md \
         samples/in_your_build.md
-    sed -i "/relief_version/s/\"$old\"/\"$version\"/" runtime/c_api/relief_runtime.h
+    replace "\"$old\"" "\"$version\"" runtime/c_api/relief_runtime.h samples/godot/addons/relief/plugin.cfg
+    replace "(${old//./, })" "(${version//./, })" samples/blender/relief_collider.py
     ! git grep -n "find_package(Relief [0-9]" -- '*.md' | grep -v "Relief ${version%.*} " || die "these lines name another version"
     [ "$old" = "$version" ] || git commit -qam "release: set the version to $version"
     git tag -a "$tag" -m "Relief $version"
@@ -55,7 +65,8 @@ rm -rf build/packages/deb
 cpack --preset packages >/dev/null
 cp build/packages/deb/*.deb "$out/"
 
-python3 -B - "$out" <<'P'
+# Debian's Python, which the module is built for.
+/usr/bin/python3 -B - "$out" >/dev/null <<'P'
 import sys
 sys.path.insert(0, "bake/python")
 import build_wheel

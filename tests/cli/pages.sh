@@ -7,7 +7,7 @@ python3 "$RELIEF_SOURCE/scripts/install/pages.py" pages "$relief" "$relief_sim"
 cp pages/*.1 .
 # The build creates the same pages for installation.
 diff -r pages "$RELIEF_BIN/../install/pages" || die "the pages of the build differ"
-completion=$(realpath "$(dirname "$0")/../../scripts/install/completion.bash")
+completion=$RELIEF_SOURCE/scripts/install/completion.bash
 for tool in relief relief-sim; do
     # The installed programs do not create pages.
     expect 1 "$RELIEF_BIN/$tool" --dump-cli man

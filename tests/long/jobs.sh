@@ -190,11 +190,12 @@ job_cases() {
 
 job nightly 5 seeds
 job_seeds() {
-    local seed=${RELIEF_TEST_SEED:-$(date +%Y%m%d)} next
-    release relief relief-sim relief_{unit,import,bake}_test
-    # All tests that use seedFrom() (tests/seeds.h).
-    RELIEF_TEST_SEED=$seed programs 'Voxels.*:ImportGltf.*:ImportFormat.*:ImportParts.*:ImportMessage.*:Shape.*:Winding.*:Mutated*.*' \
-        "$bin"/relief_{unit,import,bake}_test
+    local seed=${RELIEF_TEST_SEED:-$(date +%Y%m%d)} suites next
+    release relief relief-sim relief_{unit,gl,import,bake}_test
+    # The suites of all files that use seedFrom() (tests/seeds.h).
+    suites=$(grep -rl 'seedFrom(' tests --include='*_test.cpp' |
+        xargs sed -nE 's/^TEST(_[FP])?\((\w+), .*/*\2.*/p' | sort -u | paste -sd:)
+    RELIEF_TEST_SEED=$seed programs "$suites" "$bin"/relief_{unit,gl,import,bake}_test
     for next in 1 2 3 4 5 6 7 8 9; do
         RELIEF_TEST_SEED=$((seed + next)) programs 'Voxels.*' "$bin/relief_bake_test" >"$work/voxels.log"
     done

@@ -174,7 +174,7 @@ def test_dash_is_a_file_name(collider, tmp_path, monkeypatch):
 
 def test_non_utf8_names(collider, tmp_path):
     name = "\udcff\udcfe"
-    with pytest.raises(relief.FileError, match=name):
+    with pytest.raises(relief.FileError, match=r"\\xff\\xfe"):
         relief.load(tmp_path / name)
     collider.save(tmp_path / name)
     assert relief.load(tmp_path / name).to_bytes() == collider.to_bytes()

@@ -133,17 +133,18 @@ CHECKS = [dict(samples=3000), dict(samples=3000, min_part=0.5),
 
 
 @pytest.mark.parametrize("bake,arguments", [({}, arguments) for arguments in CHECKS] + [
-    (bake, dict(samples=4e3, seed=7)) for bake in (dict(holes="keep"), dict(repair="wrap=0.05"), dict(as_="shell"),
-                                                   dict(as_="sheet=terrain"), dict(thickness=0.3))], ids=str)
+    (bake, dict(samples=4e3, seed=7)) for bake in (dict(holes="keep", resolution=64), dict(repair="wrap=0.05"),
+                                                   dict(as_="shell"), dict(as_="sheet=terrain"), dict(thickness=0.3))], ids=str)
 def test_checks_match_the_tool(bake, arguments, mesh, tmp_path):
     """Every option of a check, and the solid of every way to bake."""
     assert set().union(*CHECKS) | {"seed"} == set(inspect.signature(relief.check).parameters) - {"collider", "mesh", "triangles"}
     frame = {name: arguments[name] for name in ("unit", "up") if name in arguments}
     words = [f"--{name.replace('_', '-')}={value if isinstance(value, str) else format(value, 'g')}"
              for name, value in arguments.items()]
+    size = {} if "resolution" in bake else {"budget": "60kB"}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        relief.bake(mesh, budget="60kB", no_check=True, **bake, **frame).save(tmp_path / "a.relief")
+        relief.bake(mesh, no_check=True, **size, **bake, **frame).save(tmp_path / "a.relief")
     said = json.loads(tool("check", tmp_path / "a.relief", "--mesh", mesh, "--json", *words).stdout)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
