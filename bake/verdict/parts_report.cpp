@@ -49,7 +49,7 @@ std::string finerPatches(const Collider& collider, double needed) {
     // Cells are split where the errors are, so other parts do not take much more.
     const double bytes = kMorePatches * static_cast<double>(collider.texelBytes());
     return bytes > kBudgetAdvisedMax ? ""
-                                     : (by_map ? "--map patches:bytes=" : "--budget ") + megabytes(bytes);
+                                     : (by_map ? "--map patches:budget=" : "--budget ") + megabytes(bytes);
 }
 
 /// Returns the finest texel of patches in a box. Samples 27 points, because the centre may be in a large cell without
