@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kBudget = 800'000;
+constexpr std::uint64_t kTilesBudget = 800'000;
 constexpr std::uint64_t kTileBytes = 205'000;  ///< larger than the share of the box
 
 /// Stripes of 25 units. Their borders match rows of squares if the number of rows is a multiple of eight.
@@ -25,7 +25,7 @@ class WorldTiles : public LevelBakes {
   protected:
     void SetUp() override {
         writeLevel(1.0, 60);
-        request_.bake.budget = kBudget;
+        request_.bake.budget = kTilesBudget;
         request_.tile_bytes = kTileBytes;
     }
 
@@ -88,7 +88,7 @@ TEST_F(WorldTiles, HillsKeepPlaceMaterialsAndBudget) {
     const WorldField fine = load("w");
     const WorldField coarse = load("w", WorldDetail::kCoarse);
     ASSERT_GE(result.colliders.size(), 4U);
-    EXPECT_LE(result.gpuBytes(), kBudget);
+    EXPECT_LE(result.gpuBytes(), kTilesBudget);
     ASSERT_EQ(fine.world().bodies.size(), result.colliders.size());
     std::uint64_t coarse_bytes = 0;
     for (std::size_t i = 0; i < result.colliders.size(); ++i) {
@@ -233,7 +233,7 @@ TEST_F(WorldTiles, OnlyChangesAreBakedDeterministically) {
     EXPECT_EQ(namesOf(again, WorldColliderState::kBaked), std::vector<std::string>{"box"});
     EXPECT_EQ(again.removed.size(), 1U);
     // Another budget gives other tiles, and the old ones are removed.
-    request_.bake.budget = kBudget / 2;
+    request_.bake.budget = kTilesBudget / 2;
     again = bake("w");
     const auto coarse = std::ranges::count_if(
         again.colliders, [](const WorldColliderResult& collider) { return collider.coarse.has_value(); });

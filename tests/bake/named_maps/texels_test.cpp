@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scan conversion compared with exact integer coverage and with Embree's rays.
-#include "bake/named_maps/scan_convert.h"
-
+// Texels of named maps: scan conversion compared with exact integer coverage and Embree's rays, the highest surface
+// below a point, and encoded texels compared with encodeTexel() of formats/texel.h.
+#include <gtest/gtest.h>
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <random>
+#include <vector>
 
 #include "bake/mesh/triangle_plane.h"
+#include "bake/named_maps/encode.h"
+#include "bake/named_maps/highest_below.h"
 #include "bake/named_maps/ray_probe.h"
+#include "bake/named_maps/scan_convert.h"
+#include "bake/views/view.h"
 #include "tests/bake/meshes.h"
 #include "tests/bake/voxels.h"
 #include "tests/seeds.h"
@@ -15,7 +21,7 @@
 namespace relief::test {
 namespace {
 
-View viewOf(const TriangleMesh& mesh, const std::string& text) {
+View scanViewOf(const TriangleMesh& mesh, const std::string& text) {
     return required(makeView(*completeSpec(*parseMapSpec(text), mesh, 64), mesh));
 }
 
@@ -110,7 +116,7 @@ TEST(ScanConverter, MatchesIntegerCoverage) {
         mesh.positions = positions;
         mesh.triangles = triangles;
         mesh.bounds = {glm::vec3(0.0F), glm::vec3(16.0F)};
-        const View view = viewOf(mesh, "front-back:dir=+z,up=+y,size=34,box=0/0/0/16/16/16");
+        const View view = scanViewOf(mesh, "front-back:dir=+z,up=+y,size=34,box=0/0/0/16/16/16");
         const Scanned hits = scan(mesh, view);
         for (std::uint32_t row = 0; row < view.height; ++row) {
             for (std::uint32_t column = 0; column < view.width; ++column) {
@@ -152,7 +158,7 @@ TEST(ScanConverter, MatchesRays) {
         for (const char* spec :
              {"front-back:dir=+z,size=150", "front-back:dir=1/2/-3,size=97x201",
               "front-back:dir=-y,up=1/0/2,size=33", "front-back:dir=-1/-1/-1,size=200x30"}) {
-            const View view = viewOf(mesh, spec);
+            const View view = scanViewOf(mesh, spec);
             const Scanned hits = scan(mesh, view);
             RayProbe near(scene, view, RayEnd::kNear);
             RayProbe far(scene, view, RayEnd::kFar);
@@ -191,7 +197,7 @@ TEST(ScanConverter, FrontFaceWinsInCoplanarSurfaces) {
             std::ranges::reverse(mesh.triangles);
         }
         mesh = finished(mesh.positions, mesh.triangles);
-        const View view = viewOf(mesh, "front-back:dir=-y,size=20,box=-1/-1/-1/1/1/1");
+        const View view = scanViewOf(mesh, "front-back:dir=-y,size=20,box=-1/-1/-1/1/1/1");
         const Scanned hits = scan(mesh, view);
         for (std::uint32_t y = 1; y < 19; ++y) {
             for (std::uint32_t x = 1; x < 19; ++x) {
@@ -220,7 +226,7 @@ TEST(ScanConverter, RayThroughSharedEdgeKeepsItsSide) {
         const RayScene scene = required(RayScene::build(mesh));
 
         // The volume starts and ends inside columns. The middle column of texels looks at the edge.
-        const View part = viewOf(mesh, "front-back:dir=1/1/0,up=+z,size=33,box=0.25/0.25/0/1.75/1.75/1");
+        const View part = scanViewOf(mesh, "front-back:dir=1/1/0,up=+z,size=33,box=0.25/0.25/0/1.75/1.75/1");
         ASSERT_EQ(part.starts_free[0], !starts_inside);
         ASSERT_EQ(part.starts_free[1], !starts_inside);
         const Scanned hits = scan(mesh, part);
@@ -233,7 +239,7 @@ TEST(ScanConverter, RayThroughSharedEdgeKeepsItsSide) {
         }
 
         // A cube map centred on the first column's side. Its rays through the same edge test only two of the six faces.
-        View cube = viewOf(mesh, "cube:size=6,compare=less,box=-2/-1.5/-1.5/2/2.5/2.5");
+        View cube = scanViewOf(mesh, "cube:size=6,compare=less,box=-2/-1.5/-1.5/2/2.5/2.5");
         cube.centre_on_surface = true;
         ASSERT_TRUE(mayStartInside(scene, cube, RayEnd::kNear));
         std::vector<Hit> face(36);
@@ -243,6 +249,151 @@ TEST(ScanConverter, RayThroughSharedEdgeKeepsItsSide) {
             ASSERT_FALSE(hit.empty());
             EXPECT_NEAR(hit.depth(), 0.5 * std::sqrt(1.0 + 1.0 / 4.0 + 1.0 / 36.0), 1e-6);
             EXPECT_EQ(hit.fromBehind(), starts_inside);
+        }
+    }
+}
+
+using Points = std::vector<glm::dvec3>;
+
+Points centred(Points points) {
+    glm::dvec3 mean(0.0);
+    for (const glm::dvec3& p : points) {
+        mean += p / static_cast<double>(points.size());
+    }
+    for (glm::dvec3& p : points) {
+        p -= glm::dvec3(mean.x, mean.y, 0.0);
+    }
+    return points;
+}
+
+/// Height over the origin of the highest plane with these slopes that is below all points.
+double heightBelow(const Points& points, double along_x, double along_y) {
+    double height = INFINITY;
+    for (const glm::dvec3& p : points) {
+        height = std::min(height, p.z - along_x * p.x - along_y * p.y);
+    }
+    return height;
+}
+
+/// The highest plane among those through three of the points. One of them is the facet of the hull over the origin.
+double highestOfAll(const Points& points) {
+    double highest = -INFINITY;
+    for (const glm::dvec3& a : points) {
+        for (const glm::dvec3& b : points) {
+            for (const glm::dvec3& c : points) {
+                const glm::dvec3 u = b - a;
+                const glm::dvec3 v = c - a;
+                const double area = u.x * v.y - u.y * v.x;
+                if (std::abs(area) > 1e-9) {
+                    highest = std::max(highest, heightBelow(points, (u.z * v.y - v.z * u.y) / area,
+                                                            (v.z * u.x - u.z * v.x) / area));
+                }
+            }
+        }
+    }
+    return highest;
+}
+
+Points grid(int side, const auto& height) {
+    Points points;
+    for (int j = 0; j < side; ++j) {
+        for (int i = 0; i < side; ++i) {
+            points.emplace_back(i, j, height(i, j));
+        }
+    }
+    return centred(points);
+}
+
+void expectHighest(const Points& points) {
+    const glm::dvec2 slope = highestBelow(points).value();
+    const double extent =
+        1.0 +
+        std::abs(std::ranges::max_element(points, {}, [](const glm::dvec3& p) { return std::abs(p.z); })->z);
+    EXPECT_NEAR(heightBelow(points, slope.x, slope.y), highestOfAll(points), 1e-7 * extent);
+}
+
+TEST(HighestBelow, IsTheBestPlaneThroughThreePoints) {
+    std::mt19937_64 random(test::seedFrom(17));
+    std::uniform_real_distribution<double> number(-1.0, 1.0);
+    for (int round = 0; round < 200; ++round) {
+        Points points(static_cast<std::size_t>(3 + round % 14));
+        for (glm::dvec3& p : points) {
+            p = {number(random), number(random), std::pow(10.0, round % 7 - 3) * number(random)};
+        }
+        expectHighest(centred(points));
+        expectHighest(grid(2 + round % 5, [&](int, int) { return number(random); }));
+        // Repeated heights, as on steps.
+        expectHighest(grid(2 + round % 5, [&](int, int) { return std::floor(2.0 * number(random)); }));
+    }
+}
+
+TEST(HighestBelow, MatchesFlatAndTouchesCurvedSurfaces) {
+    const std::optional<glm::dvec2> flat =
+        highestBelow(grid(4, [](int i, int j) { return 3.0 + 0.5 * i - 2.0 * j; }));
+    EXPECT_LT(glm::distance(flat.value(), glm::dvec2(0.5, -2.0)), 1e-9);
+    const std::optional<glm::dvec2> hill = highestBelow(grid(4, [](int i, int j) {
+        return -(i - 1.5) * (i - 1.5) - (j - 1.5) * (j - 1.5);  // the corners are the hull
+    }));
+    EXPECT_LT(glm::length(hill.value()), 1e-9);
+}
+
+TEST(HighestBelow, CollinearPointsSpanNoPlane) {
+    EXPECT_FALSE(highestBelow({}));
+    EXPECT_FALSE(highestBelow(Points{{0, 0, 1}}));
+    EXPECT_FALSE(highestBelow(Points{{-1, 0, 1}, {1, 0, 2}}));
+    EXPECT_FALSE(highestBelow(Points{{-1, -1, 1}, {0, 0, 2}, {1, 1, 0}}));
+}
+
+TEST(Encode, MatchesEncodeTexel) {
+    const TriangleMesh mesh = makeIcosphere({0.1, 0.2, 0.3}, 0.7, 3);
+    const RayScene scene = required(RayScene::build(mesh));
+    for (const std::string text :
+         {"float:size=40", "fixed8:size=40", "front-back:size=40,dir=1/1/1,depth=half",
+          "front-back:size=40,dir=1/1/1,depth=unorm16", "cube:size=20"}) {
+        const Result<MapSpec> spec = completeSpec(*parseMapSpec(text), mesh, 40);
+        const View view = required(makeView(*spec, mesh));
+        // The table of normals does not change a byte.
+        for (const std::uint64_t texels : {std::uint64_t{0}, std::uint64_t{1} << 30}) {
+            const NormalTable normals(mesh, scene.winding(), texels);
+            DepthMap map = view.emptyMap();
+            std::uint64_t covered = 0;
+            std::uint64_t expected_covered = 0;
+            for (std::uint32_t face = 0; face < view.faceCount(); ++face) {
+                const RowRange rows{face, 0, view.height};
+                std::vector<Hit> hits[2];
+                for (const RayEnd end : {RayEnd::kNear, RayEnd::kFar}) {
+                    if (view.keeps(end)) {
+                        hits[static_cast<std::size_t>(end)].resize(std::size_t{view.width} * view.height);
+                    }
+                }
+                ScanConverter(scene, view).scan(rows, hits[0], hits[1]);
+                covered += encodeRows(scene, normals, view, rows, hits[0], hits[1], map);
+                for (std::uint32_t y = 0; y < view.height; ++y) {
+                    for (std::uint32_t x = 0; x < view.width; ++x) {
+                        const auto surface = [&](const std::vector<Hit>& end) -> std::optional<Surface> {
+                            if (end.empty() || end[std::size_t{y} * view.width + x].empty()) {
+                                return std::nullopt;
+                            }
+                            const Hit& hit = end[std::size_t{y} * view.width + x];
+                            const glm::dvec3 n = planeOf(mesh, hit.triangle()).normal;
+                            const glm::vec3 unit = n / std::sqrt(dot(n, n));
+                            return Surface{hit.depth(), (hit.fromBehind() ? -unit : unit) + 0.0F};
+                        };
+                        Texel texel{surface(hits[0]), surface(hits[1])};
+                        if (view.compare == Compare::kGreater) {
+                            texel.front = texel.back;
+                        }
+                        expected_covered += texel.front || texel.back ? 1 : 0;
+                        std::vector<std::byte> expected(texelSize(view.format));
+                        encodeTexel(view.format, texel, expected);
+                        const std::span<const std::byte> written = map.texelAt(face, x, y);
+                        ASSERT_TRUE(std::equal(written.begin(), written.end(), expected.begin()))
+                            << text << " " << x << ", " << y;
+                    }
+                }
+            }
+            EXPECT_EQ(covered, expected_covered);
+            EXPECT_GT(covered, 500U);
         }
     }
 }
