@@ -51,8 +51,8 @@ function(relief_precompile target from)
 endfunction()
 
 # relief_unity(TARGET): compiles up to eight sources as one, in about half the time. Use it for folders whose sources include
-# the same headers or instantiate the same large templates (CLI11, nlohmann's JSON). Names in anonymous namespaces must be
-# unique among the sources of the folder, and must not overload GLM functions.
+# the same headers or instantiate the same large templates (CLI11, nlohmann's JSON), and for test programs. Names in anonymous
+# namespaces must be unique among the sources of the target, and must not overload GLM functions.
 function(relief_unity target)
     if(RELIEF_UNITY)
         set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)

@@ -41,9 +41,9 @@ DepthMap voter(std::optional<float> distance) {
     return map;
 }
 
-using Votes = std::vector<std::optional<float>>;
+using MapVotes = std::vector<std::optional<float>>;
 
-Collider colliderOf(const Votes& votes) {
+Collider colliderOf(const MapVotes& votes) {
     Collider collider;
     for (const std::optional<float>& v : votes) {
         collider.maps.push_back(voter(v));
@@ -55,7 +55,7 @@ const glm::vec3 kOrigin(0.0F);
 constexpr float kFar = kFarOutside;
 
 TEST(Rule2, OutsideWinsThenTheVoteNearestToZero) {
-    const auto distance = [](const Votes& votes) { return evaluate(colliderOf(votes), kOrigin).distance; };
+    const auto distance = [](const MapVotes& votes) { return evaluate(colliderOf(votes), kOrigin).distance; };
     EXPECT_EQ(distance({-1.0F, -0.25F, -0.5F}), -0.25F);
     EXPECT_EQ(distance({-1.0F, 1.5F, -0.5F}), 1.5F);
     EXPECT_EQ(distance({1.0F, 0.25F, -0.5F, 0.5F}), 0.25F);
@@ -91,7 +91,7 @@ TEST(InsideBox, IsTheIntersectionOfEnclosingVolumes) {
 }
 
 TEST(Rule2, OrderDoesNotMatter) {
-    const Votes sets[] = {
+    const MapVotes sets[] = {
         {-1.0F, -0.5F, -0.25F, -1.5F, std::nullopt, -0.75F},
         {-1.0F, 0.5F, -0.25F, 1.5F, std::nullopt, kFar},
         {0.0F, 0.5F, -0.25F, kFar, -1.0F, std::nullopt},
@@ -99,7 +99,7 @@ TEST(Rule2, OrderDoesNotMatter) {
         {kFar, -0.5F, std::nullopt, -0.25F, -1.0F, -1.5F},
         {0.25F, 0.5F, 0.75F, 1.0F, 1.5F, kFar},
     };
-    for (const Votes& votes : sets) {
+    for (const MapVotes& votes : sets) {
         const Collider first = colliderOf(votes);
         const FieldSample expected = evaluate(first, kOrigin);
         std::vector<std::size_t> order(votes.size());
@@ -118,7 +118,7 @@ TEST(Rule2, OrderDoesNotMatter) {
 }
 
 TEST(Rule2, NoVoteIsMapMinusOneAndOutside) {
-    for (const Votes& votes : {Votes{}, Votes{std::nullopt}, Votes{std::nullopt, std::nullopt}}) {
+    for (const MapVotes& votes : {MapVotes{}, MapVotes{std::nullopt}, MapVotes{std::nullopt, std::nullopt}}) {
         const FieldSample sample = evaluate(colliderOf(votes), kOrigin);
         EXPECT_EQ(sample.map, -1);
         EXPECT_FALSE(sample.inside());
@@ -163,7 +163,7 @@ void expectInsideAgrees(const Collider& collider, const glm::vec3& p) {
 }
 
 TEST(Inside, IsTheSignOfEvaluateForAnyVoteOrder) {
-    Votes votes = {std::nullopt, -1.0F, -0.25F, 0.0F, 0.5F, kFar, std::nullopt, -0.25F};
+    MapVotes votes = {std::nullopt, -1.0F, -0.25F, 0.0F, 0.5F, kFar, std::nullopt, -0.25F};
     std::sort(votes.begin(), votes.end());
     do {
         expectInsideAgrees(colliderOf({votes.begin(), votes.begin() + 4}), kOrigin);

@@ -311,11 +311,11 @@ PolygonMesh polygons(const std::string& text) {
 const std::string kHead =
     "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
 const std::string kFace = "element face 1\nproperty list uchar int vertex_indices\n";
-const std::string kCorners = "0 0 0\n1 0 0\n0 1 0\n1 1 1\n";
+const std::string kPlyCorners = "0 0 0\n1 0 0\n0 1 0\n1 1 1\n";
 
 std::string strips(const std::string& element, const std::string& lists,
                    const std::string& type = "list int int") {
-    return kHead + element + "\nproperty " + type + " vertex_indices\nend_header\n" + kCorners + lists;
+    return kHead + element + "\nproperty " + type + " vertex_indices\nend_header\n" + kPlyCorners + lists;
 }
 
 TEST(ImportPly, StripsMatchTheirTriangles) {
@@ -361,7 +361,7 @@ TEST(ImportPly, StripsRestartAndAlternate) {
     const std::string both =
         "ply\nformat ascii 1.0\nelement tristrips 1\nproperty list int int vertex_index\n"
         "element face 1\nproperty list uchar int vertex_indices\nproperty uchar red\n" +
-        kHead.substr(kHead.find("element")) + "end_header\n3 0 1 2\n4 3 2 1 0 255\n" + kCorners;
+        kHead.substr(kHead.find("element")) + "end_header\n3 0 1 2\n4 3 2 1 0 255\n" + kPlyCorners;
     const PolygonMesh mesh = polygons(both);
     EXPECT_EQ(mesh.corners, (Corners{0, 1, 2, 3, 2, 1, 0}));
     EXPECT_EQ(mesh.sizes, (Corners{3, 4}));
@@ -429,7 +429,7 @@ TEST(ImportPly, MalformedHeaders) {
 
 TEST(ImportPly, UnknownFaceListsAreRejectedOrNamed) {
     const std::string polygon = replaced(kFace, "face", "polygon");
-    const std::string rest = "end_header\n" + kCorners + "3 0 1 2\n";
+    const std::string rest = "end_header\n" + kPlyCorners + "3 0 1 2\n";
     expectWrong(
         "p.ply",
         {{kHead + polygon + rest, "'polygon' is not read"},
@@ -446,12 +446,12 @@ TEST(ImportPly, UnknownFaceListsAreRejectedOrNamed) {
                          "property int vertex1\nproperty int vertex2\nelement multi_texture_face 1\n"
                          "property list uchar int texture_vertex_indices\nelement material 1\n"
                          "property float shininess\nend_header\n" +
-                         kCorners + "3 0 1 2 6 0 0 1 0 0 1 5\n0 1\n3 0 1 2\n0.5\n")
+                         kPlyCorners + "3 0 1 2 6 0 0 1 0 0 1 5\n0 1\n3 0 1 2\n0.5\n")
                     .warnings.empty());
 }
 
 TEST(ImportPly, PointsAndEdgesAreNotASurface) {
-    const std::string rest = "end_header\n" + kCorners;
+    const std::string rest = "end_header\n" + kPlyCorners;
     expectWrong(
         "p.ply",
         {{kHead + rest, "it has 4 vertices but no faces; for a scan"},

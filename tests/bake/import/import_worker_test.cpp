@@ -236,7 +236,7 @@ TriangleMesh rawTriangle() {
     return raw;
 }
 
-std::vector<std::byte> bytesOf(const Result<TriangleMesh>& raw) {
+std::vector<std::byte> messageOf(const Result<TriangleMesh>& raw) {
     std::vector<std::byte> bytes(importMessageSize(raw));
     writeImportMessage(raw, bytes);
     return bytes;
@@ -250,7 +250,7 @@ TEST(ImportMessage, RoundTripsMeshesAndErrors) {
             raw.surface_names = {{0, "hut", "wood"}, {1, "tower", ""}};
             raw.labels = {1};
         }
-        const TriangleMesh read = required(readImportMessage(bytesOf(raw)));
+        const TriangleMesh read = required(readImportMessage(messageOf(raw)));
         EXPECT_EQ(read.unit, raw.unit);
         EXPECT_EQ(read.positions, raw.positions);
         EXPECT_EQ(read.triangles, raw.triangles);
@@ -270,15 +270,16 @@ TEST(ImportMessage, RoundTripsMeshesAndErrors) {
             [](TriangleMesh& lie) { lie.labels = {2}; },         // a label without a name
             [](TriangleMesh& lie) { lie.labels.resize(2, 0); },  // a label without a triangle
         },
-        [](const TriangleMesh& lie) { return readImportMessage(bytesOf(lie)).has_value(); });
-    const Result<TriangleMesh> error = readImportMessage(bytesOf(fail(ErrorCode::kLimit, "two\nlines \x1b")));
+        [](const TriangleMesh& lie) { return readImportMessage(messageOf(lie)).has_value(); });
+    const Result<TriangleMesh> error =
+        readImportMessage(messageOf(fail(ErrorCode::kLimit, "two\nlines \x1b")));
     ASSERT_FALSE(error);
     EXPECT_EQ(error.error().code, ErrorCode::kLimit);
     EXPECT_EQ(error.error().message.find_first_of("\n\x1b"), std::string::npos);
 }
 
 TEST(ImportMessage, TruncationsAndExtensionsAreRejected) {
-    const std::vector<std::byte> whole = bytesOf(rawTriangle());
+    const std::vector<std::byte> whole = messageOf(rawTriangle());
     for (std::size_t size = 0; size < whole.size(); ++size) {
         const std::vector<std::byte> cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
         EXPECT_FALSE(readImportMessage(cut)) << size;
@@ -292,7 +293,7 @@ TEST(ImportMessage, FlippedBitsAreSafe) {
     // Every result is a mesh that finishMesh() accepts, or an error. Sanitizers detect memory errors.
     const TemporaryFolder folder;
     const ImportSource source = required(ImportSource::open(folder.write("t.obj", tetrahedronObj())));
-    const std::vector<std::byte> whole = bytesOf(rawTriangle());
+    const std::vector<std::byte> whole = messageOf(rawTriangle());
     std::mt19937 random(seedFrom(5));
     int refused = 0;
     for (int i = 0; i < 20000; ++i) {

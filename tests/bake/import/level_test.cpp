@@ -216,24 +216,22 @@ TEST_F(Levels, InvalidWorkerResultsAreRejected) {
     EXPECT_FALSE(source.finish(honest)) << "a level that was not requested";
     const double nan = std::numeric_limits<double>::quiet_NaN();
     expectInvalidRejected(honest,
-                          {
-                              [](TriangleMesh& raw) { raw.level_meshes[0].positions = 2; },
-                              [](TriangleMesh& raw) { raw.level_meshes[0].triangles = 2; },
-                              [](TriangleMesh& raw) { raw.level_meshes[0].triangles = ~std::uint64_t{0}; },
-                              [](TriangleMesh& raw) {
-                                  raw.level_meshes.push_back(LevelMesh{"m", ~std::uint64_t{0}, 0});
-                              },
-                              [](TriangleMesh& raw) { raw.level_meshes.clear(); },
-                              [](TriangleMesh& raw) { raw.level_bodies.clear(); },
-                              [](TriangleMesh& raw) { raw.level_bodies[0].mesh = 1; },
-                              [](TriangleMesh& raw) { raw.level_bodies[0].scale = 0.0; },
-                              [&](TriangleMesh& raw) { raw.level_bodies[0].scale = nan; },
-                              [&](TriangleMesh& raw) { raw.level_bodies[0].position[1] = nan; },
-                              [&](TriangleMesh& raw) { raw.level_bodies[0].rotation[1] = nan; },
-                              [](TriangleMesh& raw) { raw.level_bodies[0].rotation[3] = 0.5; },
-                              [](TriangleMesh& raw) { raw.triangles[0].x = 3; },
-                              [&](TriangleMesh& raw) { raw.positions[0].x = static_cast<float>(nan); },
-                          },
+                          {[](TriangleMesh& raw) { raw.level_meshes[0].positions = 2; },
+                           [](TriangleMesh& raw) { raw.level_meshes[0].triangles = 2; },
+                           [](TriangleMesh& raw) { raw.level_meshes[0].triangles = ~std::uint64_t{0}; },
+                           [](TriangleMesh& raw) {
+                               raw.level_meshes.push_back(LevelMesh{"m", ~std::uint64_t{0}, 0});
+                           },
+                           [](TriangleMesh& raw) { raw.level_meshes.clear(); },
+                           [](TriangleMesh& raw) { raw.level_bodies.clear(); },
+                           [](TriangleMesh& raw) { raw.level_bodies[0].mesh = 1; },
+                           [](TriangleMesh& raw) { raw.level_bodies[0].scale = 0.0; },
+                           [&](TriangleMesh& raw) { raw.level_bodies[0].scale = nan; },
+                           [&](TriangleMesh& raw) { raw.level_bodies[0].position[1] = nan; },
+                           [&](TriangleMesh& raw) { raw.level_bodies[0].rotation[1] = nan; },
+                           [](TriangleMesh& raw) { raw.level_bodies[0].rotation[3] = 0.5; },
+                           [](TriangleMesh& raw) { raw.triangles[0].x = 3; },
+                           [&](TriangleMesh& raw) { raw.positions[0].x = static_cast<float>(nan); }},
                           [&](TriangleMesh raw) { return source.finishLevel(std::move(raw)).has_value(); });
 }
 
@@ -331,8 +329,6 @@ TEST(ImportUnits, FormatsWithUnitsAndAxesAgree) {
          {"zero.3ds", tetrahedron3ds(0.0F), "", kOwnAxis, kLowZ, kHighZ, ""}});
 }
 
-// --- formats without other writers ---
-
 template <class T>
 std::string packed(const std::vector<T>& values, bool big_endian = false) {
     std::string text;
@@ -347,10 +343,11 @@ std::string chunk(const std::string& name, const std::string& data, bool big_end
     return name + packed<std::uint32_t>({static_cast<std::uint32_t>(data.size())}, big_endian) + data;
 }
 
-const std::vector<float> kCorners = {0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3};
+const std::vector<float> kTetrahedron = {0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3};
 
 std::string tetrahedronB3d() {
-    const std::string mesh = packed<int>({-1}) + chunk("VRTS", packed<int>({0, 0, 0}) + packed(kCorners)) +
+    const std::string mesh = packed<int>({-1}) +
+                             chunk("VRTS", packed<int>({0, 0, 0}) + packed(kTetrahedron)) +
                              chunk("TRIS", packed<int>({-1, 0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2}));
     return chunk("BB3D", packed<int>({1}) + chunk("NODE", std::string("b\0", 2) +
                                                               packed<float>({0, 0, 0, 1, 1, 1, 1, 0, 0, 0}) +
@@ -363,7 +360,7 @@ std::string tetrahedronLwo() {
     return chunk("FORM",
                  "LWO2" + chunk("TAGS", std::string("Default\0", 8), true) +
                      chunk("LAYR", std::string(18, '\0'), true) +
-                     chunk("PNTS", packed(kCorners, true), true) + chunk("POLS", "FACE" + faces, true) +
+                     chunk("PNTS", packed(kTetrahedron, true), true) + chunk("POLS", "FACE" + faces, true) +
                      chunk("PTAG", "SURF" + packed(Words{0, 0, 1, 0, 2, 0, 3, 0}, true), true) +
                      chunk("SURF", std::string("Default\0\0\0", 10), true),
                  true);

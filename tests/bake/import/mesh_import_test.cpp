@@ -190,7 +190,7 @@ TEST(ImportFormat, TextCanStartWithAByteOrderMark) {
     EXPECT_TRUE(importText("a.gltf", mark + tetrahedronGltf()));
 }
 
-const std::string kHead =
+const std::string kAc3dHead =
     "AC3Db\n"
     "MATERIAL \"red paint\" rgb 1 0 0  amb 1 1 1  emis 0 0 0  spec 0 0 0  shi 10  trans 0\n"
     "MATERIAL \"\" rgb 1 1 1  amb 1 1 1  emis 0 0 0  spec 0 0 0  shi 10  trans 0\n";
@@ -209,7 +209,7 @@ TEST(Ac3d, ObjectsInheritTransforms) {
     // Children inherit the parent's offset. 'rot' maps x to y: its triples are the images of the axes.
     const TemporaryFolder folder;
     const Level read = required(importLevel(folder.write(
-        "l.acc", kHead + "OBJECT world\nkids 2\nOBJECT group\nname \"yard\"\nloc 10 0 0\nkids 1\n" +
+        "l.acc", kAc3dHead + "OBJECT world\nkids 2\nOBJECT group\nname \"yard\"\nloc 10 0 0\nkids 1\n" +
                      tetrahedron("tower", "loc 0 1 0\nrot 0 1 0 -1 0 0 0 0 1\n", "1") +
                      tetrahedron("flag", "loc 5 0 0\n") + tetrahedron("tree"))));
     ASSERT_EQ(read.bodies.size(), 3U);
@@ -238,7 +238,7 @@ TEST(Ac3d, SurfacesOfEveryKind) {
         "SURF 0x14\nmat 0\nrefs 10\n0 0 0 0 0\n1 0 1 0 1\n2 1 0 1 0\n3 1 1 1 1\n3 1 1\n2 1 0\n2 1 0\n3 1 "
         "1\n4 1 0\n5 1 1\n"
         "SURF 0x1\nmat 0\nrefs 3\n0 0 0\n1 0 0\n2 0 0\nSURF 0x2\nmat 0\nrefs 2\n0 0 0\n1 0 0\nkids 0\n";
-    const TriangleMesh mesh = imported("a.ac", kHead + "OBJECT world\r\nkids 1\r\n" + strip);
+    const TriangleMesh mesh = imported("a.ac", kAc3dHead + "OBJECT world\r\nkids 1\r\n" + strip);
     ASSERT_EQ(mesh.triangles.size(), 4U);
     double area = 0.0;
     for (std::uint32_t t = 0; t < 4; ++t) {
@@ -254,21 +254,21 @@ TEST(Ac3d, SurfacesOfEveryKind) {
 TEST(Ac3d, NamesAndMaterialsAreSelectable) {
     ImportOptions options;
     options.names = {"red paint", "big tower"};
-    const std::string one = kHead + "OBJECT world\nkids 1\n" + tetrahedron("big tower");
+    const std::string one = kAc3dHead + "OBJECT world\nkids 1\n" + tetrahedron("big tower");
     EXPECT_EQ(imported("n.ac", one, options).marks, std::vector<std::uint8_t>(4, 2));
 }
 
 TEST(Ac3d, OddFilesWarnOrFailWithTheLine) {
-    const std::string one = kHead + "OBJECT world\nkids 1\n" + tetrahedron("t");
+    const std::string one = kAc3dHead + "OBJECT world\nkids 1\n" + tetrahedron("t");
     const TriangleMesh fewer =
-        imported("a.ac", kHead + "OBJECT world\nkids 3\n" + tetrahedron("t", "subdiv 2\n"));
+        imported("a.ac", kAc3dHead + "OBJECT world\nkids 3\n" + tetrahedron("t", "subdiv 2\n"));
     EXPECT_EQ(fewer.warnings.size(), 2U);
     EXPECT_TRUE(warns(fewer, "it has 2 objects fewer than its 'kids' declare"));
     EXPECT_TRUE(warns(fewer, "1 of its objects use subdivision"));
-    for (std::size_t length = kHead.size(); length + 8 < one.size(); length += 7) {
+    for (std::size_t length = kAc3dHead.size(); length + 8 < one.size(); length += 7) {
         ASSERT_FALSE(importText("a.ac", one.substr(0, length))) << "truncated to " << length << " bytes";
     }
-    std::string deep = kHead;
+    std::string deep = kAc3dHead;
     for (int i = 0; i < 1100; ++i) {
         deep += "OBJECT group\nkids 1\n";
     }
@@ -284,7 +284,7 @@ TEST(Ac3d, OddFilesWarnOrFailWithTheLine) {
                          {with("kids 1", "kids many"), "'many' is not a number of kids"},
                          {with("refs 3", "refs 4000000000"), "line "},
                          {with("\nkids 0", "\n"), "no 'kids'"},
-                         {kHead, "no triangles"},
+                         {kAc3dHead, "no triangles"},
                          {"AC4D\n", "does not begin with AC3D"},
                          {deep + tetrahedron("t"), "", ErrorCode::kLimit}});
 }

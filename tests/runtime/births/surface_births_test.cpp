@@ -22,7 +22,7 @@
 namespace relief::test {
 namespace {
 
-constexpr int kCount = 50'000;
+constexpr int kPlaces = 50'000;
 constexpr double kPi = std::numbers::pi;
 
 /// A grid of `u` × `v` quads, whose vertex (i, j) is at place(i / u, j / v).
@@ -49,7 +49,7 @@ EmitterSurface surfaceOf(const std::vector<glm::uvec3>& triangles, const std::ve
     return required(EmitterSurface::create(triangles, std::move(weights), positions));
 }
 
-std::vector<EmitterSurface::Place> drawn(const EmitterSurface& surface, int count = kCount,
+std::vector<EmitterSurface::Place> drawn(const EmitterSurface& surface, int count = kPlaces,
                                          float age = 0.0F) {
     Pcg32 random(7);
     std::vector<EmitterSurface::Place> places;
@@ -168,7 +168,7 @@ TEST(EmitterSurface, WeightsAreALinearDensity) {
          drawn(surfaceOf(two, corners, {1.0F, 0.5F, 0.3F, 0.1F, 0.2F, 0.3F}))) {
         near += place.position.x < 2.0F ? 1 : 0;
     }
-    EXPECT_NEAR(static_cast<double>(near) / kCount, 0.75, 5 * std::sqrt(0.1875 / kCount));
+    EXPECT_NEAR(static_cast<double>(near) / kPlaces, 0.75, 5 * std::sqrt(0.1875 / kPlaces));
 }
 
 TEST(EmitterSurface, RejectsInvalidSurfaces) {

@@ -260,15 +260,13 @@ TEST(BodyTable, TextureIsNoHigherThanWide) {
     }
 }
 
-constexpr float kPi = std::numbers::pi_v<float>;
-
 Pose pose(const glm::vec3& position, const glm::vec3& axis, float angle) {
     return {position, glm::angleAxis(angle, glm::normalize(axis)), 2.0F};
 }
 
 std::vector<PoseKey> path() {
     return {{1.0, pose({0.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 1.0F}, 0.0F)},
-            {3.0, pose({4.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 1.0F}, 0.5F * kPi)},
+            {3.0, pose({4.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 1.0F}, 0.5F * std::numbers::pi_v<float>)},
             {4.0, pose({4.0F, -1.0F, 2.0F}, {0.3F, 1.0F, -0.5F}, -2.5F)},
             {4.5, pose({4.0F, -1.0F, 2.0F}, {0.3F, 1.0F, -0.5F}, -2.5F)}};
 }
@@ -281,13 +279,14 @@ TEST(PoseKeys, InterpolatesLinearlyAtConstantRotation) {
     const Pose half = poseAt(keys, 2.0);
     EXPECT_EQ(half.position, glm::vec3(2.0F, 0.0F, 0.0F));
     EXPECT_EQ(half.scale, 2.0F);
-    EXPECT_NEAR(glm::angle(half.rotation), 0.25F * kPi, 1e-6F);
+    EXPECT_NEAR(glm::angle(half.rotation), 0.25F * std::numbers::pi_v<float>, 1e-6F);
 }
 
 TEST(PoseKeys, MotionMatchesTheClosedForm) {
     const Motion motion = motionAt(path(), 2.0);
     EXPECT_NEAR(glm::length(motion.velocity - glm::vec3(2.0F, 0.0F, 0.0F)), 0.0F, 1e-6F);
-    EXPECT_NEAR(glm::length(motion.turn - glm::vec3(0.0F, 0.0F, 0.25F * kPi)), 0.0F, 1e-6F);
+    EXPECT_NEAR(glm::length(motion.turn - glm::vec3(0.0F, 0.0F, 0.25F * std::numbers::pi_v<float>)), 0.0F,
+                1e-6F);
     for (const double time : {0.5, 4.2, 4.5, 9.0}) {
         EXPECT_EQ(motionAt(path(), time).velocity, glm::vec3(0.0F)) << time;
         EXPECT_LT(glm::length(motionAt(path(), time).turn), 1e-6F) << time;
@@ -300,8 +299,8 @@ TEST(PoseKeys, MotionMatchesTheClosedForm) {
 TEST(PoseKeys, RotatesTheShorterWay) {
     auto keys = path();
     keys[1].pose.rotation = -keys[1].pose.rotation;
-    EXPECT_NEAR(motionAt(keys, 2.0).turn.z, 0.25F * kPi, 1e-6F);
-    EXPECT_NEAR(glm::angle(poseAt(keys, 2.0).rotation), 0.25F * kPi, 1e-5F);
+    EXPECT_NEAR(motionAt(keys, 2.0).turn.z, 0.25F * std::numbers::pi_v<float>, 1e-6F);
+    EXPECT_NEAR(glm::angle(poseAt(keys, 2.0).rotation), 0.25F * std::numbers::pi_v<float>, 1e-5F);
 }
 
 // Neither direction is shorter: the rotation follows the angles, however they are rounded.

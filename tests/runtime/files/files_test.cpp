@@ -70,7 +70,7 @@ TEST(ObjMesh, RejectsInvalidFiles) {
     EXPECT_TRUE(obj("f 1 2 3\n" + three)) << "vertices may follow the faces";
 }
 
-const std::string kHead =
+const std::string kPlyHead =
     "element vertex 4\nproperty float x\nproperty uchar red\nproperty double y\nproperty short z\n"
     "element face 2\nproperty int flags\nproperty list uchar int vertex_indices\nend_header\n";
 
@@ -106,7 +106,7 @@ TEST(PlyMesh, AsciiWithOtherElements) {
     const auto mesh = required(
         ply("ply\r\nformat ascii 1.0\ncomment x\nelement camera 1\nproperty float f\nproperty list uint8 "
             "int32 l\n" +
-            kHead + "0.5 2 7 8\n0 255 0 0\n1 255 0.5 2\n1 0 1 0\n0 9 1 -3\n  7 3 0 1 2\n7 4 0 1\n2 3\n"));
+            kPlyHead + "0.5 2 7 8\n0 255 0 0\n1 255 0.5 2\n1 0 1 0\n0 9 1 -3\n  7 3 0 1 2\n7 4 0 1\n2 3\n"));
     ASSERT_EQ(mesh.positions.size(), 4U);
     EXPECT_EQ(mesh.positions[1], glm::vec3(1.0F, 0.5F, 2.0F));
     EXPECT_EQ(mesh.positions[3], glm::vec3(0.0F, 1.0F, -3.0F));
@@ -124,8 +124,8 @@ void put(std::string& out, T value, bool big) {
 }
 
 std::string binaryPly(bool big) {
-    std::string text =
-        std::string("ply\nformat ") + (big ? "binary_big_endian" : "binary_little_endian") + " 1.0\n" + kHead;
+    std::string text = std::string("ply\nformat ") + (big ? "binary_big_endian" : "binary_little_endian") +
+                       " 1.0\n" + kPlyHead;
     for (int i = 0; i < 4; ++i) {
         put(text, 0.25F * static_cast<float>(i), big);
         text.push_back('\n');

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <set>
 #include <vector>
 
@@ -167,13 +168,12 @@ TEST(IndexAllocator, RejectsIndicesBeyondItsCapacity) {
     EXPECT_EQ(none.extent(), 0U);
 }
 
-constexpr int kCount = 100'000;
-constexpr double kPi = 3.14159265358979323846;
+constexpr int kDraws = 100'000;
 
 std::vector<double> values(std::uint64_t seed, const std::function<float(Pcg32&)>& draw) {
     Pcg32 random(seed);
     std::vector<double> out;
-    for (int i = 0; i < kCount; ++i) {
+    for (int i = 0; i < kDraws; ++i) {
         out.push_back(static_cast<double>(draw(random)));
     }
     return out;
@@ -192,7 +192,7 @@ TEST(Random, BelowIsUniformAndInRange) {
     for (const std::uint32_t count : {1U, 2U, 7U, 1000U}) {
         Pcg32 random(count);
         std::vector<std::size_t> hits(count);
-        for (int i = 0; i < kCount; ++i) {
+        for (int i = 0; i < kDraws; ++i) {
             const std::uint32_t at = random.below(count);
             ASSERT_LT(at, count);
             ++hits[at];
@@ -204,10 +204,10 @@ TEST(Random, BelowIsUniformAndInRange) {
     // For a bound of 3/4 · 2^32, a product without rejection would draw every third number twice as often.
     Pcg32 random(9);
     int thirds = 0;
-    for (int i = 0; i < kCount; ++i) {
+    for (int i = 0; i < kDraws; ++i) {
         thirds += random.below(0xC0000000U) % 3 == 0 ? 1 : 0;
     }
-    EXPECT_NEAR(thirds, kCount / 3.0, 5.0 * std::sqrt(kCount * 2.0 / 9.0));
+    EXPECT_NEAR(thirds, kDraws / 3.0, 5.0 * std::sqrt(kDraws * 2.0 / 9.0));
 }
 
 TEST(Random, SignedUniformIsOddAndNeverZero) {
@@ -227,7 +227,7 @@ TEST(Random, ConeIsUniformInSolidAngle) {
         Pcg32 random(5);
         std::vector<double> down;
         std::vector<double> turns;
-        for (int i = 0; i < kCount; ++i) {
+        for (int i = 0; i < kDraws; ++i) {
             const glm::dvec3 d(inCone(random, static_cast<float>(opening)));
             ASSERT_NEAR(glm::length(d), 1.0, 3e-7);
             // Computed from the radius if that is better conditioned.
@@ -237,7 +237,8 @@ TEST(Random, ConeIsUniformInSolidAngle) {
             turns.push_back(std::atan2(d.y, d.x));
         }
         EXPECT_LT(test::kolmogorov(down, [&](double x) { return x / opening; }), test::kKolmogorovMax);
-        EXPECT_LT(test::kolmogorov(turns, [](double a) { return (a + kPi) / (2.0 * kPi); }),
+        EXPECT_LT(test::kolmogorov(
+                      turns, [](double a) { return (a + std::numbers::pi) / (2.0 * std::numbers::pi); }),
                   test::kKolmogorovMax);
     }
 }
@@ -247,7 +248,7 @@ TEST(Random, OneMinusCosineMatchesLibm) {
     EXPECT_DOUBLE_EQ(oneMinusCosine(90.0), 1.0);
     EXPECT_DOUBLE_EQ(oneMinusCosine(180.0), 2.0);
     for (double degrees = 1e-6; degrees <= 180.0; degrees *= 1.7) {
-        const double sine = std::sin(degrees * kPi / 360.0);
+        const double sine = std::sin(degrees * std::numbers::pi / 360.0);
         EXPECT_NEAR(oneMinusCosine(degrees) / (2.0 * sine * sine), 1.0, 1e-14) << degrees;
     }
 }

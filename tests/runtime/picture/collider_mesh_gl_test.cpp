@@ -26,8 +26,8 @@
 namespace relief::test {
 namespace {
 
-constexpr std::uint32_t kWidth = 96;
-constexpr std::uint32_t kHeight = 64;
+constexpr std::uint32_t kViewWidth = 96;
+constexpr std::uint32_t kViewHeight = 64;
 constexpr double kPi = 3.14159265358979;
 constexpr float kRadius = 0.5F;
 constexpr float kDistance = 3.0F;
@@ -99,7 +99,7 @@ class ColliderMeshGlTest : public GlTest {
     const Collider collider_ = analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, kRadius), 128);
     WorldTextures textures_ = required(WorldTextures::create(collider_));
     ColliderMesh mesh_ = required(ColliderMesh::create(sphereMesh(128, 64)));
-    Frame frame_ = required(Frame::create(kWidth, kHeight));
+    Frame frame_ = required(Frame::create(kViewWidth, kViewHeight));
     const RenderTarget target_ = frame_.target();
 };
 
@@ -108,7 +108,7 @@ TEST_P(ColliderMeshGlTest, SpheresLookTheSameFromMeshAndMaps) {
     const auto [maps_rgb, maps_depth] = draw(camera, {}, nullptr);
     const auto [mesh_rgb, mesh_depth] = draw(camera, {}, &mesh_);
     EXPECT_NE(maps_rgb, mesh_rgb) << "both pictures were drawn from the maps";
-    EXPECT_GT(maps_rgb[3 * (kWidth * (kHeight / 2 - 5) + kWidth / 2 - 5)], 60)
+    EXPECT_GT(maps_rgb[3 * (kViewWidth * (kViewHeight / 2 - 5) + kViewWidth / 2 - 5)], 60)
         << "the side towards the sun is lit";
 
     // Outline: both cover the same pixels except for one pixel of the target along the circle. Depth: facets are off by
@@ -187,7 +187,7 @@ struct Light {
 };
 
 /// Evaluates particle_light.glsl at the points of a texture, one per texel.
-constexpr const char* kQuery = R"(
+constexpr const char* kLightQuery = R"(
 uniform highp sampler2D u_points;  // xyz: object space
 
 layout(location = 0) out vec4 o_light;  // visible fractions of sun and sky, means over all rotations and jitters
@@ -224,7 +224,7 @@ class ColliderLightGlTest : public GlTest {
         const GlTexture input = makeTexture2D(GL_RGBA32F, count, 1, GL_RGBA, GL_FLOAT, texels.data());
         const GlTexture output = makeTexture2D(GL_RGBA32F, count, 1, GL_RGBA, GL_FLOAT);
         const GlFramebuffer target = required(makeFramebuffer({output.name()}));
-        const GlProgram program = required(makeQueryProgram("picture/particle_light.glsl", kQuery));
+        const GlProgram program = required(makeQueryProgram("picture/particle_light.glsl", kLightQuery));
         light_->attach(program, 1);
         program.set("u_points", 0);
         light_->bind(1);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -16,7 +17,6 @@ namespace relief {
 namespace {
 
 constexpr GLsizei kSide = 64;
-constexpr float kPi = 3.14159265F;
 // RGBA16F has a relative precision of 2^-11.
 constexpr float kHalf = 1.0F / 1024.0F;
 
@@ -154,7 +154,7 @@ TEST_P(SpriteGlTest, CellsRotateAnticlockwise) {
         expectNear(pixel(20, 47), kRed, kHalf, "inside the upper edge");
         expectNear(pixel(20, 48), kClear, 0.0F, "outside the upper edge");
 
-        one.rotation = {{0.0F, 0.5F * kPi}};
+        one.rotation = {{0.0F, 0.5F * std::numbers::pi_v<float>}};
         drawOne(one);
         expectCorners({kGreen, kClear, kRed, kBlue}, "turned");
     }
@@ -165,7 +165,7 @@ TEST_P(SpriteGlTest, CellsRotateAnticlockwise) {
 TEST_P(SpriteGlTest, QuadsRotateWithTheirCorners) {
     useAtlas();
     ParticleLook one = cells(0, 0);
-    one.rotation = {{0.0F, 0.25F * kPi}};
+    one.rotation = {{0.0F, 0.25F * std::numbers::pi_v<float>}};
     drawOne(one);
     EXPECT_EQ(pixel(31, 31 + 22).a, 1.0F);
     EXPECT_EQ(pixel(31, 31 + 24).a, 0.0F);
@@ -382,7 +382,7 @@ TEST_P(SpriteGlTest, SoftEdgesFadeByDistance) {
 TEST_P(SpriteGlTest, RandomRotationsArePerParticle) {
     useAtlas();
     ParticleLook one = cells(1, 1);
-    one.turn = kPi;
+    one.turn = std::numbers::pi_v<float>;
     drawOne(one);
     const std::vector<float> first = pixels_;
     drawOne(one, 2.0F);

@@ -20,8 +20,8 @@ namespace relief {
 namespace {
 
 // Not multiples of a tile's side.
-constexpr GLsizei kWidth = 150;
-constexpr GLsizei kHeight = 101;
+constexpr GLsizei kTargetWidth = 150;
+constexpr GLsizei kTargetHeight = 101;
 constexpr int kMargin = 7;  // half a sprite's pixels
 
 class TilePainterGlTest : public GlTest {
@@ -41,7 +41,9 @@ class TilePainterGlTest : public GlTest {
     }
 
     [[nodiscard]] ColliderView view() const { return {&textures_, collider_.bounds, finestTexel(collider_)}; }
-    [[nodiscard]] RenderTarget target() const { return {framebuffer_.name(), kWidth, kHeight, srgb_}; }
+    [[nodiscard]] RenderTarget target() const {
+        return {framebuffer_.name(), kTargetWidth, kTargetHeight, srgb_};
+    }
 
     /// All around the sphere, and beyond the picture. One in nine has died.
     void spawn(std::uint32_t count, float reach = 1.2F) {
@@ -79,7 +81,7 @@ class TilePainterGlTest : public GlTest {
         const auto drawn = renderer.draw(*particles_, camera_, style_, target(), order,
                                          among_collider ? &collider_renderer_.depth() : nullptr);
         EXPECT_TRUE(drawn) << drawn.error().message;
-        return required(readTextureFloats(color_, kWidth, kHeight));
+        return required(readTextureFloats(color_, kTargetWidth, kTargetHeight));
     }
 
     struct Difference {
@@ -90,7 +92,7 @@ class TilePainterGlTest : public GlTest {
     /// \param margin  pixels at the edges that are ignored: some drivers drop points whose centre is outside the
     /// picture.
     static Difference between(const std::vector<float>& a, const std::vector<float>& b, int margin = 0,
-                              int width = kWidth, int height = kHeight) {
+                              int width = kTargetWidth, int height = kTargetHeight) {
         Difference difference;
         const int parts = 4 * (width - 2 * margin) * (height - 2 * margin);
         for (int y = margin; y < height - margin; ++y) {
@@ -134,9 +136,9 @@ class TilePainterGlTest : public GlTest {
     std::vector<ParticleRenderer> renderers_;
     std::optional<ParticleSystem> particles_;
     std::optional<DepthSorter> sorter_;
-    const GlTexture color_ = makeTexture2D(GL_RGBA16F, kWidth, kHeight, GL_RGBA, GL_HALF_FLOAT);
+    const GlTexture color_ = makeTexture2D(GL_RGBA16F, kTargetWidth, kTargetHeight, GL_RGBA, GL_HALF_FLOAT);
     const GlTexture depth_ =
-        makeTexture2D(GL_DEPTH_COMPONENT32F, kWidth, kHeight, GL_DEPTH_COMPONENT, GL_FLOAT);
+        makeTexture2D(GL_DEPTH_COMPONENT32F, kTargetWidth, kTargetHeight, GL_DEPTH_COMPONENT, GL_FLOAT);
     const GlFramebuffer framebuffer_ = required(makeFramebuffer({color_.name()}, depth_.name()));
 };
 
@@ -302,7 +304,7 @@ TEST_P(TilePainterGlTest, DepthRenderbuffersFallBackToPoints) {
     GLuint depth = 0;
     glGenRenderbuffers(1, &depth);
     glBindRenderbuffer(GL_RENDERBUFFER, depth);
-    glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, kWidth, kHeight);
+    glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, kTargetWidth, kTargetHeight);
     glBindRenderbuffer(GL_RENDERBUFFER, 0);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth);

@@ -104,7 +104,7 @@ class SceneTouch : public testing::Test {
 };
 
 const std::string kNoGround = "ground = { enabled = false }\n";
-const std::string kBox = "[[collider]]\nfile = \"box.relief\"\n";
+const std::string kBoxCollider = "[[collider]]\nfile = \"box.relief\"\n";
 const std::string kFoot = "[[emitter]]\nshape = \"surface\"\nmesh = \"foot.obj\"\nrate = 3000\nspeed = 0\n";
 
 /// A footstep: the foot, otherwise at height 0.3, is down from 1 s to 2 s.
@@ -118,7 +118,7 @@ const std::string kStep =
 TEST_F(SceneTouch, FeetRaiseDustOnlyWhileDown) {
     const auto dust = [&](const std::string& names, bool only_earth) {
         return expectTruth(
-            kNoGround + kBox + kFoot, "within = 0.05" + names, 3.0,
+            kNoGround + kBoxCollider + kFoot, "within = 0.05" + names, 3.0,
             [&](const glm::dvec3& p, double time) -> std::optional<bool> {
                 EXPECT_NEAR(footHeight(time), p.y, 1e-6);
                 const auto down = below(footHeight(time), 0.05, 0.002);
@@ -134,7 +134,7 @@ TEST_F(SceneTouch, FeetRaiseDustOnlyWhileDown) {
 }
 
 TEST_F(SceneTouch, MovingBodiesTouchTheSurface) {
-    const std::string rises = kNoGround + kBox +
+    const std::string rises = kNoGround + kBoxCollider +
                               "[[collider.key]]\ntime = 0\nposition = [0.2, -1, 0]\n"
                               "[[collider.key]]\ntime = 1\nposition = [0.2, 0, 0]\n" +
                               kFoot;
@@ -148,7 +148,7 @@ TEST_F(SceneTouch, MovingBodiesTouchTheSurface) {
     EXPECT_NEAR(static_cast<double>(touched), 3000 * 0.6 * 0.7, 150.0);
     // A foot inside the body does not touch its surface.
     const std::string deep =
-        kNoGround + kBox + "position = [0, 0.25, 0]\n" + kFoot + "touching = { within = 0.2 }\n";
+        kNoGround + kBoxCollider + "position = [0, 0.25, 0]\n" + kFoot + "touching = { within = 0.2 }\n";
     EXPECT_TRUE(run(deep, 0.1).births.empty());
 }
 
@@ -160,8 +160,8 @@ TEST_F(SceneTouch, SpeedIsRelativeToTheTouchedBody) {
     const std::string slides = keys("collider");
     const std::string along = keys("emitter");
     const auto count = [&](const std::string& body_keys, const std::string& foot_keys, const char* speed) {
-        return run(kNoGround + kBox + body_keys + kFoot + "touching = { within = 0.05, min_speed = " + speed +
-                       " }\n" + foot_keys,
+        return run(kNoGround + kBoxCollider + body_keys + kFoot +
+                       "touching = { within = 0.05, min_speed = " + speed + " }\n" + foot_keys,
                    1.0)
             .births.size();
     };
@@ -175,8 +175,8 @@ TEST_F(SceneTouch, SpeedIsRelativeToTheTouchedBody) {
 }
 
 TEST_F(SceneTouch, RotatingBodiesAreFasterFartherOut) {
-    const std::string turns =
-        kNoGround + kBox + "[[collider.key]]\ntime = 0\n[[collider.key]]\ntime = 1\nangle = 90\n" + kFoot;
+    const std::string turns = kNoGround + kBoxCollider +
+                              "[[collider.key]]\ntime = 0\n[[collider.key]]\ntime = 1\nangle = 90\n" + kFoot;
     expectTruth(turns, "within = 0.05, min_speed = 0.5", 0.9, [](const glm::dvec3& p, double time) {
         const auto fast = below(-1.5707963 * std::hypot(p.x, p.z), -0.5, 1e-3);
         return time < 0.0 ? false : fast;
@@ -184,7 +184,7 @@ TEST_F(SceneTouch, RotatingBodiesAreFasterFartherOut) {
 }
 
 TEST_F(SceneTouch, TheColliderOfTheSurfaceIsIgnored) {
-    const std::string two = kNoGround + kBox +
+    const std::string two = kNoGround + kBoxCollider +
                             "[[collider]]\nfile = \"bare.relief\"\nposition = [0.5, 0.55, 0]\n" +
                             "[[emitter]]\nshape = \"surface\"\nattach = 0\nrate = 4000\nspeed = 0\n";
     const std::size_t touching = expectTruth(two, "within = 0.1", 1.0, [](const glm::dvec3& p, double) {
@@ -243,7 +243,7 @@ TEST_F(SceneTouch, GroundHasNoMaterial) {
 }
 
 TEST_F(SceneTouch, DroppedBirthsUseNoCapacity) {
-    const std::string scene = kNoGround + kBox + kFoot;
+    const std::string scene = kNoGround + kBoxCollider + kFoot;
     const std::string earth = "touching = { within = 0.05, material = \"earth\" }\n";
     const Played whole = run(scene + earth, 0.2);
     const Played tight = run(scene + earth, 0.2, 20);
@@ -254,7 +254,7 @@ TEST_F(SceneTouch, DroppedBirthsUseNoCapacity) {
 }
 
 TEST_F(SceneTouch, UnknownMaterialsAreErrors) {
-    expectErrorOf(load(kBox + kFoot + "touching = { within = 1, material = [\"oak\", \"erth\"] }\n"),
+    expectErrorOf(load(kBoxCollider + kFoot + "touching = { within = 1, material = [\"oak\", \"erth\"] }\n"),
                   "scene.toml:3:1: emitter[0].touching.material = 'erth'", "");
 }
 
