@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // assimp 5.2 is not used: it accepts truncated files, replaces out-of-range indices, rotates objects the wrong way, and
-// does not move the kids of a translated object (import_ac3d_test.cpp).
+// does not move the kids of a translated object (mesh_import_test.cpp).
 #include <algorithm>
 #include <array>
 #include <cstdint>

@@ -140,7 +140,7 @@ class VoteChecks {
                    double{kPlaneCosineMin};
         };
         if (map_.decode == Decode::kPlane && (stands(front) || stands(back))) {
-            return;  // the texel stores another value: see plane_test
+            return;  // the texel stores another value: see collider_test
         }
         if (both && map_.decode == Decode::kPlane &&
             std::min(std::abs(a.distance), std::abs(b.distance)) < bound) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs a fuzz target on every file in the given folders: relief_replay_X FOLDER…. With RELIEF_MUTANTS, also on that many
-// mutants of each file; they are the same in every run.
+// Runs a fuzz target on every file in the given folders: relief_replay_X [--mutants N] FOLDER…. With --mutants, also on N
+// mutants of each file, made by the target's custom mutator; they are the same in every run.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -12,9 +12,8 @@
 
 #include "tests/fuzz/target.h"
 
-#ifdef RELIEF_MUTANTS
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
-                                               unsigned seed);
+extern "C" [[gnu::weak]] std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                                             std::size_t max_size, unsigned seed);
 
 namespace {
 
@@ -24,9 +23,9 @@ std::size_t below(std::size_t end) {
     return numbers() % end;
 }
 
-void runMutants(const std::string& bytes) {
+void runMutants(const std::string& bytes, int count) {
     std::vector<std::uint8_t> mutant(bytes.size() + 16);
-    for (int i = 0; i < RELIEF_MUTANTS; ++i) {
+    for (int i = 0; i < count; ++i) {
         std::copy(bytes.begin(), bytes.end(), mutant.begin());
         const std::size_t size = LLVMFuzzerCustomMutator(mutant.data(), bytes.size(), mutant.size(),
                                                          static_cast<unsigned>(numbers()));
@@ -62,12 +61,17 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
     }
     return size;
 }
-#endif
 
 int main(int argc, char** argv) {
     namespace fs = std::filesystem;
     std::vector<fs::path> files;
-    for (int i = 1; i < argc; ++i) {
+    const bool mutates = argc > 2 && std::string_view(argv[1]) == "--mutants";
+    const int mutants = mutates ? std::stoi(argv[2]) : 0;
+    if (mutates && (mutants <= 0 || LLVMFuzzerCustomMutator == nullptr)) {
+        std::fprintf(stderr, "--mutants needs a positive number and a target with a mutator\n");
+        return 1;
+    }
+    for (int i = mutates ? 3 : 1; i < argc; ++i) {
         for (const fs::directory_entry& entry : fs::directory_iterator(argv[i])) {
             files.push_back(entry.path());
         }
@@ -83,9 +87,7 @@ int main(int argc, char** argv) {
         std::printf("%s\n", file.filename().c_str());  // in case the run crashes
         std::fflush(stdout);
         LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
-#ifdef RELIEF_MUTANTS
-        runMutants(bytes);
-#endif
+        runMutants(bytes, mutants);
     }
     std::printf("%zu inputs\n", files.size());
     return files.empty() ? 1 : 0;

@@ -161,11 +161,13 @@ job_sanitize() { sanitized -LE cli; }
 
 job nightly 5 replay
 job_replay() {
-    local source targets=() status=0
+    local source corpus targets=() status=0
     for source in tests/fuzz/fuzz_*.cpp; do targets+=("relief_replay_$(basename "${source#*/fuzz_}" .cpp)"); done
     bin=$(scripts/build.sh test "${targets[@]}")
     for source in "${targets[@]}"; do
-        UBSAN_OPTIONS=print_stacktrace=1 "$bin/$source" "tests/fuzz/corpus/${source#relief_replay_}" | tee -a "$work/replay.log" || status=1
+        corpus=tests/fuzz/corpus/${source#relief_replay_}
+        [ -d "$corpus" ] || corpus=tests/fuzz/corpus/container # relief_replay_single
+        UBSAN_OPTIONS=print_stacktrace=1 "$bin/$source" "$corpus" | tee -a "$work/replay.log" || status=1
     done
     say "$(awk '/^[0-9]+ inputs$/ { sum += $1 } END { print sum + 0 }' "$work/replay.log") inputs for ${#targets[@]} readers"
     return $status

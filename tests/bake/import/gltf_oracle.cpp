@@ -18,7 +18,7 @@ namespace relief::test {
 namespace {
 
 using Json = nlohmann::json;
-using Place = std::function<glm::dvec3(glm::dvec3)>;
+using Placement = std::function<glm::dvec3(glm::dvec3)>;
 using Numbers = std::vector<double>;
 
 /// The purpose of an accessor. Each purpose allows different types.
@@ -180,7 +180,7 @@ class Book {
     }
 
     /// \param m  16 numbers, column-major
-    static Place placeOfMatrix(const double* m) {
+    static Placement placeOfMatrix(const double* m) {
         must(std::abs(m[3]) + std::abs(m[7]) + std::abs(m[11]) + std::abs(m[15] - 1) < 3e-5, "the last row");
         glm::dmat4x3 matrix;
         for (int i = 0; i < 12; ++i) {
@@ -189,7 +189,7 @@ class Book {
         return [matrix](const glm::dvec3& p) { return matrix * glm::dvec4(p, 1.0); };
     }
 
-    static Place placeOf(const Json& node) {
+    static Placement placeOf(const Json& node) {
         const Numbers m = numbers(node, "matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
         const Numbers t = numbers(node, "translation", {0, 0, 0});
         const Numbers q = numbers(node, "rotation", {0, 0, 0, 1});
@@ -197,7 +197,7 @@ class Book {
         const bool parts =
             node.contains("translation") || node.contains("rotation") || node.contains("scale");
         must(!node.contains("matrix") || !parts, "a matrix and more");
-        const Place by = placeOfMatrix(m.data());
+        const Placement by = placeOfMatrix(m.data());
         must(std::abs(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1) < 1e-3, "no unit");
         return [=](const glm::dvec3& p) {
             const glm::dvec3 scaled = by(p) * glm::dvec3(s[0], s[1], s[2]);
@@ -207,10 +207,10 @@ class Book {
         };
     }
 
-    void visit(std::size_t index, const Place& above) {
+    void visit(std::size_t index, const Placement& above) {
         const Json& node = element(document_, "nodes", index);
-        const Place own = placeOf(node);
-        const Place place = [above, own](const glm::dvec3& p) { return above(own(p)); };
+        const Placement own = placeOf(node);
+        const Placement place = [above, own](const glm::dvec3& p) { return above(own(p)); };
         if (node.contains("mesh")) {
             const Json* skin =
                 node.contains("skin") ? &element(document_, "skins", whole(node.at("skin"))) : nullptr;
@@ -225,13 +225,13 @@ class Book {
         }
     }
 
-    Place placeOf(std::size_t joint) {
-        const Place own = placeOf(element(document_, "nodes", joint));
+    Placement placeOf(std::size_t joint) {
+        const Placement own = placeOf(element(document_, "nodes", joint));
         const Json& nodes = list(document_, "nodes");
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             for (const Json& child : list(nodes[i], "children")) {
                 if (whole(child) == joint) {
-                    const Place above = placeOf(i);
+                    const Placement above = placeOf(i);
                     return [above, own](const glm::dvec3& p) { return above(own(p)); };
                 }
             }
@@ -249,10 +249,10 @@ class Book {
             inverse = accessor(whole(skin.at("inverseBindMatrices")), Use::kMatrices);
             must(inverse.size() >= 16 * joints.size(), "too few matrices");
         }
-        std::vector<Place> places;
+        std::vector<Placement> places;
         for (std::size_t i = 0; i < joints.size(); ++i) {
-            const Place place = placeOf(whole(joints[i]));
-            const Place bind =
+            const Placement place = placeOf(whole(joints[i]));
+            const Placement bind =
                 inverse.empty() ? [](glm::dvec3 p) { return p; } : placeOfMatrix(&inverse[16 * i]);
             places.emplace_back([place, bind](const glm::dvec3& p) { return place(bind(p)); });
         }
@@ -281,7 +281,8 @@ class Book {
         return posed;
     }
 
-    void addPrimitive(const Json& primitive, const Place& place, const Json* skin, const Numbers& weights) {
+    void addPrimitive(const Json& primitive, const Placement& place, const Json* skin,
+                      const Numbers& weights) {
         const Json& attributes = primitive.at("attributes");
         must(attributes.is_object(), "no attributes");
         const std::size_t mode = whole(primitive, "mode", 4);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Front-back plane maps drawn by DepthMapRenderer, compared with baked maps of real meshes. The two programs share the
-// view and the texel format, but no arithmetic.
-
+// view and the texel format, but no arithmetic. Also patches beside other maps, on the GPU and the CPU.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <limits>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -19,7 +19,9 @@
 #include "runtime/depth_maps/gpu_mesh.h"
 #include "runtime/gl/gl_context.h"
 #include "tests/bake/meshes.h"
+#include "tests/runtime/collider/field_agreement.h"
 #include "tests/runtime/depth_maps/read_texels.h"
+#include "tests/runtime/gl/gl_test.h"
 
 namespace relief::test {
 namespace {
@@ -184,6 +186,34 @@ INSTANTIATE_TEST_SUITE_P(Meshes, DrawnMapsGlTest,
                                          "/usr/share/assimp/models/OBJ/spider.obj",
                                          "/usr/share/assimp/models/PLY/Wuson.ply"),
                          meshName);
+
+class HybridGlTest : public GlTest {};
+
+TEST_P(HybridGlTest, PatchesBesideOtherMapsMatchTheCpu) {
+    const glm::dmat3 turn = test::rotation({1, 2, 3}, 40.0);
+    const TriangleMesh mesh =
+        test::joined({test::makeTorusMesh(1.0, 0.35, 96, 48), test::makeIcosphere({0, 0, 0.9}, 0.3, 4),
+                      test::makeBoxMesh({0.1, 0.2, -0.9}, {0.9, 0.3, 0.2}, turn)});
+    const std::vector<std::vector<std::string>> bakes = {
+        {"patches:budget=60kB", "front-back:dir=-z,size=64"},
+        {"cube:size=32", "patches:budget=200kB"},
+        {"front-back:dir=-x,size=48,decode=plane", "patches:budget=100kB", "cube:size=24,decode=plane",
+         "fixed8:dir=0.3/-1/0.2,size=40"},
+    };
+    for (const std::vector<std::string>& specs : bakes) {
+        SCOPED_TRACE(specs[0]);
+        const Collider collider = test::bakeSpecs(mesh, specs);
+        std::mt19937 random(3);
+        std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
+        std::vector<glm::vec3> points(100'000);
+        for (glm::vec3& p : points) {
+            p = 1.1F * glm::vec3(1.4F * unit(random), 1.4F * unit(random), 1.3F * unit(random));
+        }
+        expectAgreement(collider, points, 1.0F / 60.0F, 5e-3);
+    }
+}
+
+RELIEF_INSTANTIATE_GL_TESTS(HybridGlTest);
 
 }  // namespace
 }  // namespace relief::test

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// Accuracy measurement compared with closed forms: the truth, errors of fields with known errors, the reference
-// distance volume, and the report.
-#include "bake/measure/accuracy.h"
-
+// Accuracy measurement compared with closed forms: the truth of solids and shells, errors of fields with known errors,
+// the reference distance volume, and the report.
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
 #include "bake/bench/distance_volume.h"
+#include "bake/bench/sheet_truth.h"
+#include "bake/measure/accuracy.h"
 #include "bake/verdict/check_report.h"
 #include "bake/verdict/report_text.h"
 #include "formats/base/text.h"
 #include "formats/fields/json_value.h"
 #include "tests/bake/meshes.h"
 #include "tests/bake/points.h"
+#include "tests/bake/shaped.h"
 #include "tests/bake/threads.h"
 
 namespace relief::test {
@@ -409,6 +410,58 @@ TEST(Accuracy, NearPointsMatchTheFullTruth) {
     EXPECT_EQ(wrong.total(), measureField(all, smaller_ball).near.total());
     EXPECT_GT(wrong.false_outside, 10.0);
     EXPECT_EQ(wrong.false_inside, 0.0);
+}
+
+ShapeOptions shellOf(double thickness) {
+    return {.as = ShapeAs::kShell, .thickness = thickness};
+}
+
+/// The fraction of points that a solid classifies wrongly.
+WrongShare wrongIn(const MeshQuery& solid, const std::vector<TruthPoint>& points) {
+    return measureNear(points, [&](const glm::vec3& p) {
+        return FieldValue{solid.inside(p) ? -1.0F : 1.0F, {}};
+    });
+}
+
+TEST(SheetTruth, RodInsideItsShellIsSolid) {
+    const TriangleMesh rod = makeBoxMesh({0, 0, 0}, {0.5, 0.02, 0.02});
+    const ShapedMesh shaped = shapedBy(rod, shellOf(0.1));
+    const Result<SheetTruth> truth = SheetTruth::build(PreparedMesh(rod), shaped);
+    ASSERT_TRUE(truth && !truth->empty());
+    EXPECT_EQ(truth->inside({0, 0, 0}), true);
+    EXPECT_EQ(truth->inside({0, 0.069F, 0}), true);
+    EXPECT_EQ(truth->inside({0, 0.071F, 0}), false);
+    EXPECT_EQ(truth->inside({0, 0.05F, 0.05F}), std::nullopt);  // at the mitre of an edge
+    const MeshQuery solid = queryOf(shaped.mesh);
+    const std::vector<TruthPoint> points = truth->sample(solid, {.samples = 5000});
+    EXPECT_GT(points.size(), 4000U);
+    EXPECT_EQ(wrongIn(solid, points).total(), 0.0);
+    // A former bug: the inverted inner offset left a hollow of 0.03. Sampling that solid itself finds no error.
+    const TriangleMesh hollow = joined(
+        {makeBoxMesh({0, 0, 0}, {0.55, 0.07, 0.07}), reversed(makeBoxMesh({0, 0, 0}, {0.47, 0.03, 0.03}))});
+    EXPECT_GT(wrongIn(queryOf(hollow), points).false_outside, 20.0);
+}
+
+TEST(SheetTruth, SheetAndBlockKeepTheirKinds) {
+    // The block stays solid. Only the sheet gets a shell.
+    const TriangleMesh mesh = joined({makePlane(0.0F, 4), makeBoxMesh({5, 0, 0}, {1, 1, 1})});
+    ShapeOptions options = shellOf(0.1);
+    options.as = ShapeAs::kAuto;
+    const ShapedMesh shaped = shapedBy(mesh, options);
+    expectKinds(shaped.report, 1, 0, 1, 0);
+    const Result<SheetTruth> truth = SheetTruth::build(PreparedMesh(mesh), shaped);
+    ASSERT_TRUE(truth && !truth->empty());
+    EXPECT_EQ(truth->inside({5, 0, 0}), false);
+    AccuracyOptions few{.samples = 2000};
+    const std::vector<TruthPoint> points = truth->sample(queryOf(shaped.mesh), few);
+    EXPECT_GT(points.size(), 1900U);
+    for (const TruthPoint& point : points) {
+        ASSERT_EQ(point.inside(), std::abs(point.position.y) < 0.05F) << point.position.y;
+    }
+    // A mesh without sheets has nothing to measure.
+    const TriangleMesh block = makeBoxMesh({0, 0, 0}, {1, 1, 1});
+    const SheetTruth none = required(SheetTruth::build(PreparedMesh(block), shapedBy(block, options)));
+    EXPECT_TRUE(none.empty() && none.sample(queryOf(block), few).empty());
 }
 
 }  // namespace

@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// Manual edits of a world.json survive the next bake.
-#include "bake/world/world_files.h"
-
+// Manual edits of a world.json survive the next bake; worlds with lost thin parts; and coarse colliders.
 #include <array>
 #include <functional>
+#include <glm/geometric.hpp>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "bake/pipeline/bake.h"
+#include "bake/report/world_report.h"
+#include "bake/world/coarse_collider.h"
+#include "bake/world/world_check.h"
+#include "bake/world/world_files.h"
+#include "tests/bake/meshes.h"
+#include "tests/bake/points.h"
 #include "tests/bake/world/level_bakes.h"
+#include "tests/seeds.h"
 
 namespace relief::test {
 namespace {
@@ -216,6 +223,135 @@ TEST_F(WrittenByHand, UnreadableFileIsReplacedWithAWarning) {
     EXPECT_NE(again.warnings[0].find("world.json"), std::string::npos) << again.warnings[0];
     EXPECT_EQ(again.warnings[0].find('\n'), std::string::npos);
     EXPECT_EQ(bytes(), first);
+}
+
+using WorldCheck = LevelBakes;
+
+TEST_F(WorldCheck, AdvisesNoBudgetIfFloatsAreTooCoarse) {
+    std::string far = "o far\n";
+    const TriangleMesh torus = makeTorusMesh(0.5, 0.15, 24, 12);
+    for (const glm::vec3& p : torus.positions) {
+        far += "v " + std::to_string(4e5 + double{p.x}) + " " + std::to_string(p.y) + " " +
+               std::to_string(4e5 + double{p.z}) + "\n";
+    }
+    for (const glm::uvec3& t : torus.triangles) {
+        far += "f " + std::to_string(t.x + 1) + " " + std::to_string(t.y + 1) + " " +
+               std::to_string(t.z + 1) + "\n";
+    }
+    folder_.write("level.obj", far);
+    request_.bake.budget = 60'000;
+    const WorldBakeResult baked = bake("w");
+    const WorldField field = load("w");
+    const WorldAccuracy accuracy = check(field, 10'000);
+    EXPECT_GT(accuracy.all.total(), 5.0);
+    EXPECT_EQ(accuracy.places.front().cause, WorldCause::kPrecision);
+    const std::string& warning = baked.colliders.front().warnings.back();
+    for (const std::string& text : {worldCheckText(field, "w", &accuracy), warning}) {
+        EXPECT_EQ(text.find("--budget"), std::string::npos) << text;
+        EXPECT_NE(text.find("origin"), std::string::npos) << text;
+    }
+}
+
+TEST_F(WorldCheck, NamesMeshesWithLostThinParts) {
+    // 20 posts of 0.5 m on a slab of 20 m; most points near the mesh are far from the posts.
+    const auto accuracyOf = [&](double half, std::uint64_t budget) {
+        std::vector<TriangleMesh> house = {makeBoxMesh({0, 0, 0}, {10, 0.25, 10})};
+        for (int i = 0; i < 20; ++i) {
+            house.push_back(makeBoxMesh({0.9 * i - 9.0, 0.45, 0.2 * i - 2.0}, {half, 0.25, half}));
+        }
+        write({{"house", joined(house)}});
+        request_.bake.budget = budget;
+        static_cast<void>(bake("w"));
+        WorldAccuracy accuracy = check(load("w"), 10'000);
+        EXPECT_LT(accuracy.all.total(), 1.0);
+        return accuracy;
+    };
+    const WorldAccuracy coarse = accuracyOf(0.0025, 24'000);
+    ASSERT_EQ(coarse.lost.size(), 1U);
+    EXPECT_EQ(coarse.lost[0].mesh, "house");
+    EXPECT_GT(coarse.lost[0].lost, 10U) << coarse.lost[0].text;
+    EXPECT_FALSE(coarse.passes(1.0F));
+    const Verdict verdict = verdictOf(coarse, "");
+    EXPECT_EQ(verdict.grade, "poor");
+    EXPECT_NE(verdict.text.find("but 1 mesh lost parts"), std::string::npos) << verdict.text;
+    EXPECT_TRUE(coarse.passes({}));
+    const WorldAccuracy fine = accuracyOf(0.04, 300'000);
+    EXPECT_TRUE(fine.lost.empty()) << fine.lost[0].text;
+    EXPECT_TRUE(fine.passes(1.0F));
+}
+
+TEST_F(WorldCheck, CountsSmallLostPartsOfAllMeshes) {
+    std::vector<TriangleMesh> yard = {makeBoxMesh({0, 0, 0}, {10, 0.25, 10})};
+    for (int i = 0; i < 20; ++i) {
+        yard.push_back(makeBoxMesh({0.9 * i - 9.0, 0.252, 0.2 * i - 2.0}, glm::dvec3(0.005)));
+    }
+    write({{"yard", joined(yard)}});
+    request_.bake.budget = 24'000;
+    const WorldBakeResult baked = bake("w");
+    ASSERT_TRUE(baked.colliders[0].verdict);
+    EXPECT_EQ(baked.colliders[0].verdict->grade, "good");
+    EXPECT_GT(baked.colliders[0].ignored.lost, 15U);  // with 16 points each
+    EXPECT_NE(worldBakeText(baked, "w", 1.0, false).find(" of 21 parts, at most 0.01 long, are not"),
+              std::string::npos);
+    const WorldField field = load("w");
+    const WorldAccuracy accuracy = check(field, 2000);
+    EXPECT_TRUE(accuracy.lost.empty());
+    EXPECT_GT(accuracy.ignored.lost, 15U);
+    EXPECT_EQ(verdictOf(accuracy, "").grade, "good");
+    EXPECT_NE(worldCheckText(field, "w", &accuracy).find(" of 21 parts, at most 0.01 long, are not"),
+              std::string::npos);
+}
+
+bool contains(const Bounds& outer, const Bounds& inner) {
+    return glm::all(glm::lessThanEqual(outer.min, inner.min)) &&
+           glm::all(glm::greaterThanEqual(outer.max, inner.max));
+}
+
+TEST(CoarseCollider, IsTheSameShapeInASixteenthOfTheBytes) {
+    MersenneRandom random(seedFrom(41));
+    for (const double radius : {0.5, 30.0}) {
+        const glm::dvec3 center(3.0 * random.uniform(), 20.0, -7.0);
+        const TriangleMesh mesh = makeIcosphere(center, radius, 5);
+        for (const std::uint64_t budget : {150'000U, 400'000U}) {
+            BakeRequest request;
+            request.budget = budget;
+            request.no_check = true;
+            const BakeResult fine = required(bake(request, {}, mesh));
+            ASSERT_TRUE(hasCoarse(fine.baked.collider));
+            const FineCollider of = FineCollider::of(fine.baked.collider);
+            const auto by_mesh = [&](const BakeRequest& other) { return bake(other, {}, mesh); };
+            const Collider coarse = required(bakeCoarse(request, of, by_mesh));
+            EXPECT_LE(16 * coarse.texelBytes(), fine.baked.collider.texelBytes());
+            EXPECT_TRUE(contains(insideBox(coarse).value(), insideBox(fine.baked.collider).value()));
+            EXPECT_EQ(coarse.bounds, fine.baked.collider.bounds);
+            EXPECT_EQ(required(bakeCoarse(request, of, by_mesh)), coarse);
+            // About nine thousand bytes leave slivers of a ball without patches, up to a fiftieth of the radius thick.
+            int known = 0;
+            int wrong = 0;
+            for (int i = 0; i < 4000; ++i) {
+                const glm::dvec3 p = center + 1.2 * radius * inCube(random);
+                const double away = glm::distance(p, center) - radius;
+                if (std::abs(away) > 0.01 * radius) {
+                    ++known;
+                    const bool right = evaluate(coarse, glm::vec3(p)).inside() == (away < 0.0);
+                    wrong += right ? 0 : 1;
+                    ASSERT_TRUE(right || std::abs(away) < 0.02 * radius) << away / radius;
+                }
+            }
+            EXPECT_LE(wrong, 4);
+            EXPECT_GT(known, 3500);
+        }
+    }
+}
+
+TEST(CoarseCollider, SmallCollidersAndNamedMapsHaveNone) {
+    const TriangleMesh mesh = makeIcosphere({0.0, 0.0, 0.0}, 1.0, 3);
+    BakeRequest request;
+    request.budget = 60'000;
+    EXPECT_FALSE(hasCoarse(bake(request, {}, mesh).value().baked.collider));
+    request.budget.reset();
+    request.map = {"front-back:dir=-x,size=256"};
+    EXPECT_FALSE(hasCoarse(bake(request, {}, mesh).value().baked.collider));
 }
 
 }  // namespace

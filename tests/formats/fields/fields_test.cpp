@@ -116,14 +116,14 @@ void fields(FieldVisitor& visit, Place& place) {
     visit("at", place.at, {"Point", "[x, y, z]", within(1e9), {}, {.required = true}});
 }
 
-struct Thing {
+struct Described {
     float size = 0.5F;
     std::uint32_t least = 1;
     std::uint32_t most = 2;
     int power = 2;
     std::vector<Place> places;
 };
-void fields(FieldVisitor& visit, Thing& thing) {
+void fields(FieldVisitor& visit, Described& thing) {
     visit("size", thing.size, {"Diameter", "m", {0.0, 1e6, false}, {}, {.needs = "count"}});
     visit("count", FieldSpan{thing.least, thing.most}, {"Number"});
     visit("power", thing.power, {"Exponent", {}, {0.0, 2.0}});
@@ -131,24 +131,24 @@ void fields(FieldVisitor& visit, Thing& thing) {
 }
 
 TEST(Reference, Markdown) {
-    EXPECT_EQ(markdownTable(referenceOf<Thing>()),
+    EXPECT_EQ(markdownTable(referenceOf<Described>()),
               "| key | meaning | default | range |\n| --- | --- | --- | --- |\n"
               "| `size` | Diameter, m; needs `count` | 0.5 | above 0 … 10⁶ |\n"
               "| `count` | Number | [1, 2] |  |\n"
               "| `power` | Exponent | 2 | 0, 1, 2 |\n");
     static constexpr std::array<std::string_view, 1> kNames{"place"};
-    EXPECT_EQ(markdownTables(referenceOf<Thing>(), kNames),
+    EXPECT_EQ(markdownTables(referenceOf<Described>(), kNames),
               "| key | meaning | default | range |\n| --- | --- | --- | --- |\n"
               "| `[[place]]` `at` | Point, [x, y, z] | required | ±10⁹ |\n");
 }
 
 TEST(Reference, SchemaAndDictionary) {
-    const Json schema = fileSchema(referenceOf<Thing>());
+    const Json schema = fileSchema(referenceOf<Described>());
     EXPECT_EQ(schema["required"], Json::array());
     EXPECT_EQ(schema["properties"]["place"]["items"]["required"], Json::array({"at"}));
     EXPECT_EQ(schema["properties"]["size"]["exclusiveMinimum"], 0.0);
     EXPECT_EQ(schema["properties"]["count"]["oneOf"].size(), 2U);
-    EXPECT_NE(fuzzDictionary(referenceOf<Thing>()).find("\"[[place]]\\x0a\""), std::string::npos);
+    EXPECT_NE(fuzzDictionary(referenceOf<Described>()).find("\"[[place]]\\x0a\""), std::string::npos);
 }
 
 }  // namespace

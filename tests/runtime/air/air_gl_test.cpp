@@ -24,7 +24,7 @@ namespace relief {
 namespace {
 
 constexpr double kTolerance = 2e-5;
-constexpr GLsizei kWidth = 256;
+constexpr GLsizei kTexelsAcross = 256;
 
 struct Sample {
     glm::vec3 air;
@@ -32,7 +32,7 @@ struct Sample {
 };
 
 /// Evaluates air.glsl at the points of a texture, one per texel.
-constexpr const char* kQuery = R"(
+constexpr const char* kAirQuery = R"(
 uniform highp sampler2D u_points;  // xyz: object space; w: time
 
 layout(location = 0) out vec4 o_air;    // xyz: airVelocity
@@ -49,12 +49,12 @@ class AirGlTest : public GlTest {
   protected:
     static std::vector<Sample> evaluate(const AirBlock& air, const std::vector<glm::vec4>& points) {
         const PassState state;
-        const GlProgram program = required(makeQueryProgram("air/air.glsl", kQuery, air.defines()));
-        const auto height = static_cast<GLsizei>((points.size() + kWidth - 1) / kWidth);
+        const GlProgram program = required(makeQueryProgram("air/air.glsl", kAirQuery, air.defines()));
+        const auto height = static_cast<GLsizei>((points.size() + kTexelsAcross - 1) / kTexelsAcross);
         std::vector<glm::vec4> padded(points);
-        padded.resize(static_cast<std::size_t>(kWidth * height), glm::vec4(0.0F));
+        padded.resize(static_cast<std::size_t>(kTexelsAcross * height), glm::vec4(0.0F));
         const auto texture = [&](const void* data) {
-            return makeTexture2D(GL_RGBA32F, kWidth, height, GL_RGBA, GL_FLOAT, data);
+            return makeTexture2D(GL_RGBA32F, kTexelsAcross, height, GL_RGBA, GL_FLOAT, data);
         };
         const GlTexture input = texture(padded.data());
         const GlTexture out_air = texture(nullptr);
@@ -65,9 +65,9 @@ class AirGlTest : public GlTest {
         program.set("u_points", 0);
         useTexture(0, input);
         air.bind({});
-        program.drawScreen(framebuffer.name(), kWidth, height);
-        const std::vector<float> airs = required(readTextureFloats(out_air, kWidth, height));
-        const std::vector<float> fields = required(readTextureFloats(out_field, kWidth, height));
+        program.drawScreen(framebuffer.name(), kTexelsAcross, height);
+        const std::vector<float> airs = required(readTextureFloats(out_air, kTexelsAcross, height));
+        const std::vector<float> fields = required(readTextureFloats(out_field, kTexelsAcross, height));
         std::vector<Sample> samples;
         for (std::size_t i = 0; i < points.size(); ++i) {
             const float* a = &airs[4 * i];

@@ -25,15 +25,10 @@
 namespace relief {
 namespace {
 
-struct Mesh {
-    std::vector<glm::vec3> positions;
-    std::vector<glm::uvec3> triangles;
-};
-
 /// z = height(x, y) over a rectangle of n × n squares; normals along +z.
-Mesh sheet(const glm::vec2& low, const glm::vec2& high, std::uint32_t n,
-           const std::function<float(float, float)>& height) {
-    Mesh mesh;
+AnimatedMesh sheet(const glm::vec2& low, const glm::vec2& high, std::uint32_t n,
+                   const std::function<float(float, float)>& height) {
+    AnimatedMesh mesh;
     for (std::uint32_t j = 0; j <= n; ++j) {
         for (std::uint32_t i = 0; i <= n; ++i) {
             const float x = low.x + (high.x - low.x) * static_cast<float>(i) / static_cast<float>(n);
@@ -47,12 +42,6 @@ Mesh sheet(const glm::vec2& low, const glm::vec2& high, std::uint32_t n,
         }
     }
     return mesh;
-}
-
-/// An axis-aligned box around the origin, normals outwards, one square per face.
-Mesh box(const glm::vec3& half) {
-    const AnimatedMesh mesh = movingBox(half);
-    return {mesh.positions, mesh.triangles};
 }
 
 /// Views along +z through [−1, 1]³, so that map depth is (z + 1)/2.
@@ -72,7 +61,7 @@ DepthMap alongZ(std::uint32_t size) {
 
 class DepthMapRendererGlTest : public GlTest {
   protected:
-    static GpuMesh upload(const Mesh& mesh) {
+    static GpuMesh upload(const AnimatedMesh& mesh) {
         return required(GpuMesh::create(mesh.positions, mesh.triangles));
     }
 
@@ -194,7 +183,8 @@ TEST_P(DepthMapRendererGlTest, IsIndependentOfScale) {
     // Powers of two, so that rounding does not change.
     std::vector<std::byte> first;
     for (const int power : {0, -40, 45}) {
-        Mesh scaled = sheet({-1.0F, -1.0F}, {1.0F, 1.0F}, 9, [](float x, float y) { return 0.5F * x * y; });
+        AnimatedMesh scaled =
+            sheet({-1.0F, -1.0F}, {1.0F, 1.0F}, 9, [](float x, float y) { return 0.5F * x * y; });
         for (glm::vec3& p : scaled.positions) {
             p *= std::ldexp(1.0F, power);
         }
@@ -210,8 +200,8 @@ TEST_P(DepthMapRendererGlTest, IsIndependentOfScale) {
 }
 
 TEST_P(DepthMapRendererGlTest, VerticesMoveAndTheSurfaceMotionIsCorrect) {
-    const Mesh before = box({0.5F, 0.5F, 0.5F});
-    Mesh after = before;
+    const AnimatedMesh before = movingBox({0.5F, 0.5F, 0.5F});
+    AnimatedMesh after = before;
     const glm::vec3 way(0.125F, -0.0625F, 0.25F);
     for (glm::vec3& p : after.positions) {
         p += way;
@@ -265,7 +255,7 @@ TEST_P(DepthMapRendererGlTest, VerticesMoveAndTheSurfaceMotionIsCorrect) {
 
 TEST_P(DepthMapRendererGlTest, EveryTriangleOwnsItsSlot) {
     // A fan, in which all triangles share a vertex; and triangles without a vertex of their own.
-    Mesh fan;
+    AnimatedMesh fan;
     fan.positions.emplace_back(0.0F, 0.0F, 0.5F);
     for (int i = 0; i <= 12; ++i) {
         const double angle = 2.0 * 3.14159265358979 * i / 12.0;
@@ -309,7 +299,8 @@ TEST_P(DepthMapRendererGlTest, EveryTriangleOwnsItsSlot) {
 }
 
 TEST_P(DepthMapRendererGlTest, CallerStateIsKeptAndIgnored) {
-    const Mesh mesh = sheet({-0.8F, -0.7F}, {0.6F, 0.8F}, 3, [](float x, float y) { return 0.5F * x * y; });
+    const AnimatedMesh mesh =
+        sheet({-0.8F, -0.7F}, {0.6F, 0.8F}, 3, [](float x, float y) { return 0.5F * x * y; });
     const auto run = [&](const std::function<void(const char*)>& check) {
         GpuMesh gpu_mesh = upload(mesh);
         check("GpuMesh::create");
@@ -340,8 +331,8 @@ TEST_P(DepthMapRendererGlTest, CallerStateIsKeptAndIgnored) {
 }
 
 TEST_P(DepthMapRendererGlTest, InvalidArgumentsAreRejected) {
-    const Mesh good = box({0.5F, 0.5F, 0.5F});
-    Mesh bad = good;
+    const AnimatedMesh good = movingBox({0.5F, 0.5F, 0.5F});
+    AnimatedMesh bad = good;
     bad.positions[3].y = std::numeric_limits<float>::quiet_NaN();
     EXPECT_EQ(GpuMesh::create(bad.positions, bad.triangles).error().code, ErrorCode::kInvalidInput);
     EXPECT_EQ(GpuMesh::create(good.positions, {}).error().code, ErrorCode::kInvalidInput);

@@ -22,15 +22,9 @@
 namespace relief {
 namespace {
 
-struct Mesh {
-    std::vector<glm::vec3> positions;
-    std::vector<glm::uvec3> triangles;
-};
-
 /// \param levels  number of times that each triangle is split into four.
-Mesh box(const glm::vec3& half, int levels = 0) {
-    const AnimatedMesh whole = movingBox(half);
-    Mesh mesh{whole.positions, whole.triangles};
+AnimatedMesh box(const glm::vec3& half, int levels = 0) {
+    AnimatedMesh mesh = movingBox(half);
     for (int level = 0; level < levels; ++level) {
         std::vector<glm::uvec3> parts;
         for (const glm::uvec3& t : mesh.triangles) {
@@ -48,15 +42,15 @@ Mesh box(const glm::vec3& half, int levels = 0) {
     return mesh;
 }
 
-Mesh sphere(float radius) {
-    Mesh mesh = box(glm::vec3(1.0F), 4);
+AnimatedMesh sphere(float radius) {
+    AnimatedMesh mesh = box(glm::vec3(1.0F), 4);
     for (glm::vec3& p : mesh.positions) {
         p = radius * glm::normalize(p);
     }
     return mesh;
 }
 
-std::vector<glm::vec3> moved(const Mesh& mesh, const glm::vec3& by) {
+std::vector<glm::vec3> moved(const AnimatedMesh& mesh, const glm::vec3& by) {
     std::vector<glm::vec3> positions = mesh.positions;
     for (glm::vec3& p : positions) {
         p += by;
@@ -70,7 +64,8 @@ Bounds cube(float half) {
 
 class LiveColliderGlTest : public CollisionTest {
   protected:
-    void makeLive(const Mesh& mesh, const Bounds& box, std::uint32_t resolution, const Pose& pose = {}) {
+    void makeLive(const AnimatedMesh& mesh, const Bounds& box, std::uint32_t resolution,
+                  const Pose& pose = {}) {
         auto live = LiveCollider::create(mesh.positions, mesh.triangles, liveFrames(box, resolution).value());
         ASSERT_TRUE(live) << live.error().message;
         live_.emplace(std::move(*live));
@@ -97,7 +92,7 @@ class LiveColliderGlTest : public CollisionTest {
         spawnOne({position, velocity, 100.0F, 0});
     }
 
-    const Mesh plate_ = box({0.4F, 0.05F, 0.4F});
+    const AnimatedMesh plate_ = box({0.4F, 0.05F, 0.4F});
     std::optional<LiveCollider> live_;
 };
 RELIEF_INSTANTIATE_STEP_TESTS(LiveColliderGlTest);
@@ -114,7 +109,7 @@ std::vector<glm::vec3> randomPoints(std::size_t count, float half) {
 // The shader's field of the live rectangles matches the CPU's field of the same maps, rendered one by one and read
 // back. The shape is a sphere.
 TEST_P(LiveColliderGlTest, MapsMatchAStaticRenderingOfTheMesh) {
-    const Mesh mesh = sphere(0.5F);
+    const AnimatedMesh mesh = sphere(0.5F);
     auto gpu_mesh = GpuMesh::create(mesh.positions, mesh.triangles);
     const auto renderer = DepthMapRenderer::create(96, 96);
     ASSERT_TRUE(gpu_mesh && renderer);
@@ -227,7 +222,7 @@ TEST_P(LiveColliderGlTest, PassedParticlesAreHit) {
     constexpr int kSteps = 12;
     constexpr std::uint32_t kDrops = 2048;
     const float texel = std::sqrt(2.0F) * 1.03F / 62.0F;
-    const Mesh mesh = box({0.3F, 0.2F, 0.08F});
+    const AnimatedMesh mesh = box({0.3F, 0.2F, 0.08F});
     struct Case {
         float way, angle, growth, radius;
     };
@@ -248,7 +243,9 @@ TEST_P(LiveColliderGlTest, PassedParticlesAreHit) {
             }
             return positions;
         };
-        makeLive({positionsAt(0), mesh.triangles}, cube(0.5F), 64);
+        AnimatedMesh first = mesh;
+        first.positions = positionsAt(0);
+        makeLive(first, cube(0.5F), 64);
         particlesOf({.capacity = kDrops}, {.radius = c.radius, .on_collision = OnCollision::kDie});
         Pcg32 random(11);
         std::size_t met = 0;
@@ -278,7 +275,7 @@ TEST_P(LiveColliderGlTest, PassedParticlesAreHit) {
 
 // Positions from a span equal those from a caller's buffer with an offset, for any caller state, which is kept.
 TEST_P(LiveColliderGlTest, PositionsMayComeFromACallerBuffer) {
-    const Mesh mesh = sphere(0.3F);
+    const AnimatedMesh mesh = sphere(0.3F);
     const std::vector<glm::vec3> points = randomPoints(5000, 0.6F);
     makeLive(mesh, cube(0.6F), 64);
     const std::vector<glm::vec3> positions = moved(mesh, {0.1F, -0.05F, 0.2F});
@@ -306,7 +303,7 @@ TEST_P(LiveColliderGlTest, PositionsMayComeFromACallerBuffer) {
 
 // A live body beside a static one, with another layout and with the same: each has the field that it has on its own.
 TEST_P(LiveColliderGlTest, WorksBesideStaticBodies) {
-    const Mesh mesh = sphere(0.3F);
+    const AnimatedMesh mesh = sphere(0.3F);
     auto live = LiveCollider::create(mesh.positions, mesh.triangles, liveFrames(cube(0.5F), 64).value());
     ASSERT_TRUE(live) << live.error().message;
     const Collider half = analytic::frontBackCollider(analytic::sphere({0, 0, 0}, 0.25), 48);
@@ -344,7 +341,7 @@ using LiveArgumentsGlTest = LiveColliderGlTest;
 RELIEF_INSTANTIATE_STEP_TESTS_ONCE(LiveArgumentsGlTest);
 
 TEST_P(LiveArgumentsGlTest, MisuseIsRejected) {
-    const Mesh& plate = plate_;
+    const AnimatedMesh& plate = plate_;
     makeLive(plate, cube(0.5F), 32);
     EXPECT_EQ(live_->setPositions(moved(plate, {0.0F, 0.6F, 0.0F})).error().code, ErrorCode::kUsage)
         << "outside the box";

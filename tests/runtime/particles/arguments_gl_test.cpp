@@ -15,8 +15,8 @@
 namespace relief {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kNanFloat = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfiniteFloat = std::numeric_limits<float>::infinity();
 
 template <class T>
 bool refused(const Result<T>& result, ErrorCode code = ErrorCode::kUsage) {
@@ -60,7 +60,7 @@ TEST_P(ArgumentsGlTest, NonFiniteNumbers) {
     ASSERT_TRUE(particles_->setForces({.gravity = {0.0F, -8.0F, 0.0F}, .drag = 0.0F}));
     ASSERT_TRUE(particles_->setGround(-100.0F));
     spawnOne({{}, {}, 1000.0F, 0});
-    for (const float wrong : {kNan, kInfinity, -kInfinity}) {
+    for (const float wrong : {kNanFloat, kInfiniteFloat, -kInfiniteFloat}) {
         for (int axis = 0; axis < 3; ++axis) {
             glm::vec3 one(0.0F);
             one[axis] = wrong;
@@ -120,8 +120,8 @@ TEST_P(ArgumentsGlTest, Bodies) {
 
 TEST_P(ArgumentsGlTest, Events) {
     for (const EventOptions& wrong :
-         {EventOptions{.max_per_step = 0}, EventOptions{.max_per_step = (1U << 24) + 1},
-          EventOptions{.min_speed = -1.0F}, EventOptions{.min_speed = kNan}}) {
+         {EventOptions{.max_per_step = 0}, EventOptions{.max_per_step = (1U << 24) + 1}, EventOptions{.min_speed = -1.0F},
+          EventOptions{.min_speed = kNanFloat}}) {
         EXPECT_TRUE(refused(setEvents(*particles_, wrong)));
     }
     EXPECT_TRUE(refused(setEvents(*particles_, std::vector<EventOptions>(kEventLists + 1))));

@@ -366,14 +366,13 @@ TEST(Emitter, CheckNamesTheInvalidSetting) {
 }
 
 // Moving emitters: births are placed with the emitter's pose at their own time, and inherit a fraction of its velocity.
-constexpr float kPi = std::numbers::pi_v<float>;
 const glm::vec3 kUp(0.0F, 1.0F, 0.0F);
 
 /// Rotates by 180° about y and moves by 8 along x, in 4 s.
 std::vector<PoseKey> spin() {
     return {{0.0, {}},
-            {2.0, {{4.0F, 0.0F, 0.0F}, glm::angleAxis(0.5F * kPi, kUp), 1.0F}},
-            {4.0, {{8.0F, 0.0F, 0.0F}, glm::angleAxis(kPi, kUp), 1.0F}}};
+            {2.0, {{4.0F, 0.0F, 0.0F}, glm::angleAxis(0.5F * std::numbers::pi_v<float>, kUp), 1.0F}},
+            {4.0, {{8.0F, 0.0F, 0.0F}, glm::angleAxis(std::numbers::pi_v<float>, kUp), 1.0F}}};
 }
 
 void expectNear(const glm::vec3& a, const glm::vec3& b, float bound, const char* what) {

@@ -108,7 +108,7 @@ Collider sidesOf(int repeats) {
     return collider;
 }
 
-struct Played {
+struct PathRun {
     std::vector<ParticleState> state;
     std::vector<ParticleEvent> events;
 };
@@ -116,7 +116,7 @@ struct Played {
 class StepPathGlTest : public GlTest {
   protected:
     /// Particles that are spawned in two batches, collide and die.
-    static Played played(const Features& features, StepPath path, int steps) {
+    static PathRun played(const Features& features, StepPath path, int steps) {
         static const Collider kBox = boxCollider();
         static const Bodies kBodies;
         const Collider box = features.repeats > 0 ? sidesOf(features.repeats) : kBox;
@@ -147,7 +147,7 @@ class StepPathGlTest : public GlTest {
             EXPECT_TRUE(particles.setCollider(&textures));
         }
         EXPECT_TRUE(setEvents(particles, EventOptions{.lasting = true, .deaths = true}));
-        Played run;
+        PathRun run;
         Pcg32 random(5);
         std::vector<Birth> births;
         for (std::uint32_t i = 0; i < kParticles; ++i) {

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG and PLY bytes, read back by libpng or checked by hand against the format's definition.
+// PNG and PLY bytes, read back by libpng or checked by hand; camera paths; and key frames of looks, which
+// sprite_gl_test.cpp draws.
 #include <gtest/gtest.h>
-
+#include <array>
+#include <cmath>
+#include <limits>
 #include <string>
 
 #include "runtime/files/ply.h"
 #include "runtime/files/png.h"
+#include "runtime/picture/camera_path.h"
+#include "runtime/picture/particle_look.h"
 #include "tests/results.h"
 
-namespace relief {
+namespace relief::test {
 namespace {
 
 TEST(Png, RejectsWrongSizes) {
@@ -71,5 +76,110 @@ TEST(Ply, HeaderAndVerticesMatchTheFormat) {
     EXPECT_TRUE(ply({}).ends_with("end_header\n")) << "a file without particles is valid";
 }
 
+const std::array<CameraKey, 3> kKeys{CameraKey{1.0, {0.0F, 0.0F, 5.0F}, {0.0F, 0.0F, 0.0F}, 30.0F},
+                                     CameraKey{2.0, {2.0F, 1.0F, 5.0F}, {1.0F, 0.0F, 0.0F}, 50.0F},
+                                     CameraKey{5.0, {8.0F, 4.0F, 5.0F}, {4.0F, 0.0F, 0.0F}, 20.0F}};
+
+TEST(CameraPath, PassesThroughItsKeysAndRestsOutside) {
+    for (const CameraKey& key : kKeys) {
+        const Camera camera = cameraAt(kKeys, key.time);
+        EXPECT_EQ(camera.eye, key.eye);
+        EXPECT_EQ(camera.target, key.target);
+        EXPECT_EQ(camera.fov, key.fov);
+    }
+    EXPECT_EQ(cameraAt(kKeys, -7.0), cameraAt(kKeys, 1.0));
+    EXPECT_EQ(cameraAt(kKeys, 1e9), cameraAt(kKeys, 5.0));
+}
+
+// These keys lie on straight lines in time (2 and 1 per second along x and y). Catmull-Rom with speeds by time
+// reproduces the lines although the keys are 1 and 3 seconds apart; by index it would not.
+TEST(CameraPath, SmoothKeepsConstantSpeed) {
+    for (const double time : {1.25, 1.75, 2.5, 3.5, 4.9}) {
+        const auto t = static_cast<float>(time);
+        const Camera camera = cameraAt(kKeys, time);
+        EXPECT_NEAR(camera.eye.x, 2.0F * (t - 1.0F), 1e-5F);
+        EXPECT_NEAR(camera.eye.y, t - 1.0F, 1e-5F);
+        EXPECT_NEAR(camera.eye.z, 5.0F, 1e-5F);
+    }
+}
+
+// Uniform keys 0, 0, 1, 1: halfway through the middle segment, Catmull-Rom's weights are (-1, 9, 9, -1)/16.
+TEST(CameraPath, SmoothIsCatmullRom) {
+    std::array<CameraKey, 4> keys{};
+    const std::array<float, 4> x{3.0F, 0.0F, 1.0F, 7.0F};
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        keys[i] = {static_cast<double>(i), {x[i], 0.0F, 9.0F}, glm::vec3(0.0F), 30.0F};
+    }
+    EXPECT_NEAR(cameraAt(keys, 1.5).eye.x, (-3.0F + 0.0F + 9.0F - 7.0F) / 16.0F, 1e-6F);
+    // Speed is continuous at a key.
+    const auto at = [&](double time) { return cameraAt(keys, time).eye.x; };
+    EXPECT_NEAR((at(2.001) - at(2.0)) / 0.001F, (at(2.0) - at(1.999)) / 0.001F, 0.05F);
+    EXPECT_NEAR((at(2.001) - at(1.999)) / 0.002F, 0.5F * (x[3] - x[1]), 0.05F);
+}
+
+TEST(CameraPath, OneKeyAndHardTurns) {
+    const std::array<CameraKey, 1> one{kKeys[1]};
+    EXPECT_EQ(cameraAt(one, 0.0).eye, kKeys[1].eye);
+    EXPECT_EQ(cameraAt(one, 9.0).eye, kKeys[1].eye);
+    // Directly above the target, and through it.
+    for (const float height : {4.0F, 0.0F}) {
+        const std::array<CameraKey, 2> over{CameraKey{0.0, {-1.0F, height, 0.0F}, glm::vec3(0.0F), 30.0F},
+                                            CameraKey{1.0, {1.0F, height, 0.0F}, glm::vec3(0.0F), 30.0F}};
+        const Camera camera = cameraAt(over, 0.5);
+        EXPECT_TRUE(std::isfinite(camera.up().x + camera.right().x)) << height;
+        EXPECT_NEAR(glm::length(camera.up()), 1.0F, 1e-3F);
+    }
+    // Between steep keys the cubic leaves the range of angles; the camera must not.
+    const std::array<CameraKey, 4> wide{
+        CameraKey{0.0, glm::vec3(1.0F), {}, 1.0F}, CameraKey{1.0, glm::vec3(1.0F), {}, 169.0F},
+        CameraKey{2.0, glm::vec3(1.0F), {}, 170.0F}, CameraKey{3.0, glm::vec3(1.0F), {}, 1.0F}};
+    for (int i = 0; i <= 300; ++i) {
+        const float fov = cameraAt(wide, 0.01 * i).fov;
+        EXPECT_GE(fov, 1.0F);
+        EXPECT_LE(fov, 170.0F);
+    }
+}
+
+TEST(ParticleLook, TracksHaveTheirOwnAges) {
+    ParticleLook look;
+    for (std::size_t i = 0; i < kLookKeysMax; ++i) {
+        const auto age = [&](float shift) { return (static_cast<float>(i) + shift) / kLookKeysMax; };
+        look.size.push_back({age(0.0F), 1.0F});
+        look.opacity.push_back({age(0.25F), 1.0F});
+        look.rotation.push_back({age(0.5F), 1.0F});
+        look.color.push_back({age(0.75F), glm::vec3(1.0F)});
+    }
+    const auto texels = packLooks(std::vector<ParticleLook>{look}, {});
+    ASSERT_TRUE(texels) << texels.error().message;
+    EXPECT_EQ(texels->texels[1].w, 4.0F * kLookKeysMax);
+    EXPECT_EQ(texels->texels.back(), glm::vec4(1.0F, 1.0F, 1.0F, 0.0F)) << "the row is full";
+    EXPECT_LE(texels->width, 2048U) << "larger than OpenGL ES 3.0 guarantees";
+}
+
+TEST(ParticleLook, InvalidTracksAreRejected) {
+    const auto refused = [](const auto& change) {
+        ParticleLook look;
+        change(look);
+        const auto texels = packLooks(std::vector<ParticleLook>{look}, {});
+        return !texels && texels.error().code == ErrorCode::kUsage;
+    };
+    EXPECT_FALSE(refused([](ParticleLook&) {}));
+    EXPECT_TRUE(refused([](ParticleLook& l) { l.size.resize(kLookKeysMax + 1); }));
+    EXPECT_TRUE(refused([](ParticleLook& l) { l.size = {{0.5F, 1.0F}, {0.5F, 1.0F}}; }));
+    EXPECT_TRUE(refused([](ParticleLook& l) { l.color = {{0.5F, {}}, {0.2F, {}}}; }));
+    EXPECT_TRUE(refused([](ParticleLook& l) { l.opacity = {{1.1F, 1.0F}}; }));
+    EXPECT_TRUE(refused([](ParticleLook& l) { l.opacity = {{0.0F, 1.1F}}; }));
+    EXPECT_TRUE(refused([](ParticleLook& l) { l.size = {{0.0F, -1.0F}}; }));
+    EXPECT_TRUE(refused([](ParticleLook& l) { l.color = {{0.0F, {0.0F, 2.0F, 0.0F}}}; }));
+    EXPECT_TRUE(refused([](ParticleLook& l) {
+        l.rotation = {{0.0F, std::numeric_limits<float>::quiet_NaN()}};
+    }));
+    EXPECT_TRUE(refused([](ParticleLook& l) { l.spin_spread = std::numeric_limits<float>::infinity(); }));
+    EXPECT_TRUE(refused([](ParticleLook& l) { l.stretch = -1.0F; }));
+    EXPECT_TRUE(refused([](ParticleLook& l) { l.cell_first = 2; }));
+    EXPECT_FALSE(packLooks(std::vector<ParticleLook>(kLooksMax + 1), {}));
+    EXPECT_TRUE(packLooks(std::vector<ParticleLook>(kLooksMax), {}));
+}
+
 }  // namespace
-}  // namespace relief
+}  // namespace relief::test

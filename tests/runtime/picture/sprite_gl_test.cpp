@@ -128,9 +128,9 @@ void expectNear(const glm::vec4& got, const glm::vec4& wanted, float tolerance, 
     }
 }
 
-const glm::vec4 kOpaqueRed{1, 0, 0, 1};
-const glm::vec4 kOpaqueGreen{0, 1, 0, 1};
-const glm::vec4 kOpaqueBlue{0, 0, 1, 1};
+const glm::vec4 kRed{1, 0, 0, 1};
+const glm::vec4 kGreen{0, 1, 0, 1};
+const glm::vec4 kBlue{0, 0, 1, 1};
 const glm::vec4 kClear{0, 0, 0, 0};
 
 // A quarter turn anticlockwise moves the right side to the top, and the top to the left. For quads and points: the
@@ -147,16 +147,16 @@ TEST_P(SpriteGlTest, CellsRotateAnticlockwise) {
         style_.sprite = sprite;
         ParticleLook one = cells(1, 1);
         drawOne(one);
-        expectCorners({kOpaqueRed, kOpaqueGreen, kOpaqueBlue, kClear}, "upright");
+        expectCorners({kRed, kGreen, kBlue, kClear}, "upright");
         // The square's own outline, pixel-exact.
-        expectNear(pixel(16, 43), kOpaqueRed, kHalf, "inside the left edge");
+        expectNear(pixel(16, 43), kRed, kHalf, "inside the left edge");
         expectNear(pixel(15, 43), kClear, 0.0F, "outside the left edge");
-        expectNear(pixel(20, 47), kOpaqueRed, kHalf, "inside the upper edge");
+        expectNear(pixel(20, 47), kRed, kHalf, "inside the upper edge");
         expectNear(pixel(20, 48), kClear, 0.0F, "outside the upper edge");
 
         one.rotation = {{0.0F, 0.5F * std::numbers::pi_v<float>}};
         drawOne(one);
-        expectCorners({kOpaqueGreen, kClear, kOpaqueRed, kOpaqueBlue}, "turned");
+        expectCorners({kGreen, kClear, kRed, kBlue}, "turned");
     }
 }
 
@@ -271,9 +271,9 @@ TEST_P(SpriteGlTest, StretchedCellsHaveTheirRightSideInFront) {
     style_.looks = {one};
     spawn({{glm::vec3(0.0F), glm::vec3(0.0F, -1.0F, 0.0F), 8.0F, 0}}, 0.5F);
     draw();  // downwards: 48 pixels long, 16 wide; the cell is rotated by 90° clockwise
-    expectNear(pixel(36, 44), kOpaqueRed, kHalf, "upper left of the cell: tail, right");
-    expectNear(pixel(36, 19), kOpaqueGreen, kHalf, "upper right: head, right");
-    expectNear(pixel(27, 44), kOpaqueBlue, kHalf, "lower left: tail, left");
+    expectNear(pixel(36, 44), kRed, kHalf, "upper left of the cell: tail, right");
+    expectNear(pixel(36, 19), kGreen, kHalf, "upper right: head, right");
+    expectNear(pixel(27, 44), kBlue, kHalf, "lower left: tail, left");
     expectNear(pixel(27, 19), kClear, kHalf, "lower right: head, left");
     expectNear(pixel(32, 57), kClear, 0.0F, "beyond the tail");
     expectNear(pixel(32, 6), kClear, 0.0F, "beyond the head");
@@ -295,12 +295,12 @@ TEST_P(SpriteGlTest, CellsAnimateOverAge) {
     drawOne(cells(0, 1), 3.9F);  // 0.49 of its lifetime
     EXPECT_NEAR(pixel(20, 43).g, 0.2158605F, kHalf) << "128 of sRGB in linear light";
     drawOne(cells(0, 1), 4.1F);
-    expectNear(pixel(20, 43), kOpaqueRed, kHalf, "second cell");
+    expectNear(pixel(20, 43), kRed, kHalf, "second cell");
 }
 
 TEST_P(SpriteGlTest, EachTypeHasItsLook) {
     style_.looks = {look({1, 0, 0}, 1.0F, 1.0F), look({0, 1, 0}, 1.0F, 1.0F)};
-    for (const auto& [type, wanted] : {std::pair{0U, kOpaqueRed}, {1U, kOpaqueGreen}, {9U, kOpaqueGreen}}) {
+    for (const auto& [type, wanted] : {std::pair{0U, kRed}, {1U, kGreen}, {9U, kGreen}}) {
         spawnTypes({type}, 1.0F);
         draw();
         expectNear(pixel(32, 32), wanted, kHalf, "middle");

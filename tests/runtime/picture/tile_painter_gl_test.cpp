@@ -20,8 +20,8 @@ namespace relief {
 namespace {
 
 // Not multiples of a tile's side.
-constexpr GLsizei kImageWidth = 150;
-constexpr GLsizei kImageHeight = 101;
+constexpr GLsizei kTargetWidth = 150;
+constexpr GLsizei kTargetHeight = 101;
 constexpr int kMargin = 7;  // half a sprite's pixels
 
 class TilePainterGlTest : public GlTest {
@@ -42,7 +42,7 @@ class TilePainterGlTest : public GlTest {
 
     [[nodiscard]] ColliderView view() const { return {&textures_, collider_.bounds, finestTexel(collider_)}; }
     [[nodiscard]] RenderTarget target() const {
-        return {framebuffer_.name(), kImageWidth, kImageHeight, srgb_};
+        return {framebuffer_.name(), kTargetWidth, kTargetHeight, srgb_};
     }
 
     /// All around the sphere, and beyond the picture. One in nine has died.
@@ -81,7 +81,7 @@ class TilePainterGlTest : public GlTest {
         const auto drawn = renderer.draw(*particles_, camera_, style_, target(), order,
                                          among_collider ? &collider_renderer_.depth() : nullptr);
         EXPECT_TRUE(drawn) << drawn.error().message;
-        return required(readTextureFloats(color_, kImageWidth, kImageHeight));
+        return required(readTextureFloats(color_, kTargetWidth, kTargetHeight));
     }
 
     struct Difference {
@@ -92,7 +92,7 @@ class TilePainterGlTest : public GlTest {
     /// \param margin  pixels at the edges that are ignored: some drivers drop points whose centre is outside the
     /// picture.
     static Difference between(const std::vector<float>& a, const std::vector<float>& b, int margin = 0,
-                              int width = kImageWidth, int height = kImageHeight) {
+                              int width = kTargetWidth, int height = kTargetHeight) {
         Difference difference;
         const int parts = 4 * (width - 2 * margin) * (height - 2 * margin);
         for (int y = margin; y < height - margin; ++y) {
@@ -136,9 +136,9 @@ class TilePainterGlTest : public GlTest {
     std::vector<ParticleRenderer> renderers_;
     std::optional<ParticleSystem> particles_;
     std::optional<DepthSorter> sorter_;
-    const GlTexture color_ = makeTexture2D(GL_RGBA16F, kImageWidth, kImageHeight, GL_RGBA, GL_HALF_FLOAT);
+    const GlTexture color_ = makeTexture2D(GL_RGBA16F, kTargetWidth, kTargetHeight, GL_RGBA, GL_HALF_FLOAT);
     const GlTexture depth_ =
-        makeTexture2D(GL_DEPTH_COMPONENT32F, kImageWidth, kImageHeight, GL_DEPTH_COMPONENT, GL_FLOAT);
+        makeTexture2D(GL_DEPTH_COMPONENT32F, kTargetWidth, kTargetHeight, GL_DEPTH_COMPONENT, GL_FLOAT);
     const GlFramebuffer framebuffer_ = required(makeFramebuffer({color_.name()}, depth_.name()));
 };
 
@@ -304,7 +304,7 @@ TEST_P(TilePainterGlTest, DepthRenderbuffersFallBackToPoints) {
     GLuint depth = 0;
     glGenRenderbuffers(1, &depth);
     glBindRenderbuffer(GL_RENDERBUFFER, depth);
-    glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, kImageWidth, kImageHeight);
+    glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, kTargetWidth, kTargetHeight);
     glBindRenderbuffer(GL_RENDERBUFFER, 0);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth);

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Played scenes: drops stay outside animated and thin colliders.
-#include "runtime/events/event_recorder.h"
-#include "runtime/player/simulation.h"
-
+// Played scenes: drops stay outside animated and thin colliders; and births on moving and deforming surfaces.
 #include <gtest/gtest.h>
-
 #include <algorithm>
 #include <glm/glm.hpp>
+#include <limits>
 
 #include "formats/container.h"
+#include "runtime/events/event_recorder.h"
+#include "runtime/player/simulation.h"
 #include "runtime/scene/loaded_scene.h"
 #include "tests/formats/animation/animated_meshes.h"
 #include "tests/runtime/collider/analytic_collider.h"
@@ -16,7 +15,7 @@
 #include "tests/runtime/live/animated_container.h"
 #include "tests/temporary_folder.h"
 
-namespace relief {
+namespace relief::test {
 namespace {
 
 class SimulationGlTest : public GlTest {};
@@ -181,6 +180,155 @@ forces = { gravity = [0, 0, 0], drag = 0 }
         << "with a larger, faster emitter";
 }
 
+constexpr double kDt = 1.0 / 50;
+
+class SurfaceBirthsGlTest : public GlTest {
+  protected:
+    SurfaceBirthsGlTest() {
+        EXPECT_TRUE(saveCollider(folder_.path() / "tube.relief", animatedContainer(mesh_)));
+    }
+
+    /// The particles after some steps of a scene in which a bending tube emits sparks.
+    /// \param own  poses set by the program, equal to the clip's.
+    std::vector<ParticleState> played(const std::string& emitter, int steps, bool collides = false,
+                                      bool own = false) {
+        return played(
+            "play = { clip = \"bend\", start = 0.3, resolution = 192 }\nscale = 2\n"
+            "key = [{ time = 0 }, { time = 2, position = [1, 0, 3], angle = 120 }]\n",
+            emitter, steps, collides, own);
+    }
+    std::vector<ParticleState> played(const std::string& collider, const std::string& emitter, int steps,
+                                      bool collides = false, bool own = false) {
+        const std::string scene =
+            "time = { dt = 0.02, steps = 60 }\nparticles = { capacity = 20000 }\n"
+            "forces = { gravity = [0, 0, 0], drag = 0 }\nground = { enabled = false }\n[[type]]\n" +
+            std::string(collides ? "" : "collides_with = []\n") + "[[collider]]\nfile = \"tube.relief\"\n" +
+            collider + "[[emitter]]\nshape = \"surface\"\nattach = 0\nlifetime = 9\n" + emitter;
+        loaded_ = std::make_unique<LoadedScene>();
+        auto loaded = required(loadAll(folder_.write("scene.toml", scene), {}));
+        *loaded_ = std::move(loaded);
+        auto made = required(Simulation::create(*loaded_));
+        for (int step = 0; step < steps; ++step) {
+            if (own) {
+                const double end = made.particles().time() + double{loaded_->scene.time.dt};
+                EXPECT_TRUE(made.setPose(0, loaded_->played[0]->poseAt(end)));
+            }
+            EXPECT_TRUE(made.step());
+        }
+        time_ = made.particles().time();
+        auto particles = made.particles().readState();
+        EXPECT_TRUE(particles);
+        return *particles;
+    }
+
+    /// The positions of the tube's vertices in the world.
+    std::vector<glm::dvec3> tubeAt(double time) const {
+        const Pose pose = poseAt(loaded_->scene.colliders[0], time);
+        std::vector<glm::dvec3> out;
+        for (const glm::vec3& p : posed(mesh_, loaded_->played[0]->poseAt(time))) {
+            out.emplace_back(toWorld(pose, p));
+        }
+        return out;
+    }
+    /// The birth position. Without forces a spark flies straight, so it was born at its position minus age times
+    /// velocity.
+    static glm::dvec3 birthplace(const ParticleState& spark) {
+        return glm::dvec3(spark.position) - double{spark.age} * glm::dvec3(spark.velocity);
+    }
+    const AnimatedMesh mesh_ = bendingTube(16, 20);
+    const test::TemporaryFolder folder_;
+    std::unique_ptr<LoadedScene> loaded_;
+    double time_ = 0.0;
+};
+// The CPU computes births, so one API is enough; SimulationGlTest runs in both.
+INSTANTIATE_TEST_SUITE_P(Api, SurfaceBirthsGlTest, testing::Values(GlApi::kGl33Core), glApiTestName);
+
+double distanceTo(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& p) {
+    const auto toSide = [&](const glm::dvec3& u, const glm::dvec3& v) {
+        const double t = std::clamp(glm::dot(p - u, v - u) / glm::dot(v - u, v - u), 0.0, 1.0);
+        return glm::length(u + t * (v - u) - p);
+    };
+    const glm::dvec3 n = glm::cross(b - a, c - a);
+    const bool over = glm::dot(glm::cross(b - a, p - a), n) >= 0 &&
+                      glm::dot(glm::cross(c - b, p - b), n) >= 0 &&
+                      glm::dot(glm::cross(a - c, p - c), n) >= 0;
+    return over ? std::abs(glm::dot(p - a, n)) / glm::length(n)
+                : std::min({toSide(a, b), toSide(b, c), toSide(c, a)});
+}
+
+double distanceTo(const std::vector<glm::dvec3>& at, const std::vector<glm::uvec3>& triangles,
+                  const glm::dvec3& p) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const glm::uvec3& t : triangles) {
+        least = std::min(least, distanceTo(at[t.x], at[t.y], at[t.z], p));
+    }
+    return least;
+}
+
+// Births by rate have their own times, between two poses.
+TEST_P(SurfaceBirthsGlTest, LieOnTheSurfaceAtTheirOwnTime) {
+    const std::vector<ParticleState> sparks = played("rate = 2000\nspeed = 0.5\n", 12);
+    ASSERT_NEAR(static_cast<double>(sparks.size()), 480.0, 1.0);
+    double worst = 0.0;
+    double still = 0.0;
+    for (const ParticleState& spark : sparks) {
+        const double born = time_ - double{spark.age};
+        const glm::dvec3 place = birthplace(spark);
+        worst = std::max(worst, distanceTo(tubeAt(born), mesh_.triangles, place));
+        still = std::max(still, distanceTo(tubeAt(born + 0.5 * kDt), mesh_.triangles, place));
+    }
+    // r (ω dt)² / 8 for the clip's 90° per second at an arm of 2.2.
+    constexpr double kTurn = 1.5708;
+    EXPECT_LT(worst, 2.2 * kTurn * kTurn * kDt * kDt / 8 + 2e-5);
+    EXPECT_GT(still, 10 * worst) << "half a step later the surface has moved on";
+}
+
+// Poses of the program are a jump at first. After that they move like the same clip.
+TEST_P(SurfaceBirthsGlTest, FollowPosesSetByTheProgram) {
+    const std::string keys = "rate = 1000\nspeed = 0\ninherit = 1\nstart = 0.1\n";
+    const std::vector<ParticleState> by_clip = played(keys, 12);
+    const std::vector<ParticleState> by_program = played(keys, 12, false, true);
+    ASSERT_GT(by_clip.size(), 100U);
+    ASSERT_EQ(by_program.size(), by_clip.size());
+    for (std::size_t i = 0; i < by_clip.size(); ++i) {
+        ASSERT_EQ(by_program[i].position, by_clip[i].position) << i;
+        ASSERT_EQ(by_program[i].velocity, by_clip[i].velocity) << i;
+    }
+}
+
+// A clip whose end differs from its start jumps when it repeats: no spark is born on the way.
+TEST_P(SurfaceBirthsGlTest, JumpsThrowNothing) {
+    const std::vector<ParticleState> sparks =
+        played("play = { clip = \"grow\", start = 0.5, resolution = 64 }\n",
+               "rate = 5000\nspeed = 0\ninherit = 1\n", 50);
+    ASSERT_GT(sparks.size(), 4900U);
+    std::size_t still = 0;
+    for (const ParticleState& spark : sparks) {
+        // It grows by 0.1 in 1 s, so sparks move outwards at that speed, or slower on the lids.
+        const glm::vec2 away(spark.position.x, spark.position.z);
+        const glm::vec2 velocity(spark.velocity.x, spark.velocity.z);
+        ASSERT_LE(glm::length(velocity), 0.1001F);
+        ASSERT_GE(glm::dot(away, velocity), 0.0F);
+        still += velocity == glm::vec2(0.0F) ? 1 : 0;
+    }
+    EXPECT_NEAR(static_cast<double>(still), 100.0, 2.0) << "births in the step of the jump";
+}
+
+TEST_P(SurfaceBirthsGlTest, StayOutsideTheirSurface) {
+    const std::vector<ParticleState> sparks =
+        played("rate = 5000\nspeed = 1\ninherit = 1\ncone = 30\n", 50, true);
+    ASSERT_GT(sparks.size(), 4900U);
+    std::vector<glm::vec3> positions;
+    for (const glm::dvec3& p : tubeAt(time_)) {
+        positions.emplace_back(p);
+    }
+    std::size_t inside = 0;
+    for (const ParticleState& spark : sparks) {
+        inside += windingNumber(positions, mesh_.triangles, glm::dvec3(spark.position)) > 0.5 ? 1 : 0;
+    }
+    EXPECT_LE(inside, sparks.size() / 1000) << "of " << sparks.size();
+}
+
 // A former fault: a change of forces or types without new emitters left the sweep as it was.
 TEST_P(SimulationGlTest, ChangedForcesAndTypesSetTheSweep) {
     const test::TemporaryFolder folder;
@@ -208,4 +356,4 @@ emitter = { box_min = [-1, 1, -1], box_max = [1, 2, 1], rate = 0, burst = 1000, 
 }
 
 }  // namespace
-}  // namespace relief
+}  // namespace relief::test

@@ -1,18 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene's colliders, their pose keys, and particle types. pose_keys_test.cpp tests poses between keys.
-#include "runtime/scene/scene_collider.h"
-
+// The scene's colliders: pose keys, particle types, materials, clips, and the bodies of a world. bodies_test.cpp tests
+// poses between keys.
 #include <gtest/gtest.h>
-
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <glm/glm.hpp>
+#include <memory>
 #include <numbers>
 
+#include "formats/container.h"
+#include "runtime/bodies/world_bodies.h"
+#include "runtime/picture/camera.h"
+#include "runtime/scene/loaded_scene.h"
+#include "runtime/scene/scene_collider.h"
+#include "runtime/scene/scene_emitter.h"
 #include "runtime/scene/scene_live.h"
+#include "runtime/scene/scene_meshes.h"
+#include "runtime/scene/scene_pictures.h"
+#include "runtime/scene/scene_play.h"
+#include "runtime/scene/scene_world.h"
+#include "tests/formats/animation/animated_meshes.h"
+#include "tests/formats/sample_colliders.h"
 #include "tests/results.h"
+#include "tests/runtime/bodies/three_bodies.h"
+#include "tests/runtime/collider/analytic_collider.h"
+#include "tests/runtime/live/animated_container.h"
 #include "tests/runtime/scene/scene_text.h"
 #include "tests/temporary_folder.h"
 
-namespace relief {
+namespace relief::test {
 namespace {
 
 void expectNear(const glm::vec3& a, const glm::vec3& b, float bound) {
@@ -150,5 +167,273 @@ TEST(SceneLive, MapsContainTheMotionOfTheMesh) {
     expectErrorOf(loadLiveMesh(collider), "scene.toml:2:8", "");
 }
 
+const std::string kHead = "[[collider]]\nfile = \"box.relief\"\n";
+
+void writeBox(const test::TemporaryFolder& folder) {
+    Collider box = analytic::frontBackCollider(analytic::box({-0.4, -0.2, -0.3}, {0.4, 0.2, 0.3}), 16);
+    box.materials.list = {{"oak", 0.5F, 0.25F}, {"stove"}};
+    box.materials.size = 1.0F;
+    box.materials.origin = glm::vec3(-0.5F);
+    box.materials.nodes.resize(1);
+    box.materials.nodes[0].leaves = {0, 1, 0, 1, 0, 1, 0, 1};
+    EXPECT_TRUE(saveCollider(folder.path() / "box.relief", box));
+}
+
+TEST(SceneMaterial, ResponsesAreAppliedByName) {
+    const test::TemporaryFolder folder;
+    writeBox(folder);
+    const auto loaded = required(loadAll(
+        folder.write("scene.toml", kHead +
+                                       "[[material]]\nname = \"stove\"\nfriction = 0.75\nlifetime_loss = 3\n"
+                                       "[[material]]\nname = \"oak\"\nrestitution = 0.125\n"
+                                       "[[spawn]]\non = \"collision\"\nmaterial = \"stove\"\n"),
+        {}));
+    const std::vector<Material>& list = loaded.colliders.front()->materials.list;
+    EXPECT_EQ(list[0], (Material{"oak", 0.125F, 0.25F}));
+    EXPECT_EQ(list[1], (Material{"stove", 1.0F, 0.75F, 3.0F}));
+    // Indices into the names of the textures. A name that is missing there is never hit.
+    const std::vector<std::string> names{"oak", "stove"};
+    EXPECT_EQ(makeSpawners(loaded.scene.spawns, names).front().settings().material, 1);
+    EXPECT_EQ(makeSpawners(loaded.scene.spawns, std::span(names).first(1)).front().settings().material, 1);
+}
+
+TEST(SceneMaterial, UnknownNamesAreErrors) {
+    const test::TemporaryFolder folder;
+    writeBox(folder);
+    for (const auto& [more, what] :
+         {std::pair("[[material]]\nname = \"stave\"\n", "material[0].name = 'stave'"),
+          {"[[spawn]]\non = \"collision\"\nmaterial = \"ice\"\n", "spawn[0].material = 'ice'"}}) {
+        expectErrorOf(loadAll(folder.write("scene.toml", kHead + more), {}), "scene.toml:3:1: ", what);
+        // Another scene that replaces this one during play.
+        const auto plays = loadAll(folder.write("plays.toml", kHead), {});
+        const auto changed = parseScene(kHead + more, "scene.toml");
+        ASSERT_TRUE(plays && changed);
+        EXPECT_TRUE(checkMaterials(plays->scene, *plays));
+        EXPECT_FALSE(checkMaterials(*changed, *plays));
+    }
+}
+
+TEST(SceneMaterial, WorldsHaveMaterials) {
+    World world;
+    world.materials = {{"oak", 0.5F, {}, {}}, {"ice", {}, 0.0F, 1.0F}};
+    world.colliders.resize(1);
+    world.colliders[0].file = "a.relief";
+    world.colliders[0].hash.assign(32, '0');
+    world.colliders[0].gpu_bytes = 1;
+    world.bodies.resize(1);
+    const auto read = required(parseWorld(worldText(world)));
+    EXPECT_EQ(read.materials, world.materials);
+    world.materials[1].name = "oak";
+    EXPECT_EQ(parseWorld(worldText(world)).error().code, ErrorCode::kInvalidInput);
+    world.materials.clear();
+    EXPECT_EQ(worldText(world).find("materials"), std::string::npos);
+}
+
+const std::string kTube = "[[collider]]\nfile = \"tube.relief\"\n";
+
+TEST(ScenePlay, IsLoadedWithItsClip) {
+    const std::string keys =
+        "clip = \"bend\", start = 0.5, speed = -2, loop = false, bounds_scale = 1.5, resolution = 64";
+    EXPECT_EQ(goodScene(kTube + "play = { " + keys + " }\n").colliders.front().play,
+              (ScenePlay{"bend", 0.5F, -2.0F, false, 1.5F, 64}));
+    const test::TemporaryFolder folder;
+    ASSERT_TRUE(saveCollider(folder.path() / "tube.relief", animatedContainer(bendingTube(12, 8))));
+    const std::string two = kTube + "position = [3, 0, 0]\nplay = { clip = \"bend\" }\n" + kTube +
+                            "play = { clip = \"grow\", start = 0.25, loop = false }\n" + kTube;
+    const auto loaded = required(loadAll(folder.write("scene.toml", two), {}));
+    ASSERT_TRUE(loaded.played[0] && loaded.played[1]);
+    EXPECT_FALSE(loaded.played[2]) << "at rest";
+    EXPECT_EQ(loaded.played[0]->mesh, loaded.played[1]->mesh) << "read once";
+    const AnimatedMesh& mesh = *loaded.played[0]->mesh;
+    EXPECT_EQ(loaded.played[0]->poseAt(2.5), poseAt(mesh, mesh.clips[0], 0.5)) << "repeats from the start";
+    EXPECT_EQ(loaded.played[1]->poseAt(0.5), poseAt(mesh, mesh.clips[1], 0.75));
+    EXPECT_EQ(loaded.played[1]->poseAt(7.0), poseAt(mesh, mesh.clips[1], 1.0));
+    // The tube bends to -x by slightly more than 1.
+    EXPECT_LE(loaded.bounds.min.x, 3.0F - 1.05F);
+    EXPECT_GE(loaded.bounds.max.x, 3.09F);
+}
+
+TEST(ScenePlay, MissingClipsAndMeshesAreNamed) {
+    const test::TemporaryFolder folder;
+    Collider collider = animatedContainer(bendingTube(12, 8));
+    ASSERT_TRUE(saveCollider(folder.path() / "tube.relief", collider));
+    const auto expectRefused = [&](const std::string& words) {
+        expectErrorOf(loadAll(folder.write("scene.toml", kTube + "play = { clip = \"run\" }\n"), {}),
+                      "scene.toml:2:8", words);
+    };
+    expectRefused("'bend', 'grow'");
+    collider.animation.resize(100);
+    ASSERT_TRUE(saveCollider(folder.path() / "tube.relief", collider));
+    expectRefused("FlatBuffers");
+    collider.animation.clear();
+    ASSERT_TRUE(saveCollider(folder.path() / "tube.relief", collider));
+    expectRefused("--animated");
+}
+
+TEST(ScenePlay, MaterialsHaveColours) {
+    const test::TemporaryFolder folder;
+    const AnimatedMesh mesh = tubeWithMaterials("arm", "sleeve");
+    ASSERT_TRUE(saveCollider(folder.path() / "tube.relief", animatedContainer(mesh)));
+    const auto load = [&](const std::string& keys) {
+        return loadAll(
+            folder.write("scene.toml", kTube + "play = {}\n" + keys +
+                                           "[ground]\nenabled = false\n[render]\nmeshes = \".\"\n"),
+            {});
+    };
+    using Color = std::array<std::uint8_t, 4>;
+    for (const auto& [keys, rest] :
+         {std::pair<std::string, Color>("color = [0, 1, 0.2]\n", {0, 255, 51, 255}),
+          std::pair<std::string, Color>("", {189, 153, 133, 255})}) {  // clay
+        const auto loaded =
+            required(load(keys + "[[collider.material]]\nname = \"sleeve\"\ncolor = [1, 0.4, 0]\n"));
+        const auto drawn = required(loadDrawnMeshes(loaded));
+        const std::vector<Color>& colors = drawn.meshes.front().colors;
+        ASSERT_EQ(colors.size(), mesh.positions.size());
+        std::vector<Color> expected(colors.size(), rest);
+        for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+            for (int k = 0; k < 3 && mesh.triangle_materials[i] == 1; ++k) {
+                expected[mesh.triangles[i][k]] = {255, 102, 0, 255};
+            }
+        }
+        EXPECT_EQ(colors, expected);
+        EXPECT_NE(std::count(colors.begin(), colors.end(), rest), 0);
+    }
+    EXPECT_TRUE(loadDrawnMeshes(*load(""))->meshes.front().colors.empty());
+    expectErrorOf(load("[[collider.material]]\nname = \"hat\"\ncolor = [1, 1, 1]\n"),
+                  "scene.toml:2:8: collider.material: ", "hat");
+}
+
+Scene placed(const std::string& text) {
+    Scene scene = goodScene("world = \"level/world.json\"\n" + text);
+    const auto done = placeBodies(scene, test::threeBodies());
+    EXPECT_TRUE(done) << done.error().message;
+    return scene;
+}
+
+TEST(SceneWorld, BodiesBecomeCollidersWithTheirPoses) {
+    const Scene scene = placed("");
+    ASSERT_EQ(scene.colliders.size(), 3U);
+    const SceneCollider& door = scene.colliders[1];
+    EXPECT_EQ(door.path, std::filesystem::path("dir/level/door.relief"));
+    EXPECT_EQ(door.node, "door");
+    EXPECT_TRUE(door.posed);
+    EXPECT_EQ(door.pose, poseOf(test::threeBodies().bodies[1])) << "bit-identical";
+    EXPECT_EQ(door.restitution, 0.25F);
+    EXPECT_EQ(door.friction, 0.75F);
+    EXPECT_EQ(scene.colliders[2].node, "gate");
+}
+
+TEST(SceneWorld, NodeTablesComeFirstAndKeepUnsetValues) {
+    const Scene scene = placed(
+        "[[collider]]\nfile = \"own.relief\"\n"
+        "[[collider]]\nnode = \"door\"\n[[collider.key]]\ntime = 1\n[[collider.key]]\ntime = 2\nposition = "
+        "[4, 0.5, 1]\n"
+        "[[collider]]\nnode = \"floor\"\nposition = [0, 1, 0]\n");
+    ASSERT_EQ(scene.colliders.size(), 4U);
+    const SceneCollider& door = scene.colliders[1];
+    const Pose rest = poseOf(test::threeBodies().bodies[1]);
+    EXPECT_EQ(door.pose, rest);
+    ASSERT_EQ(door.keys.size(), 2U);
+    EXPECT_EQ(door.keys[0].pose, rest);
+    EXPECT_EQ(door.keys[1].pose.position, glm::vec3(4.0F, 0.5F, 1.0F));
+    EXPECT_EQ(door.keys[1].pose.rotation, rest.rotation);
+    EXPECT_EQ(door.keys[1].pose.scale, 2.0F);
+    EXPECT_EQ(scene.colliders[2].node, "floor");
+    EXPECT_EQ(scene.colliders[2].pose.position, glm::vec3(0.0F, 1.0F, 0.0F));
+    EXPECT_EQ(scene.colliders[3].node, "gate");
+}
+
+// Also detected if every second body is elsewhere.
+TEST(SceneWorld, TooManyCoincidentBodiesAreErrors) {
+    const auto collider = std::make_shared<const Collider>(test::readmeExample());
+    const auto scene = [&](std::size_t bodies, std::size_t every, float apart) {
+        LoadedScene loaded;
+        loaded.colliders.assign(bodies, collider);
+        loaded.scene.colliders.resize(bodies);
+        for (std::size_t i = 0; i < bodies; ++i) {
+            if (i % every != 0) {
+                loaded.scene.colliders[i].pose.position.x = apart * static_cast<float>(i + 1);
+            }
+        }
+        return loaded;
+    };
+    EXPECT_TRUE(checkOverlap(scene(kOverlapMax, 1, 0.0F)));
+    EXPECT_TRUE(checkOverlap(scene(8192, kOverlapMax, 10.0F))) << "apart";
+    for (const auto& [refused, words] :
+         {std::pair(scene(kOverlapMax + 1, 1, 0.0F), "1025 bodies overlap at "),
+          {scene(4096, 2, 10.0F), "2048 bodies overlap at "}}) {
+        const auto result = checkOverlap(refused);
+        ASSERT_FALSE(result) << words;
+        EXPECT_EQ(result.error().code, ErrorCode::kLimit);
+        EXPECT_TRUE(result.error().message.starts_with(words)) << result.error().message;
+    }
+}
+
+// A level is wide and low. Seen from above, it fills nine tenths of the picture's width or height.
+TEST(SceneWorld, DefaultCameraFramesALevel) {
+    for (const glm::vec3& half :
+         {glm::vec3(90.0F, 12.0F, 90.0F), glm::vec3(4.0F, 30.0F, 2.0F), glm::vec3(300.0F, 0.0F, 5.0F)}) {
+        const Bounds bounds{-half, half};
+        const auto scene = required(withDefaults(placed("[render]\nsize = [640, 360]\n"), bounds));
+        const Camera camera = sceneCamera(scene, bounds, 0.0);
+        glm::vec2 most(0.0F);
+        for (int i = 0; i < 8; ++i) {
+            const glm::bvec3 high((i & 1) != 0, (i & 2) != 0, (i & 4) != 0);
+            const glm::vec4 clip = camera.projection(640.0F / 360.0F) * camera.view() *
+                                   glm::vec4(glm::mix(bounds.min, bounds.max, high), 1.0F);
+            ASSERT_GT(clip.w, 0.0F);
+            most = glm::max(most, glm::abs(glm::vec2(clip)) / clip.w);
+        }
+        EXPECT_NEAR(std::max(most.x, most.y), 0.9F, 1e-3F) << half.x;
+    }
+}
+
+/// Adds another tile of the door, in the same place, before the gate.
+World threeBodiesAndATile() {
+    World world = test::threeBodies();
+    test::addTile(world, 1, "door-1.relief", 2);
+    return world;
+}
+
+TEST(SceneWorld, NodeTablesMoveAllTiles) {
+    const auto scene = [](const std::string& text) {
+        Scene read = goodScene("world = \"w.json\"\n" + text);
+        EXPECT_TRUE(placeBodies(read, threeBodiesAndATile()));
+        return read;
+    };
+    const Scene moved = scene(
+        "[[collider]]\nnode = \"door\"\nangle = 30\n[[collider.key]]\ntime = 1\n[[collider.key]]\ntime = 2\n"
+        "position = [4, 0.5, 1]\n");
+    ASSERT_EQ(moved.colliders.size(), 4U);
+    EXPECT_EQ(moved.colliders[1].node, "floor");
+    EXPECT_EQ(moved.colliders[2].node, "gate") << "has the same index as without the tile";
+    const SceneCollider& door = moved.colliders[0];
+    const SceneCollider& tile = moved.colliders[3];
+    EXPECT_EQ(tile.path, std::filesystem::path("dir/door-1.relief"));
+    EXPECT_EQ(tile.tile_of, 0U);
+    EXPECT_FALSE(door.tile_of);
+    EXPECT_NE(door.pose, poseOf(test::threeBodies().bodies[1]));
+    for (const double time : {0.0, 1.25, 1.5, 3.0}) {
+        EXPECT_EQ(poseAt(tile, time), poseAt(door, time));
+    }
+    EXPECT_EQ(tile.restitution, 0.25F);
+    const Scene still = scene("");
+    ASSERT_EQ(still.colliders.size(), 4U);
+    EXPECT_EQ(still.colliders[2].path, std::filesystem::path("dir/door-1.relief")) << "in the world's order";
+    EXPECT_FALSE(still.colliders[2].tile_of);
+}
+
+TEST(SceneWorld, NodesHaveOnePlaceInTheWorld) {
+    World elsewhere = threeBodiesAndATile();
+    elsewhere.bodies[2].position.x += 1.0F;
+    for (const auto& [node, world] : {std::pair("door", elsewhere), {"window", test::threeBodies()}}) {
+        Scene scene = goodScene("world = \"w.json\"\n[[collider]]\nnode = \"" + std::string(node) + "\"\n");
+        const auto done = placeBodies(scene, world);
+        ASSERT_FALSE(done) << node;
+        EXPECT_TRUE(done.error().message.starts_with("dir/scene.toml:1:9: collider[0].node = '"))
+            << done.error().message;
+    }
+}
+
 }  // namespace
-}  // namespace relief
+}  // namespace relief::test

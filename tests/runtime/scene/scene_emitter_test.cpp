@@ -1,18 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-// [emitter], [[emitter]] and [[spawn]]: their keys and defaults.
-#include "runtime/scene/scene_emitter.h"
-#include "runtime/births/emitter_motion.h"
-
+// [emitter], [[emitter]] and [[spawn]]: their keys and defaults; surface emitters, and the meshes and weather of
+// pictures.
 #include <gtest/gtest.h>
-
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <set>
 #include <string>
 
+#include "formats/container.h"
+#include "runtime/births/emitter_motion.h"
+#include "runtime/scene/loaded_scene.h"
 #include "runtime/scene/scene_births.h"
+#include "runtime/scene/scene_emitter.h"
+#include "runtime/scene/scene_meshes.h"
+#include "runtime/scene/scene_pictures.h"
+#include "runtime/scene/scene_world.h"
+#include "tests/formats/animation/animated_meshes.h"
 #include "tests/results.h"
+#include "tests/runtime/bodies/three_bodies.h"
+#include "tests/runtime/collider/analytic_collider.h"
+#include "tests/runtime/live/animated_container.h"
 #include "tests/runtime/scene/scene_text.h"
 #include "tests/temporary_folder.h"
 
-namespace relief {
+namespace relief::test {
 namespace {
 
 SceneEmitter good(const std::string& keys) {
@@ -152,5 +164,295 @@ TEST(SceneEmitter, EmittersSpawn) {
     EXPECT_EQ(make("points = \"none.csv\"\n").error().code, ErrorCode::kIo);
 }
 
+const std::string kCollider = "[[collider]]\nfile = \"tube.relief\"\n";
+const std::string kPlayed = kCollider + "play = { clip = \"bend\", start = 0.5 }\n";
+const std::string kSurface = "[[emitter]]\nshape = \"surface\"\n";
+
+double areaOf(const std::vector<glm::vec3>& positions, const std::vector<glm::uvec3>& triangles) {
+    double area = 0.0;
+    for (const glm::uvec3& t : triangles) {
+        const glm::dvec3 p(positions[t.x]);
+        area += 0.5 * glm::length(glm::cross(glm::dvec3(positions[t.y]) - p, glm::dvec3(positions[t.z]) - p));
+    }
+    return area;
+}
+
+class SceneSurface : public testing::Test {
+  protected:
+    SceneSurface() {
+        EXPECT_TRUE(saveCollider(folder_.path() / "tube.relief", animatedContainer(mesh_)));
+        folder_.write(
+            "cube.obj",
+            "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+            "f 4 3 2 1\no shell\nusemtl wood\nf 5 6 7 8\ng lid top\nusemtl iron\nf 4 8 7 3\nf 1 2 6 5\n");
+    }
+    Result<LoadedScene> load(const std::string& text) {
+        return loadAll(folder_.write("scene.toml", text), {});
+    }
+    double area(const std::string& text) {
+        const auto loaded = load(text);
+        EXPECT_TRUE(loaded) << loaded.error().message;
+        return loaded ? loaded->emitters.at(0).settings().surface->area() : 0.0;
+    }
+    void expectRefused(const std::string& text, const std::string& place, const std::string& words) {
+        expectErrorOf(load(text), "scene.toml:" + place + ": ", words);
+    }
+
+    const AnimatedMesh mesh_ = tubeWithMaterials("cloth", "skin");
+    const test::TemporaryFolder folder_;
+};
+
+TEST_F(SceneSurface, SelectsGroupsAndMaterials) {
+    const std::vector<glm::vec3> bent = posed(mesh_, poseAt(mesh_, mesh_.clips[0], 0.5));
+    EXPECT_NEAR(area(kPlayed + kSurface + "attach = 0\n"), areaOf(bent, mesh_.triangles), 1e-6);
+    EXPECT_NEAR(area(kCollider + kSurface + "attach = 0\n"), areaOf(mesh_.positions, mesh_.triangles), 1e-6)
+        << "at rest";
+    EXPECT_GT(std::abs(areaOf(bent, mesh_.triangles) - areaOf(mesh_.positions, mesh_.triangles)), 1e-3);
+    double skin = 0.0;
+    double upper = 0.0;
+    for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
+        const glm::uvec3& t = mesh_.triangles[i];
+        const double own = areaOf(mesh_.positions, {t});
+        skin += mesh_.triangle_materials[i] == 1 ? own : 0.0;
+        for (int corner = 0; corner < 3; ++corner) {
+            // The joint weight that the tube is made with.
+            const float y = mesh_.positions[t[corner]].y;
+            upper += own / 3.0 * double{std::clamp((y / 2.0F - 0.5F) * 3.0F + 0.5F, 0.0F, 1.0F)};
+        }
+    }
+    const std::string head = kCollider + kSurface + "attach = 0\n";
+    EXPECT_NEAR(area(head + "material = \"skin\"\n"), skin, 1e-6);
+    EXPECT_NEAR(area(head + "group = \"middle\"\n"), upper, 1e-6);
+    const double both = area(head + "group = \"middle\"\nmaterial = \"skin\"\n");
+    EXPECT_LT(both, std::min(skin, upper));
+    EXPECT_GT(both, 0.5 * skin);
+}
+
+TEST_F(SceneSurface, MayBeAMeshFile) {
+    const std::string head = kCollider + kSurface + "mesh = \"cube.obj\"\n";
+    EXPECT_NEAR(area(head), 4.0, 1e-6);
+    EXPECT_NEAR(area(head + "group = \"lid top\"\n"), 2.0, 1e-6);
+    EXPECT_NEAR(area(head + "group = \"shell\"\n"), 1.0, 1e-6);
+    EXPECT_NEAR(area(head + "material = \"iron\"\n"), 2.0, 1e-6);
+    EXPECT_NEAR(area(head + "material = \"wood\"\ngroup = \"shell\"\n"), 1.0, 1e-6);
+    EXPECT_NEAR(area(head + "attach = 0\n"), 4.0, 1e-6) << "in the collider's space";
+    expectRefused(head + "group = \"floor\"\n", "3:1", "'shell', 'lid top'");
+    expectRefused(head + "material = \"glass\"\n", "3:1", "'wood', 'iron'");
+    expectRefused(head + "material = \"wood\"\ngroup = \"lid top\"\n", "3:1", "no area");
+    const auto loaded = load(head);
+    ASSERT_TRUE(loaded);
+    const auto files = filesOf(loaded->scene);
+    EXPECT_NE(std::find(files.begin(), files.end(), folder_.path() / "cube.obj"), files.end());
+}
+
+TEST_F(SceneSurface, CollidersWithoutAMeshGiveASurface) {
+    const glm::dvec3 half(0.5, 0.3, 0.2);
+    ASSERT_TRUE(saveCollider(folder_.path() / "box.relief",
+                             analytic::frontBackCollider(analytic::box(-half, half), 128)));
+    const std::string box = "[[collider]]\nfile = \"box.relief\"\n";
+    EXPECT_NEAR(area(box + kSurface + "attach = 0\n"), 2.48, 0.03);
+    const auto two = required(
+        load(box + box + "position = [3, 0, 0]\n" + kSurface + "attach = 0\n" + kSurface + "attach = 1\n"));
+    EXPECT_EQ(two.emitters[0].settings().surface->area(), two.emitters[1].settings().surface->area());
+    folder_.write("ball.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    const std::string wobbles =
+        "[[collider]]\nmesh = \"ball.obj\"\ndeform = { amplitude = 0.1, frequency = 1 }\n";
+    EXPECT_NEAR(area(wobbles + kSurface + "attach = 0\n"), 1.5 + 0.5 * std::sqrt(3.0), 1e-6);
+    expectRefused(wobbles + kSurface + "attach = 0\ngroup = \"a\"\n", "4:1", "emitter.group");
+}
+
+TEST_F(SceneSurface, MissingPartsAreErrors) {
+    const std::string head = kPlayed + kSurface + "attach = 0\n";
+    expectRefused(head + "group = \"Head\"\n", "4:1", "emitter.group");
+    expectRefused(head + "material = \"hair\"\n", "4:1", "emitter.material");
+    Collider bare = animatedContainer(mesh_);
+    bare.animation.clear();
+    ASSERT_TRUE(saveCollider(folder_.path() / "tube.relief", bare));
+    expectRefused(kCollider + kSurface + "attach = 0\ngroup = \"Head\"\n", "3:1", "emitter.group");
+    expectRefused(kCollider + kSurface + "attach = 0\n", "3:1", (folder_.path() / "tube.relief").string());
+    folder_.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+    expectRefused(kCollider + kSurface + "mesh = \"flat.obj\"\n", "3:1", "no area");
+}
+
+namespace fs = std::filesystem;
+
+class DrawnMeshesTest : public testing::Test {
+  protected:
+    DrawnMeshesTest() {
+        for (const char* name : {"floor.obj", "own.obj"}) {
+            folder_.write(name, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+        }
+        folder_.write("door.ply",
+                      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                      "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+                      "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    }
+
+    /// A scene with a world, like the result of loadAll(), but without its containers.
+    [[nodiscard]] LoadedScene loaded(const World& world, const std::string& tables = {}) const {
+        auto scene = parseScene(tables + "[ground]\nenabled = false\n[render]\nmeshes = \"" +
+                                    folder_.path().filename().string() + "\"\n",
+                                folder_.path().parent_path() / "scene.toml");
+        EXPECT_TRUE(scene) << scene.error().message;
+        scene->world = folder_.path().parent_path() / "world.json";
+        EXPECT_TRUE(placeBodies(*scene, world));
+        LoadedScene loaded;
+        loaded.scene = std::move(*scene);
+        loaded.world = world;
+        loaded.live.resize(loaded.scene.colliders.size());
+        loaded.played.resize(loaded.scene.colliders.size());
+        return loaded;
+    }
+
+    test::TemporaryFolder folder_;
+};
+
+World namedWorld() {
+    World world = test::threeBodies();
+    world.colliders[0].mesh = "floor";
+    world.colliders[1].mesh = "door";
+    return world;
+}
+
+TEST_F(DrawnMeshesTest, MeshesAreReadOnceAndDrawnForEachBody) {
+    const LoadedScene scene = loaded(
+        namedWorld(), "world = \"world.json\"\n[[collider]]\nfile = \"own.relief\"\nposition = [0, 5, 0]\n");
+    const auto meshes = loadDrawnMeshes(scene);
+    ASSERT_TRUE(meshes) << meshes.error().message;
+    EXPECT_EQ(meshes->meshes.size(), 3U);
+    EXPECT_EQ(*drawnFiles(scene),
+              (std::vector<fs::path>{folder_.path() / "door.ply", folder_.path() / "floor.obj",
+                                     folder_.path() / "own.obj"}));
+    ASSERT_EQ(meshes->places.size(), 4U);
+    EXPECT_FALSE(meshes->floor) << "the scene has no ground";
+    EXPECT_EQ(meshes->places[2].mesh, meshes->places[3].mesh) << "door and gate share a mesh";
+    const std::vector<MeshPlace> places = meshPlaces(scene, *meshes, 0.0);
+    EXPECT_EQ(places[0].pose.position, glm::vec3(0.0F, 5.0F, 0.0F));
+    EXPECT_EQ(places[2].pose, scene.scene.colliders[2].pose);
+    EXPECT_FALSE(places[2].moves);
+}
+
+TEST_F(DrawnMeshesTest, MeshFilesAreNamedAsInTheContainer) {
+    for (const char* name : {"props/chair", "props\\chair"}) {
+        folder_.write("props_chair.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+        World world = namedWorld();
+        world.colliders[1].mesh = name;
+        const LoadedScene scene = loaded(world, "world = \"world.json\"\n");
+        const auto files = required(drawnFiles(scene));
+        EXPECT_EQ(files.back(), folder_.path() / "props_chair.obj");
+    }
+}
+
+TEST_F(DrawnMeshesTest, LinksOutOfTheFolderAreNotRead) {
+    const test::TemporaryFolder elsewhere;
+    fs::rename(folder_.path() / "floor.obj", folder_.path() / "stored");
+    fs::create_symlink("stored", folder_.path() / "floor.obj");
+    const LoadedScene scene = loaded(namedWorld(), "world = \"world.json\"\n");
+    EXPECT_TRUE(drawnFiles(scene)) << "a link that stays inside";
+    const fs::path secret = elsewhere.write("secret.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    fs::remove(folder_.path() / "floor.obj");
+    fs::create_symlink(secret, folder_.path() / "floor.obj");
+    expectErrorOf(drawnFiles(scene), "scene.toml:5:", "floor.obj' is a link out of its folder");
+    expectErrorOf(loadDrawnMeshes(scene), "scene.toml:5:", "floor.obj' is a link out of its folder");
+}
+
+TEST_F(DrawnMeshesTest, AllFilesCoverEveryRun) {
+    World world = namedWorld();
+    world.colliders[0].coarse = WorldFile{"floor.coarse.relief", "", 0};
+    world.colliders[1].mesh = "missing";
+    const fs::path folder = folder_.path().parent_path();
+    std::set<fs::path> wanted = {folder / "world.json", folder_.path() / "floor.obj",
+                                 folder / "floor.coarse.relief"};
+    for (const WorldCollider& collider : world.colliders) {
+        wanted.insert(folder / collider.file);
+    }
+    const std::vector<fs::path> files = allFilesOf(loaded(world, "world = \"world.json\"\n"));
+    EXPECT_EQ(std::set(files.begin(), files.end()), wanted);
+}
+
+TEST_F(DrawnMeshesTest, TilesOfAMeshAreDrawnOnce) {
+    World world = namedWorld();
+    test::addTile(world, 0, "floor-1.relief", world.bodies.size());
+    EXPECT_EQ(loadDrawnMeshes(loaded(world, "world = \"world.json\"\n"))->places.size(), 3U);
+    world.bodies.back().position.x += 10.0F;  // at another place it is another body
+    EXPECT_EQ(loadDrawnMeshes(loaded(world, "world = \"world.json\"\n"))->places.size(), 4U);
+}
+
+TEST_F(DrawnMeshesTest, MissingFilesAreErrors) {
+    for (const char* name : {"", ".", "..", "../door", "a/b", "a\\b"}) {
+        World world = namedWorld();
+        world.colliders[1].mesh = name;
+        expectErrorOf(loadDrawnMeshes(loaded(world, "world = \"world.json\"\n")), "scene.toml:5:", "");
+    }
+    World world = namedWorld();
+    world.colliders[1].mesh = "window";
+    EXPECT_NE(loadDrawnMeshes(loaded(world, "world = \"world.json\"\n")).error().message.find("'window.ply'"),
+              std::string::npos);
+}
+
+TEST(SceneWeather, InterpolatesLinearly) {
+    const std::string meshes = kSceneHead + "[render]\nmeshes = \"m\"\n";
+    const Scene scene = goodScene(meshes +
+                                  "fog_distance = 5\n[[render.weather]]\ntime = 1\nsnow = 0.2\nsun = 0.5\n"
+                                  "[[render.weather]]\ntime = 3\nsnow = 0.6\nwet = 1\n");
+    EXPECT_EQ(meshStyle(scene, 0.0).snow, 0.2F);
+    EXPECT_FLOAT_EQ(meshStyle(scene, 2.0).snow, 0.4F);
+    EXPECT_FLOAT_EQ(meshStyle(scene, 2.0).wet, 0.5F);
+    EXPECT_FLOAT_EQ(meshStyle(scene, 2.0).sun, 0.75F);
+    EXPECT_EQ(meshStyle(scene, 9.0).snow, 0.6F);
+    EXPECT_EQ(meshStyle(scene, 9.0).fog_distance, 5.0F);
+    EXPECT_EQ(meshStyle(goodScene(meshes), 1.0).sun, 1.0F);
+}
+
+TEST(SceneLooks, ReadsEveryKey) {
+    const Scene scene = sceneWith(
+        "[render]\nsprite = \"quad\"\nblend = \"additive\"\nsoft_distance = 0.5\natlas = "
+        "\"a.png\"\natlas_cells = [4, "
+        "2]\n"
+        "mesh = \"m.obj\"\n[[type]]\nsize = 0.25\ncolor = [1, 0, 0.5]\n"
+        "[[type]]\nsize = [[0, 1], [0.5, 2]]\ncolor = [[0, 1, 0, 0], [1, 0, 1, 0]]\nopacity = [[0, 0], [1, "
+        "1]]\n"
+        "rotation = [[0.25, -3]]\nrotation_spread = 1\nspin_spread = 2\ncell = [3, 7]\nlit = "
+        "false\n[[type]]\ncell = 6\nfade = "
+        "[1, 2]\nstretch = 0.25\n");
+    EXPECT_EQ(scene.render.atlas, std::filesystem::path("dir/a.png"));
+    EXPECT_EQ(scene.render.atlas_columns, 4U);
+    EXPECT_EQ(scene.render.atlas_rows, 2U);
+    EXPECT_EQ(scene.render.mesh, std::filesystem::path("dir/m.obj"));
+    ASSERT_EQ(scene.types.size(), 3U);
+    ParticleLook first;
+    first.size = {{0.0F, 0.25F}};
+    first.color = {{0.0F, {1.0F, 0.0F, 0.5F}}};
+    EXPECT_EQ(scene.types[0].look, first);
+    EXPECT_EQ(scene.types[1].look,
+              (ParticleLook{.size = {{0.0F, 1.0F}, {0.5F, 2.0F}},
+                            .color = {{0.0F, {1.0F, 0.0F, 0.0F}}, {1.0F, {0.0F, 1.0F, 0.0F}}},
+                            .opacity = {{0.0F, 0.0F}, {1.0F, 1.0F}},
+                            .rotation = {{0.25F, -3.0F}},
+                            .rotation_spread = 1.0F,
+                            .spin_spread = 2.0F,
+                            .cell_first = 3,
+                            .cell_last = 7,
+                            .lit = false,
+                            .fade_in = 0.0F,  // the opacity track replaces the fades
+                            .fade_out = 0.0F}));
+    EXPECT_EQ(scene.types[2].look.cell_last, 6U);
+    EXPECT_EQ(scene.types[2].look.fade_out, 2.0F);
+}
+
+TEST(SceneCamera, KeysDefaultToTheCamera) {
+    const auto scene = required(
+        withDefaults(sceneWith("[camera]\ntarget = [0, 1, 0]\nfov = 40\n"
+                               "[[camera.key]]\ntime = 0\neye = [4, 1, 0]\n"
+                               "[[camera.key]]\ntime = 2\neye = [8, 1, 0]\ntarget = [0, 3, 0]\nfov = 20\n"),
+                     unitBounds()));
+    const Camera camera = sceneCamera(scene, unitBounds(), 1.0);
+    EXPECT_EQ(camera.eye, glm::vec3(6.0F, 1.0F, 0.0F));
+    EXPECT_EQ(camera.target, glm::vec3(0.0F, 2.0F, 0.0F));
+    EXPECT_EQ(camera.fov, 30.0F);
+    EXPECT_GT(camera.far_plane, 6.0F);
+    EXPECT_EQ(sceneCamera(scene, unitBounds(), 0.0).target, glm::vec3(0.0F, 1.0F, 0.0F));
+}
+
 }  // namespace
-}  // namespace relief
+}  // namespace relief::test
