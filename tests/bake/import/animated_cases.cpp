@@ -14,7 +14,7 @@ const std::map<std::string, std::size_t> kComponents = {
     {"SCALAR", 1}, {"VEC3", 3}, {"VEC4", 4}, {"MAT4", 16}};
 
 template <class T>
-std::string bytesOf(const std::vector<T>& values) {
+std::string bytesOfValues(const std::vector<T>& values) {
     return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
 }
 
@@ -41,12 +41,12 @@ std::size_t GltfBuilder::accessor(const char* type, int component, std::size_t c
 }
 
 std::size_t GltfBuilder::floats(const char* type, const std::vector<float>& values) {
-    return accessor(type, 5126, values.size(), bytesOf(values), false);
+    return accessor(type, 5126, values.size(), bytesOfValues(values), false);
 }
 
 std::size_t GltfBuilder::bytes(const char* type, const std::vector<int>& values, bool normalized) {
     return accessor(type, 5121, values.size(),
-                    bytesOf(std::vector<std::uint8_t>(values.begin(), values.end())), normalized);
+                    bytesOfValues(std::vector<std::uint8_t>(values.begin(), values.end())), normalized);
 }
 
 std::size_t GltfBuilder::shares(const char* type, const std::vector<double>& values) {
@@ -54,12 +54,12 @@ std::size_t GltfBuilder::shares(const char* type, const std::vector<double>& val
     for (const double value : values) {
         quantised.push_back(static_cast<std::int16_t>(std::lround(32767.0 * value)));
     }
-    return accessor(type, 5122, values.size(), bytesOf(quantised), true);
+    return accessor(type, 5122, values.size(), bytesOfValues(quantised), true);
 }
 
 std::size_t GltfBuilder::indices(const std::vector<int>& values) {
     return accessor("SCALAR", 5123, values.size(),
-                    bytesOf(std::vector<std::uint16_t>(values.begin(), values.end())), false);
+                    bytesOfValues(std::vector<std::uint16_t>(values.begin(), values.end())), false);
 }
 
 glm::vec3 boxCorner(const glm::vec3& low, const glm::vec3& high, int i) {

@@ -31,7 +31,7 @@ TriangleMesh loaded(const GltfParts& parts) {
     return imported("t.gltf", tetrahedronGltf(parts));
 }
 
-void expectWrong(const std::vector<Wrong>& cases) {
+void expectWrongGltf(const std::vector<Wrong>& cases) {
     expectWrong("t.gltf", cases);
 }
 
@@ -185,7 +185,7 @@ TEST(ImportGltf, SkinnedMeshIgnoresItsNode) {
     const ImportOptions options = {"cm", UpAxis::kPlusZ};
     EXPECT_EQ(imported("u.gltf", tetrahedronGltf(skinned(R"("joints":[1])")), options).bounds.max,
               glm::vec3(0.01F, 0.03F, 0.0F));
-    expectWrong(
+    expectWrongGltf(
         {node(R"("skin":3)", "nodes[0] has skin skins[3], which does not exist"),
          parts(skinned(R"("joints":[2])"), "skins[0] has joints nodes[2], which does not exist"),
          parts(skinned(R"("joints":[])"), "skins[0] has no joints"),
@@ -195,21 +195,21 @@ TEST(ImportGltf, SkinnedMeshIgnoresItsNode) {
 TEST(ImportGltf, InvalidTransformsAreRejected) {
     const std::string zeros = R"("matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0)";
     EXPECT_TRUE(loadParts({.nodes = R"({"mesh":0,)" + zeros + ",1]}"}));
-    expectWrong({node(zeros + "]", "nodes[0].matrix has 15 numbers instead of 16"),
-                 node(zeros + ",1,0]", "17 numbers"),
-                 node(zeros + R"(,"1"])", "nodes[0].matrix[15] is not a number"),
-                 node(zeros + ",2]", "last row"),
-                 node(R"("matrix":[1,0,0,5,0,1,0,6,0,0,1,7,0,0,0,1])", "is it transposed?"),
-                 node(R"("translation":[1,2])", "nodes[0].translation has 2 numbers instead of 3"),
-                 node(R"("translation":null)", "nodes[0].translation is not an array"),
-                 node(R"("translation":{})", "is not an array"),
-                 node(R"("scale":[1,null,1])", "nodes[0].scale[1] is not a number"),
-                 node(R"("rotation":[0,0,0,2])", "not a unit quaternion: its length is 2"),
-                 node(R"("rotation":[0,0,0,0])", "not a unit quaternion"),
-                 node(R"("rotation":[0,0,1])", "3 numbers instead of 4"),
-                 node(zeros + R"(,1],"scale":[1,1,1])", "use one of them"),
-                 node(R"("translation":[0,0,1e999])", "not valid JSON"),
-                 node(R"("translation":[0,0,1e200])", "not a number or beyond 1e15")});
+    expectWrongGltf({node(zeros + "]", "nodes[0].matrix has 15 numbers instead of 16"),
+                     node(zeros + ",1,0]", "17 numbers"),
+                     node(zeros + R"(,"1"])", "nodes[0].matrix[15] is not a number"),
+                     node(zeros + ",2]", "last row"),
+                     node(R"("matrix":[1,0,0,5,0,1,0,6,0,0,1,7,0,0,0,1])", "is it transposed?"),
+                     node(R"("translation":[1,2])", "nodes[0].translation has 2 numbers instead of 3"),
+                     node(R"("translation":null)", "nodes[0].translation is not an array"),
+                     node(R"("translation":{})", "is not an array"),
+                     node(R"("scale":[1,null,1])", "nodes[0].scale[1] is not a number"),
+                     node(R"("rotation":[0,0,0,2])", "not a unit quaternion: its length is 2"),
+                     node(R"("rotation":[0,0,0,0])", "not a unit quaternion"),
+                     node(R"("rotation":[0,0,1])", "3 numbers instead of 4"),
+                     node(zeros + R"(,1],"scale":[1,1,1])", "use one of them"),
+                     node(R"("translation":[0,0,1e999])", "not valid JSON"),
+                     node(R"("translation":[0,0,1e200])", "not a number or beyond 1e15")});
 }
 
 TEST(ImportGltf, VersionsAndExtensions) {
@@ -226,20 +226,21 @@ TEST(ImportGltf, VersionsAndExtensions) {
     EXPECT_TRUE(loadParts(extension("extensionsRequired", "KHR_materials_unlit")));
     EXPECT_TRUE(loadParts(extension("extensionsRequired", "KHR_node_visibility")));
     for (const char* name : {"KHR_meshopt_compression", "KHR_draco_mesh_compression", "VENDOR_unheard_of"}) {
-        expectWrong({parts(extension("extensionsRequired", name), name, ErrorCode::kUnsupported)});
+        expectWrongGltf({parts(extension("extensionsRequired", name), name, ErrorCode::kUnsupported)});
     }
     const std::string view = R"({"buffer":0,"byteOffset":0,"byteLength":48)";
-    expectWrong({{asset(R"("version":"2.1","minVersion":"2.1")"), "version '2.1'", ErrorCode::kUnsupported},
-                 {asset(R"("version":"3.0")"), "version '3.0'", ErrorCode::kUnsupported},
-                 {replaced(tetrahedronGltf(), view, view + R"(,"extensions":{"KHR_meshopt_compression":{}})"),
-                  "bufferViews[0] uses KHR_meshopt_compression", ErrorCode::kUnsupported},
-                 {asset(R"("version":2.0)"), "asset.version is not a string"},
-                 {asset(R"("version":"two")"), "asset has the invalid version 'two'"},
-                 {asset(R"("version":"2.0","minVersion":[])"), "asset.minVersion"},
-                 {asset(R"("generator":"x")"), "no glTF version"},
-                 {replaced(tetrahedronGltf(), R"("asset")", R"("assets")"), "no glTF version"},
-                 {replaced(tetrahedronGltf(), R"({"asset")", R"({"extensionsRequired":{},"asset")"),
-                  "extensionsRequired is not an array"}});
+    expectWrongGltf(
+        {{asset(R"("version":"2.1","minVersion":"2.1")"), "version '2.1'", ErrorCode::kUnsupported},
+         {asset(R"("version":"3.0")"), "version '3.0'", ErrorCode::kUnsupported},
+         {replaced(tetrahedronGltf(), view, view + R"(,"extensions":{"KHR_meshopt_compression":{}})"),
+          "bufferViews[0] uses KHR_meshopt_compression", ErrorCode::kUnsupported},
+         {asset(R"("version":2.0)"), "asset.version is not a string"},
+         {asset(R"("version":"two")"), "asset has the invalid version 'two'"},
+         {asset(R"("version":"2.0","minVersion":[])"), "asset.minVersion"},
+         {asset(R"("generator":"x")"), "no glTF version"},
+         {replaced(tetrahedronGltf(), R"("asset")", R"("assets")"), "no glTF version"},
+         {replaced(tetrahedronGltf(), R"({"asset")", R"({"extensionsRequired":{},"asset")"),
+          "extensionsRequired is not an array"}});
     // If the extension is optional, its accessors also contain the uncompressed mesh.
     EXPECT_TRUE(loadParts(
         {.primitive = R"("attributes":{"POSITION":0},"indices":1,"extensions":{)"
@@ -260,26 +261,27 @@ TEST(ImportGltf, InstancesAreRepeated) {
     EXPECT_EQ(mesh.triangles.size(), 16U);
     EXPECT_EQ(mesh.bounds.max, glm::vec3(4.0F, 8.0F, 12.0F));
     EXPECT_TRUE(mesh.warnings.empty());
-    expectWrong({parts(instances(R"("attributes":{})"), "attributes have none of TRANSLATION"),
-                 parts(instances(R"("attributes":{"TRANSLATION":1})"), "accessors[1] is not of type VEC3"),
-                 parts(instances(R"("attributes":{"TRANSLATION":7})"), "accessors[7], which does not exist"),
-                 parts(instances(""), "has no attributes"),
-                 parts(instances(R"("attributes":{"ROTATION":2})"), "not a unit quaternion"),
-                 parts(instances(R"("attributes":{"TRANSLATION":0,"ROTATION":2})"),
-                       "different counts of TRANSLATION, ROTATION and SCALE")});
+    expectWrongGltf(
+        {parts(instances(R"("attributes":{})"), "attributes have none of TRANSLATION"),
+         parts(instances(R"("attributes":{"TRANSLATION":1})"), "accessors[1] is not of type VEC3"),
+         parts(instances(R"("attributes":{"TRANSLATION":7})"), "accessors[7], which does not exist"),
+         parts(instances(""), "has no attributes"),
+         parts(instances(R"("attributes":{"ROTATION":2})"), "not a unit quaternion"),
+         parts(instances(R"("attributes":{"TRANSLATION":0,"ROTATION":2})"),
+               "different counts of TRANSLATION, ROTATION and SCALE")});
 }
 
 TEST(ImportGltf, DuplicateKeysAndInvalidJson) {
     EXPECT_TRUE(loadParts({.more = R"("extras":{"a":[{"b":1},{"b":1}]},)"}));
     EXPECT_TRUE(load(tetrahedronGltf() + std::string("\n\0\0", 3))) << "padded";
-    expectWrong({node(R"("scale":[1,1,1],"scale":[2,2,2])", "the key 'scale' twice"),
-                 node(R"("me\u0073h":0)", "the key 'mesh' twice"),
-                 parts({.more = R"("extras":{"a":[{"b":1},{"b":1,"b":1}]},)"}, "the key 'b' twice"),
-                 {tetrahedronGltf() + "x", "not valid JSON: parse error at line 1, column "},
-                 {"{\n \"asset\": ,}", "not valid JSON: parse error at line 2, column 11"},
-                 {tetrahedronGltf() + std::string("\0{}", 3), "a zero byte"},
-                 {"[]", "not an object"},
-                 {"{", "not valid JSON"}});
+    expectWrongGltf({node(R"("scale":[1,1,1],"scale":[2,2,2])", "the key 'scale' twice"),
+                     node(R"("me\u0073h":0)", "the key 'mesh' twice"),
+                     parts({.more = R"("extras":{"a":[{"b":1},{"b":1,"b":1}]},)"}, "the key 'b' twice"),
+                     {tetrahedronGltf() + "x", "not valid JSON: parse error at line 1, column "},
+                     {"{\n \"asset\": ,}", "not valid JSON: parse error at line 2, column 11"},
+                     {tetrahedronGltf() + std::string("\0{}", 3), "a zero byte"},
+                     {"[]", "not an object"},
+                     {"{", "not valid JSON"}});
 }
 
 TEST(ImportGltf, InvalidAccessorsAndIndices) {
@@ -293,7 +295,7 @@ TEST(ImportGltf, InvalidAccessorsAndIndices) {
     const auto primitive = [](const std::string& members, const std::string& words) {
         return parts({.primitive = members}, words);
     };
-    expectWrong(
+    expectWrongGltf(
         {positions(R"("bufferView":0,"count":4,"sparse":{"count":1})", "accessors[0].sparse"),
          positions(R"("count":4)", "no data", ErrorCode::kUnsupported),
          positions(R"("bufferView":0,"count":5)", "extends beyond"),
@@ -318,10 +320,10 @@ TEST(ImportGltf, InvalidAccessorsAndIndices) {
           std::tuple{"5125", 0, std::string("\xff\xff\xff\xff"), "4294967295, which is reserved"}}) {
         std::string buffer = tetrahedronBuffer();
         buffer.replace(static_cast<std::size_t>(48 + at), value.size(), value);
-        expectWrong({parts({.indices = R"("bufferView":1,"componentType":)" + std::string(kind) +
-                                       R"(,"count":6,"type":"SCALAR")",
-                            .uri = "data:;base64," + base64(buffer)},
-                           "accessors[1] has the index " + std::string(words))});
+        expectWrongGltf({parts({.indices = R"("bufferView":1,"componentType":)" + std::string(kind) +
+                                           R"(,"count":6,"type":"SCALAR")",
+                                .uri = "data:;base64," + base64(buffer)},
+                               "accessors[1] has the index " + std::string(words))});
     }
 }
 
@@ -347,9 +349,9 @@ TEST(ImportGltf, BuffersByUri) {
     }
     expectRejected(beside("b.bin", "b.bin", 71), "buffers[0] has 71 of the 72 bytes that it declares");
     const std::string data = "data:application/octet-stream;base64,";
-    expectWrong({{replaced(tetrahedronGltf(), R"("uri")", R"("url")"), "buffers[0] has no uri"},
-                 parts({.uri = data + "AAA*"}, "buffers[0] is not valid base64"),
-                 parts({.uri = data + "AAAA"}, "buffers[0] has 3 of the 72 bytes")});
+    expectWrongGltf({{replaced(tetrahedronGltf(), R"("uri")", R"("url")"), "buffers[0] has no uri"},
+                     parts({.uri = data + "AAA*"}, "buffers[0] is not valid base64"),
+                     parts({.uri = data + "AAAA"}, "buffers[0] has 3 of the 72 bytes")});
 }
 
 TEST(ImportGltf, DataUris) {
@@ -414,7 +416,7 @@ TEST(ImportGltf, SparseAndQuantizedAccessors) {
     const TriangleMesh mesh = imported("q.gltf", whole);
     EXPECT_EQ(mesh.bounds.min, glm::vec3(0, 0, -1));
     EXPECT_EQ(mesh.bounds.max, glm::vec3(1, 1, 0));
-    expectWrong(
+    expectWrongGltf(
         {{replaced(whole, R"("count":1)", R"("count":4)"), "accessors[0].sparse"},
          {replaced(whole, R"("byteLength":1})", R"("byteLength":0})"), "sparse.indices extends beyond"},
          {replaced(whole, R"("values":{"bufferView":2})", R"("values":{"bufferView":1})"),
@@ -441,7 +443,7 @@ TEST(ImportGltf, ScenesMustBeNonemptyTrees) {
         const std::string next = std::to_string(i + 1);
         unfolding += R"({"children":[)" + next + "," + next + "]},";
     }
-    expectWrong(
+    expectWrongGltf(
         {{replaced(tetrahedronGltf(), R"("scene":0)", R"("scene":1)"), "scenes[1], which does not exist"},
          {replaced(replaced(tetrahedronGltf(), R"("scene":0,)", ""), R"("scenes")", R"("scene_")"),
           "it has no scene"},

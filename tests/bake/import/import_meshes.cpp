@@ -16,7 +16,7 @@ constexpr std::array<float, 12> kCorners = {0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3};
 constexpr std::array<std::uint16_t, 12> kFaces = {0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2};
 
 template <class Values>
-std::string bytesOf(const Values& values) {
+std::string meshBytes(const Values& values) {
     return {reinterpret_cast<const char*>(values.data()), sizeof(values[0]) * values.size()};
 }
 
@@ -50,7 +50,8 @@ std::string tetrahedronStl() {
 }
 
 std::string tetrahedronBinaryStl(const std::string& header) {
-    std::string text = header + std::string(80 - header.size(), 'x') + bytesOf(std::array{std::uint32_t{4}});
+    std::string text =
+        header + std::string(80 - header.size(), 'x') + meshBytes(std::array{std::uint32_t{4}});
     for (std::size_t i = 0; i < kFaces.size(); ++i) {
         text += std::string(i % 3 == 0 ? 12 : 0, '\0');
         text.append(reinterpret_cast<const char*>(&kCorners.at(3U * kFaces[i])), 12);
@@ -69,8 +70,9 @@ std::string tetrahedron3ds(float master_scale) {
     };
     const std::string four("\4\0", 2);
     const std::array<std::uint16_t, 16> faces = {0, 2, 1, 0, 0, 1, 3, 0, 1, 2, 3, 0, 0, 3, 2, 0};
-    const std::string mesh = chunk(0x4110, four + bytesOf(kCorners)) + chunk(0x4120, four + bytesOf(faces));
-    const std::string scaled = master_scale == 1.0F ? "" : chunk(0x0100, bytesOf(std::array{master_scale}));
+    const std::string mesh =
+        chunk(0x4110, four + meshBytes(kCorners)) + chunk(0x4120, four + meshBytes(faces));
+    const std::string scaled = master_scale == 1.0F ? "" : chunk(0x0100, meshBytes(std::array{master_scale}));
     return chunk(0x4D4D, chunk(0x3D3D, scaled + chunk(0x4000, std::string("t\0", 2) + chunk(0x4100, mesh))));
 }
 
@@ -104,7 +106,7 @@ std::string tetrahedronFbx(int up, int sign, const std::string& unit) {
 }
 
 std::string tetrahedronBuffer() {
-    return bytesOf(kCorners) + bytesOf(kFaces);
+    return meshBytes(kCorners) + meshBytes(kFaces);
 }
 
 std::string tetrahedronGltf(const GltfParts& parts) {

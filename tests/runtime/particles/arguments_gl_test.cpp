@@ -120,8 +120,8 @@ TEST_P(ArgumentsGlTest, Bodies) {
 
 TEST_P(ArgumentsGlTest, Events) {
     for (const EventOptions& wrong :
-         {EventOptions{.max_per_step = 0}, EventOptions{.max_per_step = (1U << 24) + 1}, EventOptions{.min_speed = -1.0F},
-          EventOptions{.min_speed = kNanFloat}}) {
+         {EventOptions{.max_per_step = 0}, EventOptions{.max_per_step = (1U << 24) + 1},
+          EventOptions{.min_speed = -1.0F}, EventOptions{.min_speed = kNanFloat}}) {
         EXPECT_TRUE(refused(setEvents(*particles_, wrong)));
     }
     EXPECT_TRUE(refused(setEvents(*particles_, std::vector<EventOptions>(kEventLists + 1))));
