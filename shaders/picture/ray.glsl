@@ -19,7 +19,7 @@ float aheadOfHeights(uvec2 record, vec3 q, vec3 d) {
     float dz = reliefPatchAcross(record, d).z - reliefPatchAcross(record, vec3(0.0)).z;
     float thick = 255.0 * reliefPatchStep(record);
     float to = z > thick ? thick - z : z < 0.0 ? -z : 0.0;
-    return to == 0.0 || to * dz > 0.0 ? to / dz : 1e30;
+    return to == 0.0 ? 0.0 : to * dz > 0.0 ? to / dz : 1e30;
 }
 
 // Returns a t up to which a ray from p, outside, meets no surface of map i: at most where it leaves the cell of p.

@@ -33,10 +33,10 @@ json stdout "(d['closed_holes'], d['shape']) == (0, None) and d['provenance']['o
 # Walls have two sides unless --as overrides it. The container records their thickness for checks.
 grep -v '^f 4 3 2 1' box.obj >walls.obj
 expect 0 "$relief" bake walls.obj -o walls.relief --budget 100kB --thickness 0.2 --json
-json stdout "d['shape']['sheets'] == 1 and abs(d['shape']['thickness'] - 0.2) < 1e-6 and d['wrong_percent'] < 5"
+json stdout "d['shape']['sheets'] == 1 and abs(d['shape']['thickness_max'] - 0.2) < 1e-6 and d['wrong_percent'] < 5"
 json stdout "d['provenance']['options'].endswith(' --thickness 0.2')"
 expect 0 "$relief" check walls.relief --mesh walls.obj --samples 2000 --max-error 5 --json
-json stdout "d['mesh']['shape']['sheets'] == 1 and abs(d['mesh']['shape']['thickness'] - 0.2) < 1e-6"
+json stdout "d['mesh']['shape']['sheets'] == 1 and abs(d['mesh']['shape']['thickness_max'] - 0.2) < 1e-6"
 expect 0 "$relief" bake walls.obj -o solid.relief --budget 100kB --as solid --no-check --json
 json stdout "d['shape']['solids_with_holes'] == 1 and d['wrong_percent'] is None"
 json stdout "' --as solid' in d['provenance']['options']"

@@ -20,7 +20,7 @@ done
 "$relief" export p.relief -o patches --resolution 100
 [ "$(find patches -name 'view_[+-][xyz].exr' | wc -l)" -eq 6 ] && [ "$(find patches -type f | wc -l)" -eq 12 ] || die "six views and six faces, not $(ls patches)"
 exrheader patches/view_+x.exr >header
-for word in 'depth.front, 32-bit floating' 'depth.back, 32-bit floating' normal.Z worldToNDC relief.unit relief.bounds_min '(99 '; do
+for word in 'depth.front, 32-bit floating' 'depth.back, 32-bit floating' normal.Z worldToNDC relief.unit relief.bounds_min ' 99)'; do
     grep -q "$word" header || die "view_+x.exr lacks $word: $(cat header)"
 done
 "$relief" export p.relief -o small --resolution 40

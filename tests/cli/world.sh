@@ -40,7 +40,7 @@ container_hashes w | diff first - || die "a moved node changes a container"
 level level.gltf x=3 high=1.01
 expect_error 3 "level.gltf.*'box'" "$relief" check w/world.json --mesh level.gltf
 expect 0 "$relief" bake level.gltf --world w --budget 200kB --json
-json stdout "d['baked'] == 2 and d['up_to_date'] == 1 and len(d['removed']) == 3 and sum('-coarse-' in file for file in d['removed']) == 1 and d['colliders'][0]['state'] == 'up to date'"
+json stdout "d['baked'] == 2 and d['up_to_date'] == 1 and len(d['removed']) == 3 and sum('-coarse-' in file for file in d['removed']) == 1 and d['colliders'][0]['state'] == 'up_to_date'"
 [ "$(find w -name '*.relief' | wc -l)" -eq 4 ] && [ "$(find w -name 'box-coarse-*' | wc -l)" -eq 1 ] || die "containers are left over: $(ls w)"
 
 # A damaged or missing container is baked again, with the same bytes.

@@ -90,13 +90,13 @@ on = "collision"
 parent = "drop"
 type = "splash"
 count = [1, 3]
-most = 60
+max_per_step = 60
 lifetime = [0.2, 0.4]
 [[spawn]]
 on = "death"
 parent = "drop"
 type = "splash"
-most = 30
+max_per_step = 30
 )";
     const auto loaded = required(loadAll(folder.write("scene.toml", scene), {}));
     const auto run = [&](bool log, std::size_t& longest) {
