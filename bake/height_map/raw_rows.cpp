@@ -29,7 +29,7 @@ RawFormat formatOf(const HeightsSpec& spec) {
 }
 
 /// Whether a 16-bit sample is -32768 in int16, which usually stands for no data. The search for better settings ignores
-/// these samples in every format: they are spikes that hide how smooth the ground is.
+/// these samples in every format, unless they are most of a file: they are spikes that hide how smooth the ground is.
 bool isUsualHole(float sample, SampleType type) {
     return (type == SampleType::kInt16 && sample == -32768.0F) ||
            (type == SampleType::kUint16 && sample == 32768.0F);
@@ -123,10 +123,14 @@ std::optional<Variation> variationOf(std::span<const std::byte> bytes, const Hei
             RawRows(row, columns, format).next(std::span(samples).subspan(i * columns, columns)));
     }
     const double hole = holeOf(spec, format);
+    const auto usual = std::count_if(samples.begin(), samples.end(),
+                                     [&](float sample) { return isUsualHole(sample, format.type); });
+    const bool ignored = 2 * static_cast<std::size_t>(usual) <= samples.size();
     constexpr float kLeast = 1e-20F;  // small integers read as floats are smaller
     const auto isHeight = [&](float sample) {
         return std::abs(double{sample}) <= kHeightMax && double{sample} != hole &&
-               !isUsualHole(sample, format.type) && (sample == 0.0F || std::abs(sample) >= kLeast);
+               !(ignored && isUsualHole(sample, format.type)) &&
+               (sample == 0.0F || std::abs(sample) >= kLeast);
     };
     double sum = 0.0;
     double count = 0.0;

@@ -63,6 +63,9 @@ double volumeWithin(const TriangleMesh& mesh, const std::vector<const Rim*>& rim
         for (std::size_t i = 1; i + 1 < rim->vertices.size(); ++i) {
             triangles.push_back(first + glm::uvec3(rim->vertices[0], rim->vertices[i], rim->vertices[i + 1]));
         }
+        for (const glm::uvec3& triangle : rim->missing) {
+            triangles.push_back(first + triangle);
+        }
     }
     return std::abs(enclosedVolume(mesh.positions, triangles, mesh.bounds.center()).value_or(0.0));
 }
@@ -75,8 +78,16 @@ std::vector<const Rim*> pointersTo(const std::vector<Rim>& rims) {
     return pointers;
 }
 
-/// Cuts spikes off a rim, each of which is a missing triangle, unless a large fraction of the corners are spikes.
-void cutSpikes(Rim& rim) {
+bool hasFace(const TriangleMesh& mesh, const glm::uvec3& corners) {
+    return std::ranges::any_of(mesh.triangles, [&](const glm::uvec3& face) {
+        const auto isCorner = [&](std::uint32_t v) { return v == face.x || v == face.y || v == face.z; };
+        return isCorner(corners.x) && isCorner(corners.y) && isCorner(corners.z);
+    });
+}
+
+/// Cuts spikes off a rim, each of which is a triangle that the mesh lacks, unless a large fraction of the corners are
+/// spikes.
+void cutSpikes(const TriangleMesh& mesh, Rim& rim) {
     const std::size_t count = rim.vertices.size();
     std::vector<bool> cut(count, false);
     for (std::size_t i = 0; i < count; ++i) {
@@ -85,9 +96,10 @@ void cutSpikes(Rim& rim) {
         const double base = distance(rim.places[before], rim.places[after]);
         const double sides =
             std::min(distance(rim.places[before], rim.places[i]), distance(rim.places[i], rim.places[after]));
-        if (!cut[before] && !cut[after] && base < kSpike * sides) {
+        const glm::uvec3 corners(rim.vertices[before], rim.vertices[i], rim.vertices[after]);
+        if (!cut[before] && !cut[after] && base > 0.0 && base < kSpike * sides && !hasFace(mesh, corners)) {
             cut[i] = true;
-            rim.missing.emplace_back(rim.vertices[before], rim.vertices[i], rim.vertices[after]);
+            rim.missing.push_back(corners);
         }
     }
     if (kSpikesOfCorners * rim.missing.size() > count) {
@@ -116,7 +128,7 @@ RimmedShell rimmedShell(const OpenShell& shell, std::size_t index) {
             rim.vertices.push_back(step.from);
             rim.places.emplace_back(open->positions[step.from]);
         }
-        cutSpikes(rim);
+        cutSpikes(shell.mesh, rim);
         for (const glm::dvec3& place : rim.places) {
             rim.bounds.add(place);
         }

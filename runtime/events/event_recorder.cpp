@@ -121,9 +121,13 @@ StepEvents EventRecorder::withIds(const ParticleSystem& particles, EventList::Co
         event.id = particles.idOf(event.index);
         // Back to the first id that was replaced after the event.
         std::uint64_t at = event.index < newest_.size() ? newest_[event.index] : 0;
-        while (at > dropped_ && replaced_[at - 1 - dropped_].step >= collected.number) {
-            event.id = replaced_[at - 1 - dropped_].id;
-            at = replaced_[at - 1 - dropped_].previous;
+        while (at > dropped_) {
+            const Replaced& one = replaced_[static_cast<std::size_t>(at - 1 - dropped_)];
+            if (one.step < collected.number) {
+                break;
+            }
+            event.id = one.id;
+            at = one.previous;
         }
     }
     return std::move(collected.events);

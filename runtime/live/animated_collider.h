@@ -48,7 +48,7 @@ class AnimatedCollider {
                                                          const AnimatedColliderOptions& options = {});
 
     /// Checks a pose. Errors: kUsage (wrong number of joints or weights, a number that is not finite, a pose that
-    /// exceeds the box_size).
+    /// exceeds the box).
     [[nodiscard]] Result<void> check(const MeshPose& pose) const;
     /// Moves the vertices; update() renders them. Call it at most once between two updates.
     /// Errors: those of check(); kUsage (called twice). The state is then unchanged.

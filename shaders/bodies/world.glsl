@@ -5,7 +5,7 @@
 //     from texel 0             ReliefMap of each map, in RELIEF_WORLD_MAP_TEXELS texels. With RELIEF_PLACED each body
 //                              has one map of patches in world space: map i belongs to body i
 //     u_relief_world_place.y   bodies, in RELIEF_WORLD_BODY_TEXELS texels each: index of the first map, number of maps,
-//                              1 if live, the bit of its group in ParticleType::collides; scale (world units per object
+//                              1 if live, the bit of its group in ParticleType::collides_with; scale (world units per object
 //                              unit), restitution, 1 - friction, 1 if it moves in the step; world to object space at
 //                              the end of the step (a rotation divided by the scale), three rows; the transform of a
 //                              point of the body from the start of the step to its end, in world space, three rows

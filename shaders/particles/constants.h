@@ -14,7 +14,7 @@ enum class OnCollision : std::uint8_t {
     kDie = 3,     ///< disappears at once; its index is freed at the end of its lifetime
 };
 
-/// Bit of the floor in ParticleType::collides; lower bits are groups of bodies.
+/// Bit of the floor in ParticleType::collides_with; lower bits are groups of bodies.
 inline constexpr int kGroundBit = 8;
 
 /// The result of the last step. The state texture stores kStopped for the floor and kStopped + 1 + b for body b.

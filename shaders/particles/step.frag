@@ -2,7 +2,7 @@
 // A step with the floor and, with RELIEF_COLLIDER, colliders. In a compute shader, one invocation is one particle.
 #if defined(RELIEF_MASKS)
 
-uniform int u_collides[RELIEF_TYPES];  // see ParticleType::collides
+uniform int u_collides[RELIEF_TYPES];  // see ParticleType::collides_with
 int g_collides;                        // mask of this invocation's particle
 
 bool collidesWith(int bits) {

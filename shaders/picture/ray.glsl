@@ -16,7 +16,8 @@ void slabs(vec3 p, vec3 d, vec3 box_min, vec3 box_max, out vec3 near, out vec3 f
 // Returns the t at which a ray from q meets the range of heights of a patch; 0 in that range.
 float aheadOfHeights(uvec2 record, vec3 q, vec3 d) {
     float z = reliefPatchAcross(record, q).z - (float((record.x >> 11u) & 0xfffu) - 2048.0) * (1.0 / 512.0);
-    float dz = reliefPatchAcross(record, d).z - reliefPatchAcross(record, vec3(0.0)).z;
+    float longest = max(abs(d.x), max(abs(d.y), abs(d.z)));  // differences of rounded numbers need a scale near 1
+    float dz = longest * (reliefPatchAcross(record, d / longest).z - reliefPatchAcross(record, vec3(0.0)).z);
     float thick = 255.0 * reliefPatchStep(record);
     float to = z > thick ? thick - z : z < 0.0 ? -z : 0.0;
     return to == 0.0 ? 0.0 : to * dz > 0.0 ? to / dz : 1e30;
@@ -26,6 +27,9 @@ float aheadOfHeights(uvec2 record, vec3 q, vec3 d) {
 float emptyAhead(int i, vec3 p, vec3 d) {
     int first = reliefMapPlace(i).x;
     ReliefLeaf leaf = reliefPatchLeaf(u_relief_front_back, reliefMapPlace(i), p);
+    if (leaf.inside) {  // by rounding of p
+        return 0.0;
+    }
     uvec2 record = leaf.record;
     if ((record.x & 3u) == 2u) {  // an octant without a record
         leaf.q = 2.0 * leaf.q - step(vec3(1.0), 2.0 * leaf.q);
@@ -65,7 +69,7 @@ float emptyUntil(int i, vec3 origin, vec3 d, float from) {
 
 #endif
 
-#if RELIEF_BODIES > 0 && RELIEF_PLACED
+#if RELIEF_BODIES > 0 && RELIEF_PLACED && defined(RELIEF_HAS_PATCHES)
 
 const int CELLS_MAX = 1024;  // of a level
 const int BODIES_FEW = 32;   // are visited faster without the broad phase
@@ -81,6 +85,9 @@ float nextSurface(vec3 origin, vec3 d, float from, float end) {
     }
     for (int level = u_relief_world_place.w - 1; level >= 0; --level) {
         float cells = intBitsToFloat(u_relief_levels[level].x);  // per world unit
+        if (cells == 0.0) {  // of bodies without bounds
+            return from;
+        }
         float beyond = 1e-3 / (cells * max(abs(d.x), max(abs(d.y), abs(d.z))));  // into the next cell despite rounding
         float t = from;
         for (int i = 0; i < CELLS_MAX && t < next; ++i) {

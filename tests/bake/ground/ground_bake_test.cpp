@@ -218,6 +218,10 @@ TEST_F(GroundBakes, WrongSampleFormatsGetAdvice) {
     std::mt19937 random(1);
     write("h.raw", 17, 17, [&](double, double) { return sample(static_cast<double>(random() % 65536)); });
     expectHas(tooFar(right), "; check --heights type and order too");
+    // Flat at half of the range, which is -32768 as int16.
+    write("h.raw", 17, 17,
+          [&](double x, double z) { return sample(32768.0 + (x > 10 ? 3.0 * (x - 10) + z : 0.0)); });
+    EXPECT_EQ(warned("spacing=1000,low=0,high=65535"), "");
     // Passes 32768 between two samples: that value is -32768 as int16, which the search takes for a hole.
     write("h.raw", 17, 17, [&](double x, double) { return sample(32768.0 + 1000.0 * (x - 8.5)); });
     EXPECT_EQ(tooFar(right).find("order"), std::string::npos);

@@ -407,7 +407,7 @@ TEST_P(MeshStepGlTest, ParticlesMoveAsAmongPatches) {
         required(MeshQuery::build(test::joined({test::makeTorusMesh(1.0, 0.35, 96, 48),
                                                 test::makeBoxMesh({0.1, 0.2, 1.9}, {0.9, 0.3, 0.2}, turn)})));
     const BenchScene scene =
-        makeBenchScene(test::bakeSpecs(query.prepared(), {"patches:bytes=200000"}), kParticles);
+        makeBenchScene(test::bakeSpecs(query.prepared(), {"patches:budget=200000"}), kParticles);
     const MeshTree tree = treeOf(query.mesh());
     BenchSystem patches = required(makeBenchSystem(scene, GetParam()));
     RivalStep exact = required(RivalStep::create(required(makeMeshRival(tree)), scene, GetParam()));
