@@ -42,8 +42,7 @@ static func xxh3(data: PackedByteArray, at: int, size: int) -> int:
 		for i in size / 16:
 			sum = avalanche(sum) if i == 8 else sum
 			sum += mix.call(16 * i, 16 * i if i < 8 else 16 * i - 125)
-		sum = avalanche(sum) if size < 144 else sum
-		return avalanche(sum + mix.call(size - 16, 119))
+		return avalanche((avalanche(sum) if size < 144 else sum) + mix.call(size - 16, 119))
 	var lanes: Array[int] = [P32[2], P64[0], P64[1], P64[2], P64[3], P32[1], P64[4], P32[0]]
 	var stripes := (size - 1) / 64
 	for stripe in stripes + 1:
