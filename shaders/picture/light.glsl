@@ -28,8 +28,12 @@ bool blocked(vec3 p, vec3 d, float reach, int steps, float jitter) {
     float next = span.x;
     for (int i = 0; i < steps; ++i) {
         float t = span.x + (float(i) + jitter) * stride;
-        if (t >= next && insideAt(p, d, t, 0.0, span.y, next)) {
-            return true;
+        if (t >= next) {
+            ReliefField field = reliefSolid(p + t * d);
+            if (reliefInside(field)) {
+                return true;
+            }
+            next = nextTest(field, p, d, t, 0.0, span.y);
         }
     }
     return false;

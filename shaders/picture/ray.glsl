@@ -114,27 +114,17 @@ float nextSurface(vec3 origin, vec3 d, float from, float end) {
     return next;
 }
 
-// Returns whether the ray is inside at t. `next`: the next t to test while outside, at least `stride` further.
-bool insideAt(vec3 origin, vec3 d, float t, float stride, float end, out float next) {
-    bool inside = reliefInside(reliefSolid(origin + t * d));
-    next = min(t + stride, end);
-    if (!inside) {
-        next = max(next, nextSurface(origin, d, t, end));
-    }
-    return inside;
-}
+#endif
 
-#else
-
-bool insideAt(vec3 origin, vec3 d, float t, float stride, float end, out float next) {
-    ReliefField field = reliefSolid(origin + t * d);
-    next = min(t + stride, end);
-#if defined(RELIEF_HAS_PATCHES) && RELIEF_BODIES == 0
-    if (field.map >= 0 && field.distance >= 0.0 && reliefIsPatches(reliefMapInfo(field.map))) {
+// Returns the next t to test on a ray that is outside at t: at least `stride` further. field: at t.
+float nextTest(ReliefField field, vec3 origin, vec3 d, float t, float stride, float end) {
+    float next = min(t + stride, end);
+#if RELIEF_BODIES > 0 && RELIEF_PLACED && defined(RELIEF_HAS_PATCHES)
+    next = max(next, nextSurface(origin, d, t, end));
+#elif defined(RELIEF_HAS_PATCHES) && RELIEF_BODIES == 0
+    if (field.map >= 0 && reliefIsPatches(reliefMapInfo(field.map))) {
         next = max(next, min(emptyUntil(field.map, origin, d, t), end));
     }
 #endif
-    return reliefInside(field);
+    return next;
 }
-
-#endif

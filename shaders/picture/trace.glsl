@@ -29,8 +29,8 @@ float hit(vec3 origin, vec3 d, vec2 t) {
     int left = u_bisections;
     float at = t.x;
     for (int i = 0; i < u_steps_max && left > 0; ++i) {
-        float next;
-        bool inside = insideAt(origin, d, at, stride, t.y, next);
+        ReliefField field = reliefSolid(origin + at * d);
+        bool inside = reliefInside(field);
         if (inner < 0.0) {
             if (inside && i == 0) {
                 return -2.0;
@@ -43,7 +43,7 @@ float hit(vec3 origin, vec3 d, vec2 t) {
         }
         inner = inside ? at : inner;
         outer = inside ? outer : at;
-        at = inner < 0.0 ? next : 0.5 * (outer + inner);
+        at = inner < 0.0 ? nextTest(field, origin, d, at, stride, t.y) : 0.5 * (outer + inner);
     }
     return inner;
 }

@@ -31,11 +31,12 @@ void main() {
     o_counts = vec4(0.0);
     float t = 0.0;
     while (t < 1.0) {
-        float next;
-        if (insideAt(origin, d, t, stride, 1.0, next)) {
+        ReliefField field = reliefSolid(origin + t * d);
+        if (reliefInside(field)) {
             t += stride;
             continue;
         }
+        float next = nextTest(field, origin, d, t, stride, 1.0);
         o_counts += vec4(1.0, (next - t) / stride, 0.0, 0.0);
         if (next > t + 1.5 * stride) {
             for (int part = 1; part < 32; ++part) {
