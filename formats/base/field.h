@@ -111,7 +111,7 @@ struct FieldInfo {
     std::string_view must = {};
     char letter = '\0';     ///< short option: 'j'
     bool recorded = false;  ///< bake options: affects the collider's bytes and is recorded in its provenance
-    std::string_view details = {};  ///< more sentences, for --manual and the README
+    std::string_view details = {};  ///< more sentences, for --manual and the manual pages
 };
 
 [[nodiscard]] constexpr FieldInfo leftOut(FieldInfo info) {

@@ -165,6 +165,9 @@ void SceneSweep::add(const Scene& scene, std::span<const Emitter> emitters) {
 }
 
 void SceneSweep::add(const Scene& scene, std::span<const Birth> births) {
+    if (births.empty()) {
+        return;
+    }
     std::vector<ParticleType> types(scene.types.begin(), scene.types.end());
     types.emplace_back();                                    // of births without a type
     std::vector<std::optional<float>> speeds(types.size());  // of the fastest birth

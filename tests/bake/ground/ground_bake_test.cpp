@@ -277,11 +277,11 @@ class GroundChecks : public RawHeights {
         if (tiles) {
             return load();
         }
-        LoadedWorld alone;
-        alone.world.colliders.emplace_back();
-        alone.world.bodies.emplace_back();
-        alone.colliders.push_back(*readContainer(result.container));
-        return WorldField(std::move(alone));
+        LoadedWorld single;
+        single.world.colliders.emplace_back();
+        single.world.bodies.emplace_back();
+        single.colliders.push_back(*readContainer(result.container));
+        return WorldField(std::move(single));
     }
     [[nodiscard]] Result<GroundAccuracy> tryCheck(const char* name, const HeightsSpec& heights,
                                                   const WorldField& field,

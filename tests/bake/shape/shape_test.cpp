@@ -367,10 +367,10 @@ TEST(Shape, WallThatMayBeAClothedBodyIsReported) {
         // Duplicates restart the classification.
         const ShapeReport report = shaped(joined({inner, outer, ball, ball})).report;
         expectKinds(report, 1, 1, 0, 0);
-        const ShapeReport alone = shaped(joined({inner, outer})).report;
-        expectKinds(alone, 0, 1, 0, 0);
-        EXPECT_EQ(alone.ambiguous_walls, report.ambiguous_walls);
-        return alone.ambiguous_walls;
+        const ShapeReport pair = shaped(joined({inner, outer})).report;
+        expectKinds(pair, 0, 1, 0, 0);
+        EXPECT_EQ(pair.ambiguous_walls, report.ambiguous_walls);
+        return pair.ambiguous_walls;
     };
     EXPECT_EQ(unclear(jacket, torso), 1U);
     EXPECT_EQ(unclear(reversed(jacket), reversed(torso)), 1U);
