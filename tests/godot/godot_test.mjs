@@ -194,3 +194,14 @@ test("no more of 10,000 particles are inside the mesh than relief check predicts
         }
     }
 });
+
+// In the third life. If a particle kept its velocity, it would fall by 2 per second.
+test("particles are at rest when they are born again", async () => {
+    await godot.line("end", 300);
+    for (let snapshot = 0; snapshot < 3; ++snapshot) {
+        const speeds = (await godot.particles(`again ${snapshot}`)).map(({ velocity }) => Math.hypot(...velocity));
+        const [least, greatest] = [Math.min(...speeds), Math.max(...speeds)];
+        console.log(`again ${snapshot}: speeds from ${least} to ${greatest}`);
+        assert.ok(speeds.length >= 10000 && greatest < 0.4 * 2 + 0.05);
+    }
+});

@@ -8,6 +8,7 @@ const PLAYED := {
 	"rest": {"rest_on_contact": true},
 	"free": {},  # with an empty collider
 	"turned": {"restitution": 0.4, "friction": 0.1},  # the body is turned by 90 degrees, scaled and moved
+	"again": {},  # each life lasts 0.4 s
 }
 
 
@@ -128,7 +129,7 @@ func _play(collider: ReliefCollider, name_: String) -> void:
 		system.body.transform = Transform3D(Basis(Vector3.UP, PI / 2).scaled(Vector3.ONE * 0.8), Vector3(0.1, 0, 0))
 		add_child(system.body)
 	system.position.y = 2.4
-	system.lifetime = 60.0
+	system.lifetime = 0.4 if name_ == "again" else 60.0
 	system.fixed_fps = 60
 	system.preprocess = 1.0
 	system.use_fixed_seed = true
