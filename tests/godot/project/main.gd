@@ -26,6 +26,7 @@ func _ready() -> void:
 	for frame in 4:
 		await get_tree().process_frame
 	_keep("points", POINTS)
+	_keep("level", POINTS + 1)
 	print("evaluated")
 	for system: String in PLAYED:
 		_play(collider, system)
@@ -114,6 +115,18 @@ func _evaluate(collider: ReliefCollider) -> void:
 			FileAccess.get_file_as_bytes("res://points.bin"))
 	var system := _system(collider, POINTS, load("res://query.gdshader"))
 	system.process_material.set_shader_parameter("points", ImageTexture.create_from_image(points))
+	var level := _system(collider, POINTS + 1, load("res://level.gdshader"))
+	level.process_material.set_shader_parameter("points", ImageTexture.create_from_image(points))
+	_upload(level, "texels", 2048, Image.FORMAT_RGBA16I, 8)
+	_upload(level, "bodies", 3584, Image.FORMAT_RGBA16I, 8)
+	_upload(level, "cells", 2048, Image.FORMAT_RG16I, 4)
+
+
+# A texture of an exported level.
+func _upload(system: ReliefParticles, name_: String, width: int, format: Image.Format, texel: int) -> void:
+	var data := FileAccess.get_file_as_bytes("res://level." + name_)
+	var image := Image.create_from_data(width, data.size() / (width * texel), false, format, data)
+	system.process_material.set_shader_parameter("u_" + name_, ImageTexture.create_from_image(image))
 
 
 # Particles fall from a box above the bunny. In the first frame, a second has passed.
