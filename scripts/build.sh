@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Builds one preset of CMakePresets.json: scripts/build.sh release|tools|debug|sanitize|fuzz|web [TARGET]…
+# Builds one preset of CMakePresets.json: scripts/build.sh release|tools|packages|debug|sanitize|fuzz|web [TARGET]…
 # Prints the folder of the executables. web builds the runtime as WebAssembly (runtime/web/README.md), and installs the
 # packages it needs.
 set -euo pipefail

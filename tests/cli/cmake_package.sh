@@ -17,7 +17,8 @@ done
 ! grep -rIlF "$RELIEF_SOURCE" "$prefix" --include='*.cmake' --include='*.pc' --include='*.h' --include='*.1' ||
     die "the installed tree contains the build path"
 
-# All relative links of installed pages work, and the pages that users need exist.
+# All links work, of files and of pages, and the pages that users need exist.
+[ -z "$(find "$prefix" -xtype l)" ] || die "broken links: $(find "$prefix" -xtype l)"
 python3 "$RELIEF_SOURCE/tests/cli/links.py" "$prefix" >links || die "dead links: $(cat links)"
 for page in bake/recipe/README.md bake/measure/trust.md bake/measure/accuracy.md runtime/bench/measurements.md \
     samples/README.md samples/python/plots.py; do

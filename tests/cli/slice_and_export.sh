@@ -67,6 +67,14 @@ for engine in c godot unity unreal three playcanvas; do
         [ -n "$(find engine_$engine -name "${file##*/}")" ] || die "$engine lacks $file"
     done
 done
+# Commands of the pages find the exported files.
+cp engine.relief bunny.relief
+for page in own_engine unity unreal; do
+    mkdir "steps_$page"
+    grep -E '^ *(cc|cd|mkdir|relief export|\./)' "$RELIEF_SOURCE/samples/$page/README.md" >"steps_$page/commands"
+    [ "$(wc -l <"steps_$page/commands")" -ge 2 ] || die "the page of $page has no commands"
+    (cd "steps_$page" && cp ../bunny.relief . && PATH=$RELIEF_BIN:$PATH sh -e commands) >log 2>&1 || die "$page: $(tail log)"
+done
 expect_error 1 "engine is 'quake' but must be one of c|godot" "$relief" export engine.relief --engine quake none
 expect_error 1 'engine' "$relief" export engine.relief --engine c
 expect_error 1 'b.relief.*: engines read one map of patches.* bake it again without --map' "$relief" export b.relief --engine c none

@@ -41,6 +41,31 @@ function choosePoints({ vertices }) {
     return chosen;
 }
 
+/** Rows of `relief query` at the points: x, y, z, distance, normal; not for points that are not finite. */
+async function queried(file) {
+    const finite = points.filter((p) => p.every(Number.isFinite));
+    await writeFile(container("points.csv"), finite.map((p) => p.join(",") + "\n").join(""));
+    const csv = run("query", file, "--points", container("points.csv"), "-o", "-", "--distance", "plane");
+    const rows = csv.trim().split("\n").slice(1)
+        .map((line) => line.split(",").map((word) => (word === "inf" ? Infinity : Number(word))));
+    return points.map((p) => (p.every(Number.isFinite) ? rows.shift() : [...p, Infinity]));
+}
+
+/** The functions of the page for levels, changed for Godot as it describes, in a shader that evaluates points. */
+async function levelShader() {
+    const page = await readFile(path.join(root, "bake/engines/README.md"), "utf8");
+    const block = (name) => page.split(`<!-- glsl: ${name} -->\n\`\`\`glsl\n`)[1].split("```")[0];
+    let level = block("level").replace(/^(uniform \w+ usampler2D \w+);/gm, "$1 : filter_nearest, repeat_disable;");
+    for (const code of block("level in Godot").split("\n\n")) {
+        const begin = level.indexOf(code.split("\n")[0]);
+        assert.ok(begin >= 0, code);
+        level = level.slice(0, begin) + code + level.slice(level.indexOf("\n}\n", begin) + 2);
+    }
+    const query = await readFile(path.join(root, "tests/godot/project/query.gdshader"), "utf8");
+    return query.replace("void process", `${level}\nvoid process`)
+        .replace("reliefDistance(relief_texels, collider, p)", "levelDistance(p)");
+}
+
 before(async () => {
     folder = await mkdtemp(path.join(os.tmpdir(), "relief-godot-"));
     mesh = await readObj(kMesh);
@@ -54,6 +79,9 @@ before(async () => {
     }
     run("bake", container("pyramid.obj"), "-o", container("compressed.relief"), "-q", "--compress", "3");
     run("bake", container("pyramid.obj"), "-o", container("paper.relief"), "-q", "--map", "fixed8:size=16");
+    execFileSync("python3", [path.join(root, "tests/cli/level.py"), container("level.glb")]);
+    run("bake", container("level.glb"), "--world", container("level"), "--budget", "200kB", "-q");
+    run("export", container("level/world.json"), "--engine", "godot", container("exported"), "-q");
     const bytes = Object.fromEntries(await Promise.all(["bunny", "small", "two", "compressed", "paper"].map(
         async (name) => [name, await readFile(container(`${name}.relief`))])));
     const page = await readFile(path.join(root, "samples/godot/README.md"), "utf8");
@@ -62,6 +90,8 @@ before(async () => {
     files = {
         ...(await readFolder(path.join(root, "samples/godot"))),
         ...(await readFolder(path.join(root, "tests/godot/project"))),
+        ...(await readFolder(container("exported"))),
+        "level.gdshader": Buffer.from(await levelShader()),
         "bunny.relief": bytes.bunny,
         "small.relief": bytes.small,
         "page.gdshader": Buffer.from(/```glsl\n(.*?)```/s.exec(page)[1]),
@@ -146,13 +176,7 @@ test("changed containers with valid checksums get the verdict of relief check", 
 
 test("4,096 points have the distances and normals of relief query", async () => {
     await godot.line("evaluated");
-    const finite = points.filter((p) => p.every(Number.isFinite));
-    await writeFile(container("points.csv"), finite.map((p) => p.join(",") + "\n").join(""));
-    const csv = run("query", container("bunny.relief"), "--points", container("points.csv"), "-o", "-",
-                    "--distance", "plane");
-    const rows = csv.trim().split("\n").slice(1)
-        .map((line) => line.split(",").map((word) => (word === "inf" ? Infinity : Number(word))));
-    const expected = points.map((p) => (p.every(Number.isFinite) ? rows.shift() : [...p, Infinity]));
+    const expected = await queried(container("bunny.relief"));
     const found = await godot.particles("points");
     let [distance, normal, equal, inside] = [0, 0, 0, 0];
     for (const [i, row] of expected.entries()) {
@@ -174,6 +198,24 @@ test("4,096 points have the distances and normals of relief query", async () => 
     assert.ok(distance < 2.5e-7 && normal < 5e-7);
 });
 
+// Far from all bodies, the distance is a bound.
+test("4,096 points of an exported level have the distances of relief query", async () => {
+    await godot.line("evaluated");
+    const found = await godot.particles("level");
+    let [inside, near, distance] = [0, 0, 0];
+    for (const [i, [, , , expected]] of (await queried(container("level/world.json"))).entries()) {
+        const f = found[i].custom[3];
+        assert.equal(f < 0, expected < 0, `sign at ${points[i]}`);
+        inside += f < 0 ? 1 : 0;
+        if (Math.abs(expected) < 0.1) {
+            near += 1;
+            distance = Math.max(distance, Math.abs(f - expected));
+        }
+    }
+    console.log(`level: ${inside} of 4096 points inside, ${near} near; largest difference ${distance}`);
+    assert.ok(inside > 300 && near > 300 && distance < 2e-6);
+});
+
 // "free" has an empty collider: it shows that the test would find particles inside.
 test("no more of 10,000 particles are inside the mesh than relief check predicts", async () => {
     const report = JSON.parse(run("check", container("bunny.relief"), "--mesh", kMesh, "--json"));
@@ -192,5 +234,16 @@ test("no more of 10,000 particles are inside the mesh than relief check predicts
             assert.equal(wrong / particles.length <= report.accuracy.near.wrong_percent / 100, system !== "free");
             assert.equal(resting > 1000, system === "rest");
         }
+    }
+});
+
+// In the third life. If a particle kept its velocity, it would fall by 2 per second.
+test("particles are at rest when they are born again", async () => {
+    await godot.line("end", 300);
+    for (let snapshot = 0; snapshot < 3; ++snapshot) {
+        const speeds = (await godot.particles(`again ${snapshot}`)).map(({ velocity }) => Math.hypot(...velocity));
+        const [least, greatest] = [Math.min(...speeds), Math.max(...speeds)];
+        console.log(`again ${snapshot}: speeds from ${least} to ${greatest}`);
+        assert.ok(speeds.length >= 10000 && greatest < 0.4 * 2 + 0.05);
     }
 });

@@ -5,7 +5,7 @@
 #
 #   tools        the commands of README.md, "Use"; the manual
 #   python       the program of bake/python/README.md
-#   development  the projects of scripts/install/README.md, a program in C
+#   development  the projects of scripts/install/README.md, programs in C with librelief and with relief.h
 #
 # Pages are read from the folder of librelief-dev, or from RELIEF_DOC.
 set -euo pipefail
@@ -81,6 +81,9 @@ C
     read -ra flags < <(pkg-config --cflags --libs relief)
     cc -std=c99 -Wall -Werror load.c -o load "${flags[@]}" || die "a program in C does not build"
     [ "$(./load out/bunny.relief)" = "$(relief --version | sed 's/.* //')" ] || die "a program in C does not load a collider"
+    relief export out/bunny.relief --engine c engine -q
+    (cd engine && sh -euc "$(grep -E '^ {4}(cc|\./)' RELIEF.md)") >said 2>&1 || die "the engine's page: $(tail -5 said)"
+    grep -q ' of 400 balls rest on it' said || die "the engine's program prints: $(tail -5 said)"
 }
 
 for part in "$@"; do

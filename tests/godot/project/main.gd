@@ -8,6 +8,7 @@ const PLAYED := {
 	"rest": {"rest_on_contact": true},
 	"free": {},  # with an empty collider
 	"turned": {"restitution": 0.4, "friction": 0.1},  # the body is turned by 90 degrees, scaled and moved
+	"again": {},  # each life lasts 0.4 s
 }
 
 
@@ -25,6 +26,7 @@ func _ready() -> void:
 	for frame in 4:
 		await get_tree().process_frame
 	_keep("points", POINTS)
+	_keep("level", POINTS + 1)
 	print("evaluated")
 	for system: String in PLAYED:
 		_play(collider, system)
@@ -113,6 +115,18 @@ func _evaluate(collider: ReliefCollider) -> void:
 			FileAccess.get_file_as_bytes("res://points.bin"))
 	var system := _system(collider, POINTS, load("res://query.gdshader"))
 	system.process_material.set_shader_parameter("points", ImageTexture.create_from_image(points))
+	var level := _system(collider, POINTS + 1, load("res://level.gdshader"))
+	level.process_material.set_shader_parameter("points", ImageTexture.create_from_image(points))
+	_upload(level, "texels", 2048, Image.FORMAT_RGBA16I, 8)
+	_upload(level, "bodies", 3584, Image.FORMAT_RGBA16I, 8)
+	_upload(level, "cells", 2048, Image.FORMAT_RG16I, 4)
+
+
+# A texture of an exported level.
+func _upload(system: ReliefParticles, name_: String, width: int, format: Image.Format, texel: int) -> void:
+	var data := FileAccess.get_file_as_bytes("res://level." + name_)
+	var image := Image.create_from_data(width, data.size() / (width * texel), false, format, data)
+	system.process_material.set_shader_parameter("u_" + name_, ImageTexture.create_from_image(image))
 
 
 # Particles fall from a box above the bunny. In the first frame, a second has passed.
@@ -128,7 +142,7 @@ func _play(collider: ReliefCollider, name_: String) -> void:
 		system.body.transform = Transform3D(Basis(Vector3.UP, PI / 2).scaled(Vector3.ONE * 0.8), Vector3(0.1, 0, 0))
 		add_child(system.body)
 	system.position.y = 2.4
-	system.lifetime = 60.0
+	system.lifetime = 0.4 if name_ == "again" else 60.0
 	system.fixed_fps = 60
 	system.preprocess = 1.0
 	system.use_fixed_seed = true

@@ -15,7 +15,6 @@ func _process(_delta: float) -> void:
 	if shader == null or collider == null or collider.texels == null:
 		return
 	var pose := body.global_transform if body != null else Transform3D.IDENTITY
-	pose = global_transform.affine_inverse() * pose if local_coords else pose
-	shader.set_shader_parameter("relief_pose", pose)
+	shader.set_shader_parameter("relief_pose", global_transform.affine_inverse() * pose if local_coords else pose)
 	if shader.get_shader_parameter("relief_texels") != collider.texels:
 		collider.apply(shader)
