@@ -8,7 +8,7 @@
 #   scripts/accuracy.sh --json           prints all measurements
 #   scripts/accuracy.sh --page           writes bake/measure/accuracy.md; README.md and bake/measure/README.md cite its figures
 #   scripts/accuracy.sh --corpus         sixty artist-made meshes (corpus.txt) at 1 MB, one row each; --help lists --only,
-#                                        --steps, --markdown and other options
+#                                        --steps and other options
 #   scripts/accuracy.sh --lot            ten randomly drawn meshes (lot.txt); --draw draws them
 set -euo pipefail
 cd "$(dirname "$0")/.."
