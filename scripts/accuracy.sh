@@ -4,11 +4,10 @@
 # paper's maps and ours, at 0.25, 1 and 4 MB. Prints geometric means, and whether the targets are met. Takes forty minutes
 # on two cores. Other arguments are passed to relief-accuracy, such as --budgets 1MB --methods ours for quick rounds.
 #
-#   scripts/accuracy.sh                  prints the table
+#   scripts/accuracy.sh                  prints the table; README.md and bake/measure/README.md cite its figures
 #   scripts/accuracy.sh --json           prints all measurements
-#   scripts/accuracy.sh --page           writes bake/measure/accuracy.md; README.md and bake/measure/README.md cite its figures
 #   scripts/accuracy.sh --corpus         sixty artist-made meshes (corpus.txt) at 1 MB, one row each; --help lists --only,
-#                                        --steps, --markdown and other options
+#                                        --steps and other options
 #   scripts/accuracy.sh --lot            ten randomly drawn meshes (lot.txt); --draw draws them
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -45,19 +44,6 @@ fi
 if [ "${1:-}" = --corpus ]; then
     shift
     PYTHONDONTWRITEBYTECODE=1 python3 scripts/corpus.py "$bin" "$folder" "${meshes[@]}" -- "$@"
-    exit 0
-fi
-if [ "${1:-}" = --page ]; then
-    shift
-    {
-        echo '# Wrong points per byte'
-        echo
-        echo 'Written by `scripts/accuracy.sh --page`. For each mesh, at 0.25, 1 and 4 MB: the dense and sparse distance volumes of'
-        echo '[README.md](README.md), the maps of the paper, and the patches that `relief bake` makes by default.'
-        echo
-        "$bin/relief-accuracy" "${meshes[@]}" "$@" | python3 scripts/accuracy_table.py
-    } >"$folder/accuracy.md"
-    mv "$folder/accuracy.md" bake/measure/accuracy.md
     exit 0
 fi
 if [ "${1:-}" = --json ]; then

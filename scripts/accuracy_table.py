@@ -7,6 +7,7 @@ geometric means of ratios over meshes, and whether the claims of bake/measure/RE
 """
 import json
 import math
+import statistics
 import sys
 
 # The methods that ours is compared with, at the same bytes: bake/measure/README.md.
@@ -80,17 +81,16 @@ def sides(found):
 
 
 def errors(found):
-    """The rows of distance and normal errors, at the budget of TIMED_BUDGET."""
+    """The rows of distance and normal errors at the budget of TIMED_BUDGET: medians over the meshes."""
     methods = measured_of(found)
-    rows = [["mesh", *(f"{METHODS[method]}>" for method in methods)]]
-    for contest in found:
-        if contest["budget"] != TIMED_BUDGET:
-            continue
-        rows.append([label(contest), *(
-            f"{number(contest, method, 'distance_error', 'mean_percent', 4)} / "
-            f"{number(contest, method, 'distance_error', 'p99_percent', 3)}; "
-            f"{number(contest, method, 'normal_error_degrees', 'mean', 2)}° / "
-            f"{number(contest, method, 'normal_error_degrees', 'p99', 0)}°" if method in contest else "-" for method in methods)])
+    rows = [["", *(f"{METHODS[method]}>" for method in methods)]]
+    for heading, group, names, unit in (("distance, % of the longest side", "distance_error", ("mean_percent", "p99_percent"), ""),
+                                        ("normal", "normal_error_degrees", ("mean", "p99"), "°")):
+        of = [{method: contest[method]["accuracy"].get(group) for method in methods if method in contest}
+              for contest in found if contest["budget"] == TIMED_BUDGET]
+        known = {method: [one[method] for one in of if one.get(method)] for method in methods}
+        rows.append([heading, *(", ".join(f"{statistics.median(one[name] for one in known[method]):.2g}{unit}" for name in names)
+                                if known[method] else "-" for method in methods)])
     return rows
 
 
@@ -148,9 +148,9 @@ def legend(meshes):
             "open: an edge has an odd number of triangles.",
             *(["as it came: ours near sheets, against the surface of the file: points within half the thickness of it are inside. "
                "The truth of the other columns is the shells that the bake makes of sheets."] if came else []),
-            f"Below, at {budget_text(TIMED_BUDGET)}: mean / 99th percentile of the error of the signed distance at those points, in % of the longest side, and of "
-            "the angle of the normal at the surface. Bricks store distances only near the surface: larger distances count as "
-            "their band. Points that the maps classify as outside without a distance are not counted."]
+            f"Below, at {budget_text(TIMED_BUDGET)}: medians over the meshes of the mean and the 99th percentile of the error of the "
+            "signed distance at those points, and of the angle of the normal at the surface. Bricks store distances only near the "
+            "surface: larger distances count as their band."]
 
 
 def markdown(rows):

@@ -25,7 +25,6 @@ from accuracy_table import RIVALS
 HERE = os.path.dirname(os.path.abspath(__file__))
 FURNITURE = '/usr/share/sweethome3d/furniture'
 ASSIMP = '/usr/share/assimp/models'
-CLOSEST = 10
 LEAST = 0.01  # percent: replaces smaller fractions of wrong points in ratios
 PAPER = ['--map', 'front-back:dir=-z,size=512,depth=half,decode=projected', '--map', 'cube:size=512,decode=projected']
 PARTICLES, BLOCKS, REPEATS = 65536, 3, 3
@@ -155,29 +154,6 @@ def summary(rows, rivals):
     return lines
 
 
-def page(rows, lines, rivals, command):
-    """bake/measure/accuracy_corpus.md: the models on which a rival comes closest"""
-    rows = sorted(rows, key=lambda row: -max(float(row[f'ours/{rival}']) for rival in rivals))[:CLOSEST]
-    headings = {'bake_s': 'bake s', 'cpu_s': 'CPU s', 'rivals_s': 'rivals s', 'ours': 'ours %', 'came': 'as it came %',
-                **{rival: f'{RIVALS[rival]} %' for rival in rivals},
-                **{f'ours/{rival}': f'ours / {RIVALS[rival]}' for rival in rivals}}
-    columns = [column for column in columns_of(rivals) if column not in ('maps', 'rivals_s')]
-    table = [[headings.get(column, column) for column in columns],
-             ['---' if column in ('model', 'kind') else '---:' for column in columns],
-             *[[str(row[column]) or '-' for column in columns] for row in rows]]
-    return f"""# Artist-made meshes
-
-Written by `{command}`, which prints the rows of all sixty models. At 1 MB: the fraction of misclassified points near the
-surface of dense and sparse distance volumes ([README.md](README.md)) and of `relief bake`, the time of the bake on two
-threads and its processor time, and the time of a particle step on llvmpipe, relative to the paper's two maps. Single times
-are rough, because the machine ran other work. In ratios, values below {LEAST} % count as {LEAST} %.
-
-""" + ''.join(f'- {line}\n' for line in lines) + f"""
-The {CLOSEST} models on which a rival comes closest:
-
-""" + ''.join(f'| {" | ".join(row)} |\n' for row in table)
-
-
 def chosen(paths, options):
     """The names to measure."""
     if not options.only:
@@ -199,13 +175,10 @@ def arguments(words):
                         help=f'distance volumes to compare with (default: {",".join(RIVALS)}); fitted bricks take most of the time')
     parser.add_argument('--samples', type=int, default=20000, metavar='N', help='points of each kind (default: 20000)')
     parser.add_argument('--steps', action='store_true', help="also time steps, relative to the paper's maps (slow)")
-    parser.add_argument('--markdown', action='store_true', help='write bake/measure/accuracy_corpus.md')
     options = parser.parse_args(words)
     unknown = [rival for rival in options.rivals if rival not in RIVALS]
     if unknown:
         parser.error(f"unknown rival '{unknown[0]}' in --rivals; choose from: {', '.join(RIVALS)}")
-    if options.markdown and options.only:
-        parser.error('--markdown needs all sixty models; remove --only')
     return options
 
 
@@ -222,11 +195,7 @@ def main():
         rows.append(measure(name, paths[name], bin, folder, options))
         writer.writerow(rows[-1])
         sys.stdout.flush()
-    lines = summary(rows, options.rivals)
-    print(*lines, sep='\n')
-    if options.markdown:
-        with open(os.path.join(HERE, '../bake/measure/accuracy_corpus.md'), 'w', encoding='utf-8') as file:
-            file.write(page(rows, lines, options.rivals, ' '.join(['scripts/accuracy.sh --corpus', *words])))
+    print(*summary(rows, options.rivals), sep='\n')
 
 
 main()

@@ -95,17 +95,17 @@ def web_faults(source):
     return faults if files >= 50 else [f'runtime/web/CMakeLists.txt: found only {files} files of web_sources()']
 
 
-def table_faults(source, uses):
-    """Folders without a row in the table of CONTRIBUTING.md (two levels deep), and rows with wrong dependencies."""
-    table = re.findall(r'^\| (`[^|]+`) \|[^|]+\|([^|]*)\|$', (source / 'CONTRIBUTING.md').read_text(), re.MULTILINE)
-    rows = {folder: used for folders, used in table for folder in re.findall('`([^`]+)`', folders)}
-    faults = [f'CONTRIBUTING.md: the row of {folder} must list {" ".join(used) or "nothing"}'
-              for folder, used in uses.items() if re.findall('`([^`]+)`', rows.get(folder, '`no row`')) != used]
+def list_faults(source):
+    """Folders, two levels deep, that the list in CONTRIBUTING.md lacks, and names in it without a folder."""
+    listed = set()
+    for tree, jobs in re.findall(r'^- `(\w+)`: (.*\n(?:  .*\n)*)', (source / 'CONTRIBUTING.md').read_text(), re.MULTILINE):
+        names = re.findall(r'((?:`[\w/]+`,?\s+)*`[\w/]+`):\s', jobs)
+        listed |= {tree} | {f'{tree}/{name}' for some in names for name in re.findall(r'[\w/]+', some)}
     tracked = [path for top in ('formats', 'shaders', 'runtime', 'bake', 'samples', 'scripts') for path in (source / top).rglob('*')
                if path.is_file() and '__pycache__' not in path.parts and 'node_modules' not in path.parts]
     folders = {'/'.join(path.relative_to(source).parts[:-1][:2]) for path in tracked}
-    faults += [f'CONTRIBUTING.md: {folder} has no row' for folder in sorted(folders - set(rows))]
-    return faults + [f'CONTRIBUTING.md: {folder} does not exist' for folder in rows if not (source / folder).is_dir()]
+    return ([f'CONTRIBUTING.md: the list lacks {folder}' for folder in sorted(folders - listed)]
+            + [f'CONTRIBUTING.md: {folder} does not exist' for folder in sorted(listed) if not (source / folder).is_dir()])
 
 
 SOURCES = set('.c .cmake .comp .cpp .css .fbs .frag .gd .gdshader .gdshaderinc .glsl .h .hpp .html .js .mjs .py .sh .ts .vert'.split())
@@ -159,7 +159,7 @@ def main(source, folders_file):
             if stem != other:
                 graph.setdefault(stem, set()).add(other)
     faults += ['include cycle: ' + ', '.join(group) for group in cycles(graph)]
-    faults += web_faults(source) + table_faults(source, uses) + licence_faults(source)
+    faults += web_faults(source) + list_faults(source) + licence_faults(source)
     print('\n'.join(faults) if faults else f'{files} files in {len(uses)} folders, no forbidden include')
     return 1 if faults or files < 100 else 0
 

@@ -168,10 +168,11 @@ class Accuracy(unittest.TestCase):
                   "build_seconds": None}
         found = accuracy_table.contests({"meshes": [{"samples": 1000}],
                                          "results": [{**result, "method": method} for method in ("fitted", "ours")]})
-        self.assertEqual(accuracy_table.sides(found)[0][2:5], ["fitted bricks %>", "ours %>", "ours / fitted bricks>"])
-        self.assertEqual(accuracy_table.sides(found)[1],
-                         ["a (open)", "1 MB", "0.500", "0.500", "1.000", "0.300", "0.200", "999", "4", "-"])
-        self.assertEqual(accuracy_table.errors(found)[1][2:], ["0.0100 / 0.200; 1.50° / 20°"] * 2)
+        self.assertEqual(accuracy_table.sides(found), [["mesh", "fitted bricks %>", "ours %>", "in %>", "out %>"],
+                                                       ["a (open)", "0.500", "0.500", "0.300", "0.200"]])
+        self.assertEqual(accuracy_table.errors(found), [["", "fitted bricks>", "ours>"],
+                                                        ["distance, % of the longest side", *["0.01, 0.2"] * 2],
+                                                        ["normal", *["1.5°, 20°"] * 2]])
 
     def test_missed_targets_are_named(self):
         found = [contest("a", True, 250000, 0.21), contest("a", True, 1000000, 0.21, 3.1)]

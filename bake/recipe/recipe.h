@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recipes: files in TOML that describe many bakes. bake/recipe/README.md is the normative description.
+// Recipes: files in TOML that describe many bakes. bake/recipe/README.md describes them.
 #pragma once
 
 #include <cstdint>

@@ -7,7 +7,7 @@
 //     weight · −d wrong / d bytes = worth,
 //
 // No share is below an eighth of an even share. Shares are rounded down to steps of an eighth of an octave: if one mesh
-// changes, most others keep their share and need no new bake. NOTES.md lists alternatives.
+// changes, most others keep their share and need no new bake.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes the page of `relief view` and `relief-sim --page`: one HTML file with its data (runtime/web/view/README.md).
+// Writes the page of `relief view` and `relief-sim --page`: one HTML file with its data (runtime/web/view).
 #pragma once
 
 #include <cstddef>

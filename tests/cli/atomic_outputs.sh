@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Output files are either the complete old or the complete new file: after SIGKILL or an error in any system call of the
 # write, on a full disk, with concurrent writers, and after signals at any time.
-#   RELIEF_ATOMIC_PAGE=FILE  also writes the counts, for bake/measure/trust.md
-#   RELIEF_ATOMIC_ROUNDS=N   rounds of writers and of signals (1)
+#   RELIEF_ATOMIC_ROUNDS=N  rounds of writers and of signals (1)
 . "$(dirname "$0")/lib.sh"
 rounds=${RELIEF_ATOMIC_ROUNDS:-1}
 
@@ -220,7 +219,7 @@ while read -r name number _; do
     done
 done < <(awk '$3 == "temporary" || $1 == "write" || $1 == "fsync"' calls)
 
-cat >counts <<C
+cat <<C
 | what | times | torn files | temporary files left |
 | --- | ---: | ---: | ---: |
 | SIGKILL at each system call of the writing | $kills | $torn | $left_by_kill |
@@ -230,5 +229,3 @@ cat >counts <<C
 
 A full disk was $full.
 C
-cat counts
-[ -z "${RELIEF_ATOMIC_PAGE:-}" ] || cp counts "$RELIEF_ATOMIC_PAGE"

@@ -20,7 +20,7 @@ done
 # All links work, of files and of pages, and the pages that users need exist.
 [ -z "$(find "$prefix" -xtype l)" ] || die "broken links: $(find "$prefix" -xtype l)"
 python3 "$RELIEF_SOURCE/tests/cli/links.py" "$prefix" >links || die "dead links: $(cat links)"
-for page in bake/recipe/README.md bake/measure/trust.md bake/measure/accuracy.md runtime/bench/measurements.md \
+for page in bake/recipe/README.md bake/measure/trust.md runtime/bench/measurements.md \
     samples/README.md samples/python/plots.py; do
     [ -s "$prefix/share/doc/relief/$page" ] || die "$page is not installed"
 done

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Kills the import worker and injects errors at its system calls, and at those of its parent. Either the collider is the
 # same, or one line gives the system's error and a fix, and the existing file is kept. No other file is left.
-#   RELIEF_FAULTS_PAGE=FILE  tests every call, not every ninth of the dynamic loader, and writes the counts,
-#                            for bake/measure/trust.md
+#   RELIEF_FAULTS_ALL=1  tests every call, not every ninth of the dynamic loader
 . "$(dirname "$0")/lib.sh"
 
 command -v strace >/dev/null || die "strace is missing; run scripts/setup.sh"
@@ -42,7 +41,7 @@ cmp out/a.relief new.relief || die "a traced worker gives a different file"
 
 # The worker's calls as "SYSCALL N PART". N counts per thread, as strace's when= does. Calls that two threads make with
 # equal N are listed once, as the first thread's. PART is `loader` for the dynamic loader or `own`.
-python3 - "$([ -n "${RELIEF_FAULTS_PAGE:-}" ] && echo 1 || echo 9)" >calls <<'P'
+python3 - "$([ -n "${RELIEF_FAULTS_ALL:-}" ] && echo 1 || echo 9)" >calls <<'P'
 import re, sys
 step = int(sys.argv[1])
 seen, listed, own = {}, set(), False
@@ -215,12 +214,10 @@ rejects_answer 4 'the importer returned no result'
 printf '\x03\0\0\0\x06\0\0\0a\nb\x1bcd' >answer
 rejects_answer 3 'a.b.*cd$'
 
-cat >counts <<C
+cat <<C
 | what | times | another collider, a torn file or a process left |
 | --- | ---: | ---: |
 | SIGKILL of the import worker at its system calls | $kills | 0 |
 | an error injected there, and where its parent starts it (EMFILE, ENFILE, ENOMEM, EAGAIN, EIO, ENOSPC, EBUSY, EINTR, …) | $errors, of which $endured did not matter | 0 |
 | too few descriptors | $few | 0 |
 C
-cat counts
-[ -z "${RELIEF_FAULTS_PAGE:-}" ] || cp counts "$RELIEF_FAULTS_PAGE"

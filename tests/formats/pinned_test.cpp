@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pinned containers of version 2: each must read exactly as on the day it was written. Also the worked example of
-// formats/README.md: the page is normative, so it must not drift.
+// Pinned containers of version 2: each must read exactly as on the day it was written. pinned/CONTENT.txt describes
+// VERSION-COMPRESSION-CONTENT.relief: all numbers of its maps, hashes of its texels, the field at points. Never change
+// or remove a container; add some for each version that changes the bytes. With RELIEF_PIN=DIR, the test writes the
+// texts and the uncompressed containers to DIR.
+//
+// Also the worked example of formats/README.md: the page is normative, so it must not drift.
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <cstdio>

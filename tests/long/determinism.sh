@@ -1,20 +1,19 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Bakes meshes in different environments and compares the bytes: tests/long/determinism.sh [--quick | --page].
+# Bakes meshes in different environments and compares the bytes: tests/long/determinism.sh [--quick].
 # Prints a table of SHA-256 hashes. Exit status: 0 if each mesh has one hash, otherwise 7.
 #
 #   (nothing)   204 bakes: ten meshes, the paper's maps and patches; threads, locale, time zone, folder, umask,
 #               GCC -O2, GCC -O0 and Clang, glibc without FMA and AVX2, and two other processors by QEMU
 #   --quick     two meshes in six cells, with only the executables in RELIEF_BIN
-#   --page      the full run; writes its summary into bake/measure/trust.md
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
 mode=${1:-full}
 case $mode in
-    full | --quick | --page) ;;
+    full | --quick) ;;
     *)
-        echo "determinism.sh: unknown option '$mode'; use --quick or --page" >&2
+        echo "determinism.sh: unknown option '$mode'; use --quick" >&2
         exit 1
         ;;
 esac
@@ -144,7 +143,7 @@ else
     done
 fi
 
-python3 - "$work/rows" "$mode" "$work/page" <<'P'
+python3 - "$work/rows" <<'P'
 import collections, sys
 rows = [line.rstrip('\n').split('|') for line in open(sys.argv[1])]
 table = collections.OrderedDict()
@@ -158,10 +157,5 @@ for (mesh, kind), digests in table.items():
 two = sum(len(digests) > 1 for digests in table.values())
 summary = f'{len(rows)} bakes of {len(table)} mesh and map choices in {len(cells)} surroundings: {two} with two hashes.'
 print('\n'.join(lines + ['', summary]))
-if sys.argv[2] == '--page':
-    body = '\n'.join(['Written by `tests/long/determinism.sh --page`; “patches” is `--budget 100kB`, “paper” is `--paper --resolution 128`.',
-                      '', summary, '', 'Surroundings: ' + '; '.join(cells) + '.'])
-    open(sys.argv[3], 'w').write(body + '\n')
 P
-[ "$mode" != --page ] || tests/long/page_part.sh bake/measure/trust.md determinism <"$work/page"
 [ "$failed" = 0 ] || exit 7

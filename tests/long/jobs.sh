@@ -270,7 +270,7 @@ job_packages() {
     say "$names: lintian finds no errors"
     cp build/packages/deb/*.deb tests/long/try_packages.sh /usr/share/glmark2/models/bunny.obj "$room/"
     python3 tests/cli/level.py "$room/level.glb"
-    cp --parents README.md bake/python/README.md "$room/doc/"
+    cp --parents README.md samples/in_python_and_blender.md "$room/doc/"
     # Installs the packages for users, without a compiler or documentation, then those for developers, then removes all.
     in_bare 'cd /srv/relief
         export DEBIAN_FRONTEND=noninteractive

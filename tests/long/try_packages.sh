@@ -4,7 +4,7 @@
 # Part `tools` also reads level.glb from the folder of MESH. `scripts/nightly.sh packages` runs it in a minimal Debian. Parts:
 #
 #   tools        the commands of README.md, "Use"; the manual
-#   python       the program of bake/python/README.md
+#   python       the program of samples/in_python_and_blender.md
 #   development  the projects of scripts/install/README.md, programs in C with librelief and with relief.h
 #
 # Pages are read from the folder of librelief-dev, or from RELIEF_DOC.
@@ -41,13 +41,13 @@ tools() {
 
 python() {
     cp "$mesh" bunny.obj
-    sed -n '/^```python$/,/^```$/{//!p}' "$doc/bake/python/README.md" >program.py
-    [ "$(wc -l <program.py)" -ge 5 ] || die "bake/python/README.md contains no program"
+    sed -n '/^```python$/,/^```$/{//!p}' "$doc/samples/in_python_and_blender.md" >program.py
+    [ "$(wc -l <program.py)" -ge 5 ] || die "samples/in_python_and_blender.md contains no program"
     python3 program.py >said 2>&1 || die "Python: $(tail -5 said)"
     python3 - said bunny.relief <<'P'
 import pathlib, sys
 import relief
-wrong = float(open(sys.argv[1]).read())
+wrong = float(open(sys.argv[1]).read().split()[0])
 assert 0 < wrong < 3, wrong
 assert relief.load(sys.argv[2]).maps
 home = pathlib.Path(relief.__file__).parent

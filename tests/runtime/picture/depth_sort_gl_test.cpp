@@ -344,8 +344,8 @@ struct Disorder {
 };
 
 // Snow that falls in a box of 3 · 1 · 3 and wraps to the top, seen by a camera that circles it, at 60 frames per
-// second. The depth errors, as fractions of those in index order, are those in the table of runtime/METHOD.md; the
-// bounds leave a margin of at least a fifth for other roundings. New particles wait at the end for one or two
+// second. runtime/METHOD.md states depth errors as fractions of those in index order; the bounds leave a margin of at
+// least a fifth for other roundings. New particles wait at the end for one or two
 // sequences, so short lives have an effect. Neighbours may be as close in depth as 0.0003, so 4 in 10 of them are
 // easily out of order.
 TEST_P(DepthSortMotionGlTest, KeepsUpWithMotionWhenSpreadOverFrames) {
