@@ -13,21 +13,24 @@ void slabs(vec3 p, vec3 d, vec3 box_min, vec3 box_max, out vec3 near, out vec3 f
 
 #if defined(RELIEF_HAS_PATCHES) && (RELIEF_BODIES == 0 || RELIEF_PLACED)
 
-// Returns the t at which a ray from q meets the range of heights of a patch; 0 in that range.
-float aheadOfHeights(uvec2 record, vec3 q, vec3 d) {
+// Returns the t at which a ray from q meets the range of heights of a patch; 0 in that range. inside: q is inside, and
+// not in that range.
+float aheadOfHeights(uvec2 record, vec3 q, vec3 d, out bool inside) {
     float z = reliefPatchAcross(record, q).z - (float((record.x >> 11u) & 0xfffu) - 2048.0) * (1.0 / 512.0);
     float longest = max(abs(d.x), max(abs(d.y), abs(d.z)));  // differences of rounded numbers need a scale near 1
     float dz = longest * (reliefPatchAcross(record, d / longest).z - reliefPatchAcross(record, vec3(0.0)).z);
     float thick = 255.0 * reliefPatchStep(record);
     float to = z > thick ? thick - z : z < 0.0 ? -z : 0.0;
+    inside = (record.x & 16u) != 0u ? to < 0.0 : to > 0.0;
     return to == 0.0 ? 0.0 : to * dz > 0.0 ? to / dz : 1e30;
 }
 
-// Returns a t up to which a ray from p, outside, meets no surface of map i: at most where it leaves the cell of p.
+// Returns a t up to which a ray from p, outside, meets no surface of map i: at most where it leaves the cell of p. By
+// the rounding of p, its cell may be inside: returns 0 then.
 float emptyAhead(int i, vec3 p, vec3 d) {
     int first = reliefMapPlace(i).x;
     ReliefLeaf leaf = reliefPatchLeaf(u_relief_front_back, reliefMapPlace(i), p);
-    if (leaf.inside) {  // by rounding of p
+    if (leaf.inside) {
         return 0.0;
     }
     uvec2 record = leaf.record;
@@ -39,14 +42,17 @@ float emptyAhead(int i, vec3 p, vec3 d) {
     vec3 near, far;
     slabs(leaf.q, way, vec3(0.0), vec3(1.0), near, far);
     float ahead = min(far.x, min(far.y, far.z));
+    bool inside = false;
     if ((record.x & 15u) == 15u) {
         int pair = first + int(record.y & 0xffffffu);
-        ahead = min(ahead, aheadOfHeights(reliefPatchTexel(u_relief_front_back, pair), leaf.q, way));
-        ahead = min(ahead, aheadOfHeights(reliefPatchTexel(u_relief_front_back, pair + 1), leaf.q, way));
+        bool other;
+        ahead = min(ahead, aheadOfHeights(reliefPatchTexel(u_relief_front_back, pair), leaf.q, way, inside));
+        ahead = min(ahead, aheadOfHeights(reliefPatchTexel(u_relief_front_back, pair + 1), leaf.q, way, other));
+        inside = (record.x & 16u) != 0u ? inside && other : inside || other;
     } else if ((record.x & 3u) == 3u) {
-        ahead = min(ahead, aheadOfHeights(record, leaf.q, way));
+        ahead = min(ahead, aheadOfHeights(record, leaf.q, way, inside));
     }
-    return ahead;
+    return inside ? 0.0 : ahead;
 }
 
 // Returns a t up to which map i of patches is outside on the ray if it is outside at `from`, at least `from`.

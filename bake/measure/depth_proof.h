@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Proves how deep the errors of a collider can be. Samples find errors that are common; a proof also covers a hole of
+// one texel.
+//
+// Claim: no point farther than `depth` from every triangle is on the wrong side. The proof divides the cells of the
+// octree into boxes. In a box with centre c and radius r, with d the distance from c to the nearest triangle:
+//
+//     the truth     has one side if d > r, because no triangle meets the box
+//     the field     has one side in a leaf without heights, and in a patch where the bounds of w − H have one sign
+//     both agree    no point of the box is wrong
+//     otherwise     a wrong point is at most d + r deep; at most r − d if the field has only the side of c, because the
+//                   segment from c to that point crosses the surface
+//
+// A box with a bound above the deepest error found is divided into eight. The centres of boxes are tested as well, so
+// that the bound and the deepest error converge.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <string>
+
+#include "bake/mesh/mesh_query.h"
+#include "formats/collider.h"
+
+namespace relief {
+
+struct DepthProofOptions {
+    /// The proof ends when the bound is at most this factor above the deepest error found.
+    double tolerance = 1.1;
+    double least_share = 1e-4;            ///< bounds below this fraction of the longest side suffice
+    std::uint64_t boxes_max = 2'000'000;  ///< ends the proof with a larger bound
+};
+
+struct DepthProof {
+    std::string unproven;  ///< why no depth can be proven; empty if it is proven
+    /// Proven bound, object units. It includes the rounding of an evaluation in floats, fused or not.
+    double depth = 0.0;
+    double deepest = 0.0;     ///< distance from the surface of the deepest error found, object units; 0: none
+    glm::vec3 place{0.0F};    ///< of that error, object space
+    std::uint64_t boxes = 0;  ///< examined
+};
+
+/// Unproven: maps other than one map of patches; a mesh that is not watertight, has filled cavities, or reaches outside
+/// the roots. The result does not depend on the number of threads.
+/// \param query  of the solid that the collider represents.
+[[nodiscard]] DepthProof proveDepth(const MeshQuery& query, const Collider& collider,
+                                    const DepthProofOptions& options = {});
+
+}  // namespace relief
