@@ -10,10 +10,10 @@
 namespace relief::engines {
 
 /// Expects that isWithinBounds() holds.
-inline void expectEqualFields(const Case& one, std::span<const Answer> answers, bool exact) {
+inline void expectEqualFields(const Case& one, std::span<const Answer> answers, Match match) {
     ASSERT_EQ(answers.size(), one.queries.size());
     const Difference difference = compare(one, answers);
-    EXPECT_TRUE(difference.isWithinBounds(exact)) << difference.text();
+    EXPECT_TRUE(difference.isWithinBounds(match)) << difference.text();
     // Otherwise the case proves little.
     EXPECT_GT(difference.inside, one.queries.size() / 8);
     EXPECT_GT(difference.outside, one.queries.size() / 8);

@@ -391,12 +391,16 @@ Difference compare(const Case& one, std::span<const Answer> answers) {
     return difference;
 }
 
-bool Difference::isWithinBounds(bool exact) const {
+bool Difference::isWithinBounds(Match match) const {
     const auto queries = static_cast<double>(inside + outside + beyond);
-    return signs == 0 && reactions == 0 && flat <= kRounding && normal <= kNormalMax &&
-           motion <= kMotionMax &&
-           (exact ? rounded == 0 && borders == 0 && patches == 0.0
-                  : static_cast<double>(rounded + borders) <= kBorderMax * queries && patches <= kRounding);
+    const bool moves = reactions == 0 && motion <= kMotionMax;
+    if (match == Match::kFused) {
+        return moves && static_cast<double>(signs) <= kFusedSignsMax * queries;
+    }
+    const double borders_max = match == Match::kRounded ? kBorderMax * queries : 0.0;
+    return moves && signs == 0 && flat <= kRounding && normal <= kNormalMax &&
+           patches <= (match == Match::kBits ? 0.0 : kRounding) &&
+           static_cast<double>(rounded + borders) <= borders_max;
 }
 
 std::string Difference::text() const {

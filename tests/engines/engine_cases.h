@@ -56,6 +56,14 @@ struct Case {
 [[nodiscard]] Case makeCase(std::string name, Collider collider, std::size_t count, std::uint32_t seed,
                             std::uint32_t before = 0);
 
+/// How closely a text follows the CPU. No reaction differs, and motions follow their formula.
+enum class Match {
+    kFused,  ///< compilers may fuse multiplications and additions: points may be in other cells, and few signs differ
+    kRounded,  ///< compilers may reorder operations: no sign differs, and few points are at borders
+    kCells,    ///< `precise`: every point is in the same cell and on the same side
+    kBits,     ///< also, distances to patches are equal bit by bit: divisions and roots are rounded correctly
+};
+
 /// How the answers of a text differ from the CPU's. The largest differences include only queries that agree in sign and
 /// are not at a border.
 struct Difference {
@@ -74,9 +82,8 @@ struct Difference {
     std::size_t reactions = 0;  ///< queries whose motion has another distance, hit or normal than its formula
     std::string first;          ///< the first query with a different sign or reaction
 
-    /// Returns whether no sign and no reaction differ, and all differences are within the bounds below.
-    /// \param exact  distances to patches are equal bit by bit, also their signs and borders
-    [[nodiscard]] bool isWithinBounds(bool exact) const;
+    /// Returns whether all differences are within the bounds of this match and below.
+    [[nodiscard]] bool isWithinBounds(Match match) const;
     [[nodiscard]] std::string text() const;
 };
 
@@ -91,5 +98,7 @@ inline constexpr double kRounding = 4.0 * kUlp;
 inline constexpr double kNormalMax = 2e-6;
 inline constexpr double kMotionMax = 4e-7;
 inline constexpr double kBorderMax = 1e-3;  ///< fraction of queries
+inline constexpr double kFusedSignsMax =
+    5e-4;  ///< fraction of queries; an eighth of them is placed on borders
 
 }  // namespace relief::engines

@@ -86,7 +86,7 @@ void expectTheCpuField(std::size_t points, auto distance, auto collide) {
             answers.push_back({vec4(surface.normal, surface.distance), vec4(motion.position, motion.distance),
                                vec4(motion.velocity, 0), vec4(motion.normal, 0)});
         }
-        expectEqualFields(one, answers, true);
+        expectEqualFields(one, answers, Match::kBits);
     }
 }
 

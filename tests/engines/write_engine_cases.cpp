@@ -2,11 +2,13 @@
 // Writes the colliders and queries of engine_cases.h for programs in other languages, and compares their answers:
 //
 //     relief_engine_cases write FOLDER [QUERIES [FILE.relief]]   0.case, 1.case, …
-//     relief_engine_cases compare|exact FOLDER NAME [QUERIES [FILE.relief]]   0.NAME, …; fails if one differs
+//     relief_engine_cases fused|compare|precise|exact FOLDER NAME [QUERIES [FILE.relief]]   0.NAME, …
 //
-// exact requires distances to patches that are equal bit by bit.
+// The last form fails if an answer differs by more than the Match permits: kFused, kRounded, kCells or kBits.
 // FILE.relief adds a baked collider. A case is little-endian: u32 height, u32 queries; 80 bytes of constants;
 // 2048 · height texels of 8 bytes; queries of 12 floats. Answers have 16 floats each. engine_cases.h names them.
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -47,12 +49,15 @@ bool write(const std::filesystem::path& path, const Case& one) {
 int main(int argc, char** argv) {
     const std::vector<std::string> words(argv + 1, argv + argc);
     const bool writes = !words.empty() && words[0] == "write";
-    const bool exact = !words.empty() && words[0] == "exact";
+    const std::string verb = words.empty() ? "" : words[0];
+    // In the order of Match.
+    constexpr std::array<const char*, 4> kVerbs{"fused", "compare", "precise", "exact"};
+    const auto* const match = std::find(kVerbs.begin(), kVerbs.end(), verb);
     const std::size_t own = writes ? 2 : 3;  // words before the options
-    if (words.size() < own || words.size() > own + 2 || (!writes && !exact && words[0] != "compare")) {
+    if (words.size() < own || words.size() > own + 2 || (!writes && match == kVerbs.end())) {
         return fail(
-            "usage: relief_engine_cases write FOLDER | compare|exact FOLDER NAME, then [QUERIES "
-            "[FILE.relief]]");
+            "usage: relief_engine_cases write FOLDER | fused|compare|precise|exact FOLDER NAME, then "
+            "[QUERIES [FILE.relief]]");
     }
     const std::size_t count =
         words.size() > own ? std::strtoul(words[own].c_str(), nullptr, 10) : std::size_t{100'000};
@@ -67,6 +72,7 @@ int main(int argc, char** argv) {
         }
         cases.push_back(makeCase(words[own + 1], std::move(*collider), count, 7));
     }
+    const auto allowed = static_cast<Match>(match - kVerbs.begin());
     bool equal = true;
     for (std::size_t i = 0; i < cases.size(); ++i) {
         const std::filesystem::path stem = std::filesystem::path(words[1]) / std::to_string(i);
@@ -87,9 +93,9 @@ int main(int argc, char** argv) {
         }
         std::memcpy(answers.data(), bytes->data(), bytes->size());
         const Difference difference = compare(cases[i], answers);
-        equal = equal && difference.isWithinBounds(exact);
+        equal = equal && difference.isWithinBounds(allowed);
         std::cout << words[2] << ", " << cases[i].name << ": " << difference.text()
-                  << (difference.isWithinBounds(exact) ? "" : " - NOT EQUAL") << '\n';
+                  << (difference.isWithinBounds(allowed) ? "" : " - NOT EQUAL") << '\n';
     }
     return equal ? 0 : 7;
 }
