@@ -15,17 +15,19 @@ sources='\.(h|hpp|cpp|c|glsl|vert|frag|comp|js|mjs|ts|py|sh|cmake)$|CMakeLists\.
 opening='^ *(//|#|/?\*|""")[/!<*]* *(Of|What|Where|Whatever|Whoever|Who) |[;,{] +(//|/\*)[/!<]* *(Of|Where|Whatever|Whoever|Who) '
 words='\b(alone|heed(s|ed)?|mend(s|ed|ing)?|has (it|them))\b'
 quoted="((^|[^:])//|#|\"|^ *\*).*$words"
+conflict='^(<{7}|>{7}) '
 found=0
 while IFS= read -r file; do
     case $file in
         scripts/format.sh | ./CONTRIBUTING.md | *node_modules*) continue ;;
-        *.md) pattern=$words ;;
-        *) pattern="$opening|$quoted" ;;
+        *.md) pattern="$words|$conflict" ;;
+        *) pattern="$opening|$quoted|$conflict" ;;
     esac
     ! grep -nHE "$pattern" "$file" || found=1
 done < <(find CMakeLists.txt ./*.md .github bake formats runtime samples scripts shaders tests -type f |
     grep -E "$sources|\.md$|/hooks/" | sort)
 [ "$found" = 0 ] || {
-    echo "format.sh: rewrite the lines above: no comment opens with Of, What or Where; only, not alone; fix, not mend" >&2
+    echo "format.sh: rewrite the lines above: no comment opens with Of, What or Where; only, not alone; fix, not mend;" \
+        "no conflict marker" >&2
     exit 1
 }
