@@ -125,7 +125,7 @@ Result<void> ParticleSystem::createPrograms() {
     rebase_program_ = RELIEF_TRY(makeScreenProgram("particles/rebase.frag"));
     rebase_program_.use();
     rebase_program_.set("u_birth", StepPass::kBirthUnit);
-    return remakeStep(nullptr);
+    return {};
 }
 
 std::optional<glm::vec3> ParticleSystem::featureWind() const {
@@ -136,15 +136,15 @@ std::optional<glm::vec3> ParticleSystem::featureWind() const {
     return wind;
 }
 
-StepVariant ParticleSystem::variantFor(const ShaderCollider* collider) const {
-    StepVariant variant{.collider = collider,
+StepVariant ParticleSystem::stepVariant() const {
+    StepVariant variant{.collider = collider_,
                         .features = {},
                         .verlet = integrator_ == Integrator::kVerlet,
                         .sweep = sweep_ > 0.0F,
                         .compute = path_ == StepPath::kCompute,
                         .types = static_cast<int>(types_.size())};
     for (const ParticleType& type : types_) {
-        variant.radius = variant.radius || (type.radius > 0.0F && collider != nullptr);
+        variant.radius = variant.radius || (type.radius > 0.0F && collider_ != nullptr);
         variant.masks = variant.masks || type.collides_with != kCollidesWithAll;
     }
     for (const std::shared_ptr<StepFeature>& feature : features_) {
@@ -153,21 +153,21 @@ StepVariant ParticleSystem::variantFor(const ShaderCollider* collider) const {
     return variant;
 }
 
-Result<void> ParticleSystem::remakeStep(const ShaderCollider* collider) {
+Result<void> ParticleSystem::checkFeatures(const ShaderCollider* collider) const {
     for (const std::shared_ptr<StepFeature>& feature : features_) {
         RELIEF_TRY(feature->check(collider));
     }
-    step_ = RELIEF_TRY(StepPass::create(variantFor(collider)));
     return {};
 }
 
-Result<void> ParticleSystem::remakeStepIfNeeded() {
-    const ShaderCollider* collider = step_.variant().collider;
-    if (variantFor(collider) == step_.variant()) {
+Result<void> ParticleSystem::compileStep() {
+    StepVariant variant = stepVariant();
+    if (step_ && variant == step_->variant()) {
         return {};
     }
-    const PassState state;
-    return remakeStep(collider);
+    step_.reset();
+    step_ = RELIEF_TRY(StepPass::create(std::move(variant)));
+    return {};
 }
 
 Result<void> ParticleSystem::setForces(const Forces& forces) {
@@ -197,7 +197,7 @@ Result<void> ParticleSystem::setTypes(std::span<const ParticleType> types) {
     }
     RELIEF_TRY(checkTypes(types));
     types_.assign(types.begin(), types.end());
-    return remakeStepIfNeeded();
+    return {};
 }
 
 Result<void> ParticleSystem::setSweep(float length) {
@@ -205,30 +205,34 @@ Result<void> ParticleSystem::setSweep(float length) {
         return fail(ErrorCode::kUsage, "the length of a sweep must be finite and at least 0");
     }
     sweep_ = length;
-    return remakeStepIfNeeded();
+    return {};
 }
 
 Result<void> ParticleSystem::setCollider(const ShaderCollider* collider) {
-    const PassState state;
-    return remakeStep(collider);
+    RELIEF_TRY(checkFeatures(collider));
+    collider_ = collider;
+    step_.reset();  // another collider may have the address of a former one
+    return {};
 }
 
 Result<void> ParticleSystem::replaceFeature(const StepFeature* old, std::shared_ptr<StepFeature> now) {
     const PassState state;
-    const std::vector<std::shared_ptr<StepFeature>> before = features_;  // the current step points to them
+    const std::vector<std::shared_ptr<StepFeature>> before = features_;
     std::erase_if(features_, [&](const std::shared_ptr<StepFeature>& one) { return one.get() == old; });
     if (now) {
         features_.push_back(std::move(now));
     }
-    auto done = makeStepTargets();
+    auto done = checkFeatures(collider_);
     if (done) {
-        done = remakeStep(step_.variant().collider);
+        done = makeStepTargets();
     }
     if (!done) {
         features_ = before;
         static_cast<void>(makeStepTargets());
+        return done;
     }
-    return done;
+    step_.reset();  // another feature may have the address of a former one
+    return {};
 }
 
 Result<std::size_t> ParticleSystem::spawn(std::span<const Birth> births) {
@@ -280,10 +284,10 @@ Result<void> ParticleSystem::step(float dt) {
         return fail(ErrorCode::kUsage, "the duration of a step must be finite and above 0");
     }
     const PassState state;
+    RELIEF_TRY(compileStep());
     runBirths(dt);
     for (const std::shared_ptr<StepFeature>& feature : features_) {
-        feature->beforeStep(time_, time_ + static_cast<double>(dt), allocator_.extent(),
-                            step_.variant().collider);
+        feature->beforeStep(time_, time_ + static_cast<double>(dt), allocator_.extent(), collider_);
     }
     time_ += static_cast<double>(dt);
     const float now = clock();
@@ -327,14 +331,14 @@ void ParticleSystem::runStep(float dt, float now) {
     useTexture(StepPass::kVelocityUnit, velocity_[current_]);
     useTexture(StepPass::kBirthUnit, birth_);
     std::optional<StorageUnits> storage;
-    if (step_.usesStorage()) {
+    if (step_->usesStorage()) {
         storage.emplace();
     }
     Forces forces = forces_;
     if (featureWind()) {
         forces.wind = glm::vec3(0.0F);  // the feature applies it
     }
-    step_.use({now, dt, ground_.value_or(kNoGround), sweep_, time_, forces, types_});
+    step_->use({now, dt, ground_.value_or(kNoGround), sweep_, time_, forces, types_});
     // Rows beyond the extent keep stale contents in either buffer. This is safe: an index beyond the extent is only
     // reused by a birth, which overwrites it, and indices below it have been stepped since.
     const std::uint32_t rows = (extent + width_ - 1) / width_;
@@ -348,10 +352,10 @@ void ParticleSystem::runStep(float dt, float now) {
                 ImageUnits::write(unit++, output);
             }
         }
-        step_.dispatch(width_, rows);
+        step_->dispatch(width_, rows);
         ImageUnits::finish();
     } else {
-        step_.draw(step_target_[next].name(), width_, rows);
+        step_->draw(step_target_[next].name(), width_, rows);
     }
     current_ = next;
 }

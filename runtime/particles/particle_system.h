@@ -96,25 +96,25 @@ class ParticleSystem {
     /// without compute shaders), kFailure.
     [[nodiscard]] static Result<ParticleSystem> create(const ParticleSystemOptions& options = {});
 
-    /// Sets the colliders for subsequent steps and compiles the step for them. Particles are in the object space of a
-    /// single collider, or in the world space of several bodies.
+    /// Sets the colliders for subsequent steps. Particles are in the object space of a single collider, or in the world
+    /// space of several bodies. The next step compiles a program for them, as after any change of what it uses: the
+    /// number of types, the first radius, collision mask or sweep, features.
     /// \param collider  must outlive its use by the system; null: none.
-    /// Errors: kFailure (shader compilation).
+    /// Errors: those of StepFeature::check(); the colliders are then unchanged.
     [[nodiscard]] Result<void> setCollider(const ShaderCollider* collider);
     /// Sets the forces. Errors: kUsage (a number that is not finite, a negative drag or viscosity); the forces are then
     /// unchanged.
     [[nodiscard]] Result<void> setForces(const Forces& forces);
-    /// Sets the particle types. Birth::type is an index into them; larger values use the last one. Recompiles the step
-    /// if the number of types changes, or if radii or collision masks are used for the first time.
+    /// Sets the particle types. Birth::type is an index into them; larger values use the last one.
     /// Errors: kUsage (none or more than kParticleTypesMax, a number that is not finite, a mass below kParticleMassMin,
-    /// a negative radius, a factor outside 0…1, unknown bits), kFailure (shader compilation).
+    /// a negative radius, a factor outside 0…1, unknown bits).
     [[nodiscard]] Result<void> setTypes(std::span<const ParticleType> types);
     [[nodiscard]] Result<void> setType(const ParticleType& type) { return setTypes({&type, 1}); }
     /// Sets the sweep length, world units. If above 0, a step tests its path in pieces of at most this length and never
     /// ends inside a solid in which it did not start: particles cannot cross static bodies thicker than this. Particles
     /// that move more than StepPass::kSweepPieces pieces in a step are slowed down. 0: tests only both ends, as in the
     /// paper.
-    /// Errors: kUsage, kFailure (shader compilation).
+    /// Errors: kUsage.
     [[nodiscard]] Result<void> setSweep(float length);
     /// Sets a floor: everything below this height is solid, in addition to the collider. nullopt: none.
     /// Errors: kUsage (a height that is not finite).
@@ -130,11 +130,11 @@ class ParticleSystem {
         }
         return nullptr;
     }
-    /// Replaces a feature and compiles the step for it.
+    /// Replaces a feature.
     /// \param old  null: adds `now`.
     /// \param now  null: removes `old`.
-    /// Errors: kUsage or kLimit (StepFeature::check), kUnsupported (too few draw buffers), kFailure (shader
-    /// compilation). The features are then unchanged.
+    /// Errors: kUsage or kLimit (StepFeature::check), kUnsupported (too few draw buffers). The features are then
+    /// unchanged.
     [[nodiscard]] Result<void> replaceFeature(const StepFeature* old, std::shared_ptr<StepFeature> now);
 
     /// Adds births for the start of the next step. A birth with an age first moves for this time, under the forces
@@ -144,7 +144,8 @@ class ParticleSystem {
     Result<std::size_t> spawn(std::span<const Birth> births);
 
     /// Advances the simulation by `dt` seconds, > 0. Restores the GL state that it changes (runtime/INTEGRATE.md).
-    /// Errors: kUsage (an invalid `dt`; nothing moves then). checkGpu() reports GPU failures (gl_fault.h).
+    /// Errors: kUsage (an invalid `dt`), kFailure (a program does not compile); nothing moves then. checkGpu() reports
+    /// GPU failures (gl_fault.h).
     Result<void> step(float dt);
 
     /// Returns kFragment or kCompute.
@@ -185,10 +186,10 @@ class ParticleSystem {
     [[nodiscard]] Result<void> createPrograms();
     /// Returns the wind that a feature adds; nullopt if there is none and Forces::wind applies.
     [[nodiscard]] std::optional<glm::vec3> featureWind() const;
-    [[nodiscard]] StepVariant variantFor(const ShaderCollider* collider) const;
-    [[nodiscard]] Result<void> remakeStep(const ShaderCollider* collider);
-    /// Call after a change of anything but the collider, because a new collider may have the address of the old one.
-    [[nodiscard]] Result<void> remakeStepIfNeeded();
+    [[nodiscard]] Result<void> checkFeatures(const ShaderCollider* collider) const;
+    [[nodiscard]] StepVariant stepVariant() const;
+    /// Compiles the step for what it uses now, unless that is done.
+    [[nodiscard]] Result<void> compileStep();
     [[nodiscard]] float clockOf(double time) const { return static_cast<float>(time - epoch_); }
     void setEpochForward();
     void runBirths(float dt);
@@ -231,7 +232,8 @@ class ParticleSystem {
     GlFramebuffer rebase_target_;    // birth_spare_
     BirthPass birth_pass_;
     GlProgram rebase_program_;
-    StepPass step_;
+    const ShaderCollider* collider_ = nullptr;
+    std::optional<StepPass> step_;  // nullopt: not compiled yet
 };
 
 }  // namespace relief
