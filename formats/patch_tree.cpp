@@ -277,6 +277,21 @@ PatchRecord patchTexel(PatchTexels texels, std::uint32_t index) {
     return record;
 }
 
+PatchHeights patchHeights(PatchTexels texels, const PatchRecord& patch) {
+    PatchHeights heights;
+    heights.side = patch.side();
+    heights.base = static_cast<int>(patch.low >> 11U & 0xfffU) - kBaseZero;
+    heights.scale = static_cast<std::uint8_t>(patch.high >> 24U);
+    const std::uint32_t last = heights.side * heights.side - 1;
+    for (std::uint32_t i = 0; i < last; ++i) {
+        const PatchRecord texel = heights.side == 2 ? patch : patchTexel(texels, patch.first() + i / 8);
+        const std::uint32_t word = heights.side == 2 || (i & 4U) != 0 ? texel.high : texel.low;
+        heights.codes[i] = static_cast<std::uint8_t>(word >> 8U * (i & 3U));
+    }
+    heights.codes[last] = static_cast<std::uint8_t>(patch.low >> 23U);
+    return heights;
+}
+
 void appendPatchTexel(std::vector<std::byte>& texels, const PatchRecord& record) {
     const auto bytes = std::as_bytes(std::span(&record, 1));
     texels.insert(texels.end(), bytes.begin(), bytes.end());

@@ -125,6 +125,8 @@ using PatchTexels = std::span<const std::byte>;
 
 /// \param index  less than the number of texels.
 [[nodiscard]] PatchRecord patchTexel(PatchTexels texels, std::uint32_t index);
+/// Returns the encoded heights of a patch. \param patch  no pair.
+[[nodiscard]] PatchHeights patchHeights(PatchTexels texels, const PatchRecord& patch);
 /// Appends a texel.
 void appendPatchTexel(std::vector<std::byte>& texels, const PatchRecord& record);
 

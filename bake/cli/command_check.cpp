@@ -119,7 +119,8 @@ std::string checkText(const MeshCheckReport& report) {
            std::to_string((run.repaired ? run.baked : run.mesh)->sourceTriangles()) + " triangles" +
            (run.watertight || run.repaired ? "" : " (not closed)") + "\n" +
            shapeText(run.shape, run.collider.unit) + "\n" +
-           accuracyText(accuracy, samples, run.collider.unit);
+           accuracyText(accuracy, samples, run.collider.unit) + "\n" +
+           proofText(run.proof, samples.longest_side, run.collider.unit);
 }
 
 Result<void> runCheck(const CheckCommand& command, const std::string& file, FileGuard& files) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bake/measure/accuracy.h"
+#include "bake/measure/depth_proof.h"
 #include "bake/measure/part_accuracy.h"
 #include "bake/measure/worst_places.h"
 #include "bake/mesh/mesh_query.h"
@@ -60,6 +61,7 @@ struct MeshCheck {
     SurfaceParts parts;                ///< of `baked`
     PartsAccuracy part_accuracy;
     std::vector<WorstPlace> places;
+    DepthProof proof;  ///< against the mesh that was baked
     std::vector<Advice> advice;  ///< filled in by the caller, because it requires bakes
 
     /// The measurement against the mesh that was baked.

@@ -57,6 +57,8 @@ void fields(FieldVisitor& visit, const MeshCheckReport& report) {
           {"Accuracy of each part of the mesh relative to its size"});
     visit("worst_places", viewsOf<WorstPlaceReport>(run.places, run.collider),
           {.help = "At most three places, the worst first", .items = {0.0, 3.0}});
+    visit("depth_proof", DepthProofReport{run.proof, run.judged().samples.longest_side},
+          {"Proven bound of errors against the mesh that was baked"});
     visit("advice", run.advice, {"Commands to try; empty if the verdict is good and --max-error is met"});
     visit("sampling", samples, {"Points of the measurement"});
     visit("accuracy", ColliderAccuracyReport{accuracy, samples.longest_side},

@@ -89,6 +89,20 @@ std::string accuracyText(const ColliderAccuracy& accuracy, const TruthSamples& s
     return text;
 }
 
+std::string proofText(const DepthProof& proof, double longest_side, const std::string& unit) {
+    if (!proof.unproven.empty()) {
+        return "The depth of errors is not proven: " + proof.unproven + ".\n";
+    }
+    const auto length = [&](double value) {
+        return lengthText(value, unit) + " (" + percentText(100.0 * value / longest_side) + ")";
+    };
+    return "Proven: no point farther than " + length(proof.depth) +
+           " from the surface is on the wrong side.\n" +
+           (proof.deepest > 0.0 ? "The deepest error found is " + length(proof.deepest) + " from it, at " +
+                                      positionText(proof.place) + ".\n"
+                                : "");
+}
+
 std::string placeText(const WorstPlace& place, const std::string& unit) {
     return lengthText(place.size(), unit) + " across: " + percentText(place.contribution_percent) +
            " of the wrong points, " + sideText(place.false_inside_percent);
@@ -264,6 +278,23 @@ void fields(FieldVisitor& visit, const WorstPlaceReport& report) {
     visit("texel", onlyIf(has_map, place.texel),
           {"Side of the map's texels at the position; null if no map votes", "object units", kFromZero});
     visit("explanation", causeText(place, report.collider), {"Explanation in one line"});
+}
+
+void fields(FieldVisitor& visit, const DepthProofReport& report) {
+    const DepthProof& proof = report.proof;
+    const bool proven = proof.unproven.empty();
+    const bool found = proof.deepest > 0.0;
+    visit("depth", onlyIf(proven, proof.depth),
+          {"No point farther than this from the surface is on the wrong side; null if not proven",
+           "object units", kFromZero});
+    visit("depth_percent", onlyIf(proven, 100.0 * proof.depth / report.longest_side),
+          {"The same", "% of the longest side", kFromZero});
+    visit("deepest", onlyIf(found, proof.deepest),
+          {"Distance from the surface of the deepest error found; null if none is found", "object units",
+           kFromZero});
+    visit("place", onlyIf(found, proof.place), {"That point, for `relief query`", "object units"});
+    visit("boxes", proof.boxes, {"Boxes that the proof examined"});
+    visit("unproven", nonEmpty(proof.unproven), {"Why no depth is proven; null if it is"});
 }
 
 void fields(FieldVisitor& visit, const Advice& advice) {

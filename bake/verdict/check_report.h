@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bake/measure/accuracy.h"
+#include "bake/measure/depth_proof.h"
 #include "bake/measure/grades.h"
 #include "bake/measure/worst_places.h"
 #include "formats/collider.h"
@@ -31,6 +32,10 @@ namespace relief {
 /// \param unit  of lengths: "m", or "" for object units
 [[nodiscard]] std::string accuracyText(const ColliderAccuracy& accuracy, const TruthSamples& samples,
                                        const std::string& unit);
+
+/// Returns a sentence or two: the proven depth of errors and the deepest one found, or why no depth is proven.
+/// \param longest_side  of the mesh, object units
+[[nodiscard]] std::string proofText(const DepthProof& proof, double longest_side, const std::string& unit);
 
 /// Returns "map 2 (front-back along 0/0/-1)", or "no map" for −1.
 [[nodiscard]] std::string mapWords(const Collider& collider, int map);
@@ -81,5 +86,12 @@ struct WorstPlaceReport {
 void fields(FieldVisitor& visit, const WorstPlaceReport& report);
 
 void fields(FieldVisitor& visit, const Advice& advice);
+
+struct DepthProofReport {
+    const DepthProof& proof = kNone<DepthProof>;
+    double longest_side = 1.0;
+};
+
+void fields(FieldVisitor& visit, const DepthProofReport& report);
 
 }  // namespace relief
