@@ -17,6 +17,7 @@
 #include "formats/validate.h"
 #include "tests/bake/meshes.h"
 #include "tests/bake/threads.h"
+#include "tests/seeds.h"
 
 namespace relief::test {
 namespace {
@@ -275,17 +276,7 @@ void expectNearerFace(const Plate& plate, double beside = 0.0) {
     EXPECT_LT(off, 0.01);
 }
 
-class PlateTest : public testing::TestWithParam<int> {};
-
-TEST_P(PlateTest, NearerFaceDecides) {
-    for (const std::uint64_t bytes : {64'000U, 256'000U}) {
-        SCOPED_TRACE(bytes);
-        expectNearerFace(Plate(GetParam(), bytes));
-    }
-}
-
-TEST_P(PlateTest, PointsBesideAFaceHaveItsSideAndNormal) {
-    const Plate plate(GetParam(), 512'000);
+void expectSideAndNormalBesideFaces(const Plate& plate) {
     std::mt19937 random(9);
     double turned = 0.0;
     int wrong = 0;
@@ -301,7 +292,33 @@ TEST_P(PlateTest, PointsBesideAFaceHaveItsSideAndNormal) {
     EXPECT_LT(turned, 1.0);
 }
 
+class PlateTest : public testing::TestWithParam<int> {};
+
+TEST_P(PlateTest, NearerFaceDecides) {
+    for (const std::uint64_t bytes : {64'000U, 256'000U}) {
+        SCOPED_TRACE(bytes);
+        expectNearerFace(Plate(GetParam(), bytes));
+    }
+}
+
+TEST_P(PlateTest, PointsBesideAFaceHaveItsSideAndNormal) {
+    expectSideAndNormalBesideFaces(Plate(GetParam(), 512'000));
+}
+
 INSTANTIATE_TEST_SUITE_P(Degrees, PlateTest, testing::Values(0, 20, 35, 50, 60));
+
+// A former bug: the lines of a cell missed a corner that one face cuts off. Then the other face decided in the whole cell.
+TEST(DepthPlanes, FacesBetweenTheLinesOfACellArePreserved) {
+    std::mt19937 random(seedFrom(28));
+    const double any = 90.0 * std::ldexp(static_cast<double>(random()), -32);
+    for (const auto& [degrees, bytes] : {std::pair(42.0, 64'000U), std::pair(47.0, 72'000U),
+                                         std::pair(48.0, 128'000U), std::pair(any, 64'000U)}) {
+        SCOPED_TRACE(degrees);
+        const Plate plate(degrees, bytes);
+        expectNearerFace(plate);
+        expectSideAndNormalBesideFaces(plate);
+    }
+}
 
 // A former bug: octants beside a face had the coarse normal of their split parent cell, with errors up to 1.6 degrees.
 TEST(DepthPlanes, FlatFacesHaveExactNormalsOnBothSides) {
