@@ -275,12 +275,23 @@ class LeafChooser {
         return candidates;
     }
     /// Drops samples whose nearest surface is not a boundary of the solid: it lies within another body or in a filled
-    /// void.
+    /// void. Samples that are outside, in a corner that the surface of the leaf omits, get a negative distance.
     void dropSamplesWithin() {
-        std::erase_if(samples_, [&](const Sample& sample) {
-            const glm::dvec3 beyond = sample.at + (sample.distance + kBeyond) * sample.normal;
-            return query_.inside(glm::vec3(node_.cell.low + node_.cell.size * beyond));
-        });
+        const auto inside = [&](const glm::dvec3& at) {
+            return query_.inside(glm::vec3(node_.cell.low + node_.cell.size * at));
+        };
+        std::vector<Sample> kept;
+        for (Sample& sample : samples_) {
+            if (inside(sample.at + (sample.distance + kBeyond) * sample.normal)) {
+                if (inside(sample.at)) {
+                    continue;
+                }
+                sample.distance = -sample.distance;
+                sample.normal = -sample.normal;
+            }
+            kept.push_back(sample);
+        }
+        samples_ = std::move(kept);
     }
 
     /// For a leaf without a surface.
