@@ -207,25 +207,26 @@ TEST(PatchTiles, TexelModeHasSmallRoots) {
 
 // Inside a thick plate the nearer face decides and has an exact normal, for every rotation of the plate.
 
-/// A plate of 10 by 1 by 10, rotated about z and baked into this many bytes.
+/// A plate of 10 by 1 by 10, rotated and baked into this many bytes.
 struct Plate {
     static constexpr double kHalf = 5.0;
     static constexpr double kBesideEdges = 0.8;
 
-    Plate(double degrees, std::uint64_t bytes) : Plate(degrees, bytes, boxFromTo(-kHalf, kHalf, degrees)) {}
+    Plate(double degrees, std::uint64_t bytes) : Plate(turnBy(degrees), bytes) {}
+    Plate(const glm::dquat& rotation, std::uint64_t bytes)
+        : Plate(rotation, bytes, boxFromTo(-kHalf, kHalf, rotation)) {}
     /// \param mesh  another mesh of the same solid
-    Plate(double degrees, std::uint64_t bytes, PreparedMesh mesh)
-        : turn(turnBy(degrees)), map(bakePatches(queryOf(std::move(mesh)), {.bytes = bytes})->map) {
+    Plate(const glm::dquat& rotation, std::uint64_t bytes, PreparedMesh mesh)
+        : turn(rotation), map(bakePatches(queryOf(std::move(mesh)), {.bytes = bytes})->map) {
         EXPECT_TRUE(validateFrame(map) && validateTexels(map));
         EXPECT_LE(map.texels.size(), bytes);
     }
 
-    static glm::dquat turnBy(double degrees) {
-        return glm::angleAxis(glm::radians(degrees), glm::dvec3(0.0, 0.0, 1.0));
+    static glm::dquat turnBy(double degrees, const glm::dvec3& axis = {0.0, 0.0, 1.0}) {
+        return glm::angleAxis(glm::radians(degrees), glm::normalize(axis));
     }
     /// The part of the plate between these x coordinates.
-    static TriangleMesh boxFromTo(double low, double high, double degrees) {
-        const glm::dquat turn = turnBy(degrees);
+    static TriangleMesh boxFromTo(double low, double high, const glm::dquat& turn) {
         return makeBoxMesh(turn * glm::dvec3(0.5 * (low + high), 0.0, 0.0), {0.5 * (high - low), 0.5, kHalf},
                            glm::mat3_cast(turn));
     }
@@ -319,6 +320,18 @@ TEST(DepthPlanes, FacesBetweenTheLinesOfACellArePreserved) {
     }
 }
 
+// A former bug: the heights of a face several cells away were out of range if it was tilted relative to all axes.
+TEST(DepthPlanes, FacesFarFromACellAreStored) {
+    const Plate plate(Plate::turnBy(60.0, {1.0, 2.0, 3.0}), 128'000);
+    std::mt19937 random(7);
+    int opposite = 0;
+    for (int i = 0; i < 5000; ++i) {
+        const Plate::Point point = plate.pointAt(random, 0.005, 0.45);
+        opposite += glm::dot(glm::dvec3(vote(plate.map, point.position)->normal), point.normal) < 0.0 ? 1 : 0;
+    }
+    EXPECT_LE(opposite, 2);
+}
+
 TEST(DepthPlanes, NearerFaceDecidesForAnyTurn) {
     std::mt19937 random(seedFrom(28));
     const double degrees = 90.0 * std::ldexp(static_cast<double>(random()), -32);
@@ -358,20 +371,22 @@ TEST(DepthPlanes, LargeBudgetsAreExact) {
 }
 
 TEST(DepthPlanes, WindingDoesNotMatter) {
-    TriangleMesh mesh = Plate::boxFromTo(-Plate::kHalf, Plate::kHalf, 30.0);
+    const glm::dquat turn = Plate::turnBy(30.0);
+    TriangleMesh mesh = Plate::boxFromTo(-Plate::kHalf, Plate::kHalf, turn);
     for (std::size_t i = 0; i < mesh.triangles.size(); i += 3) {
         std::swap(mesh.triangles[i].y, mesh.triangles[i].z);
     }
-    expectNearerFace(Plate(30.0, 128'000, finished(mesh.positions, mesh.triangles)));
+    expectNearerFace(Plate(turn, 128'000, finished(mesh.positions, mesh.triangles)));
 }
 
 // The ends of two overlapping boxes are inside the plate that they form, and are not part of its surface. Near them all
 // samples of a cell are dropped, so the cell has no depth planes.
 TEST(DepthPlanes, FacesInsideOtherSolidsAreIgnored) {
+    const glm::dquat turn = Plate::turnBy(30.0);
     const TriangleMesh two =
-        joined({Plate::boxFromTo(-Plate::kHalf, 0.5, 30.0), Plate::boxFromTo(-0.5, Plate::kHalf, 30.0)});
+        joined({Plate::boxFromTo(-Plate::kHalf, 0.5, turn), Plate::boxFromTo(-0.5, Plate::kHalf, turn)});
     const std::vector<std::uint32_t> by_winding(two.triangles.size(), 0);
-    expectNearerFace(Plate(30.0, 128'000, PreparedMesh::unionOf(two, by_winding)), 1.0);
+    expectNearerFace(Plate(turn, 128'000, PreparedMesh::unionOf(two, by_winding)), 1.0);
 }
 
 TEST(MeanPlane, EmptySetGivesTheMiddle) {
