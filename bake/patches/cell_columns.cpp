@@ -535,8 +535,10 @@ CellColumns::CellColumns(const MeshQuery& query, const MeshCell& cell,
         wound = wound && path.bodyOf(i) == 0;
     }
     std::ranges::sort(crossings, std::less(), &Crossing::start);
-    hits_ = hits.hits.size();
-    turns_.reserve(hits_);
+    for (const Hit& hit : hits.hits) {
+        ++hits_[hit.side > 0 ? 1 : 0];
+    }
+    turns_.reserve(hits.hits.size());
     const bool no_voids = query.awayFromVoids(cell.low, cell.low + cell.size);
     BodyCounter counter = cell.bodies;
     path.countCrossings(MeshCell::kKnown, grid.starts().front().point, counter);

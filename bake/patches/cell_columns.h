@@ -182,8 +182,8 @@ class CellColumns {
                 const LineGrid& grid);
 
     [[nodiscard]] const LineGrid& grid() const { return grid_; }
-    /// Number of intersections of lines and triangles.
-    [[nodiscard]] std::size_t hits() const { return hits_; }
+    /// Number of intersections of lines with triangles that face along the lines, or against them.
+    [[nodiscard]] std::size_t hits(bool along) const { return hits_[along ? 1 : 0]; }
     /// \param line  an index of LineGrid::lines() whose line does not miss the cube.
     [[nodiscard]] CellColumn operator[](std::size_t line) const {
         const Turns& turns = columns_[line];
@@ -209,7 +209,7 @@ class CellColumns {
     std::vector<float> inside_;
     std::vector<std::uint32_t> turning_;
     std::vector<double> turns_;
-    std::size_t hits_ = 0;
+    std::array<std::size_t, 2> hits_{};
 };
 
 }  // namespace relief

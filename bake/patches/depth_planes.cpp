@@ -28,8 +28,9 @@ constexpr double kLeftAtMost = 0.6;
 constexpr double kErrorMost = 1.0;
 /// The corners of a cell lie at least this far behind its depth planes, in cells.
 constexpr double kBehind = 1.0 / 256.0;
-/// Maximum height of a patch, in cells.
-constexpr double kHighest = 3.9;
+/// Maximum height of the lowest code of a patch, in cells, and maximum height. Higher codes are too coarse for a normal.
+constexpr double kBaseHighest = 3.9;
+constexpr double kHighest = 7.8;
 /// Below this distance, in cells, the direction to the surface is unknown.
 constexpr double kNoDirection = 1e-6;
 /// Points this far beyond a boundary of the solid are outside, in cells.
@@ -134,6 +135,21 @@ class Cell {
     double size_ = 1.0;
 };
 
+/// Encodes 2² heights. Starts the codes at a lower height if the heights exceed kBaseHighest.
+PatchHeights heightsOf(const std::array<double, 4>& heights) {
+    const double above = std::max(0.0, std::ranges::max(heights) - kBaseHighest);
+    const int shift = static_cast<int>(std::ceil(512.0 * above));
+    std::array<double, 5> held{};
+    std::ranges::copy(heights, held.begin());
+    held[4] = std::min(std::ranges::min(heights), kBaseHighest);
+    for (double& height : held) {
+        height -= shift / 512.0;
+    }
+    PatchHeights result = PatchHeights::of(held, 2);
+    result.base += shift;
+    return result;
+}
+
 /// Returns a patch of 2² heights on the plane. The plane is shifted outwards if a corner of the cell is not behind it,
 /// because the leaf may omit a corner of the surface. Returns nullopt if the heights are out of range.
 std::optional<PatchRecord> patchOf(CellPlane plane) {
@@ -150,12 +166,17 @@ std::optional<PatchRecord> patchOf(CellPlane plane) {
         corner[(first + 1) % 3] = i & 1U;
         corner[(first + 2) % 3] = i >> 1U;
         heights[i] = -plane.at(corner) / plane.normal[first];
-        if (!(std::abs(heights[i]) <= kHighest)) {
-            return std::nullopt;
-        }
     }
+    const bool mirrored = std::ranges::min(heights) < -kBaseHighest;
+    for (double& height : heights) {
+        height = mirrored ? 1.0 - height : height;
+    }
+    if (!(std::ranges::min(heights) >= -kBaseHighest && std::ranges::max(heights) <= kHighest)) {
+        return std::nullopt;
+    }
+    const PatchFrame frame{.first = first, .mirrored = static_cast<std::uint8_t>(mirrored ? 1 : 0)};
     const PatchRecord patch =
-        PatchRecord::patch({0, first, 0}, plane.normal[first] < 0.0, PatchHeights::of(heights, 2), 0);
+        PatchRecord::patch(frame, (plane.normal[first] < 0.0) != mirrored, heightsOf(heights), 0);
     for (unsigned i = 0; i < 8; ++i) {
         if (!(Cell().vote(SmallTree(patch), cornerOfCube(i)).distance < 0.0F)) {
             return std::nullopt;
@@ -275,12 +296,23 @@ class LeafChooser {
         return candidates;
     }
     /// Drops samples whose nearest surface is not a boundary of the solid: it lies within another body or in a filled
-    /// void.
+    /// void. Samples that are outside, in a corner that the surface of the leaf omits, get a negative distance.
     void dropSamplesWithin() {
-        std::erase_if(samples_, [&](const Sample& sample) {
-            const glm::dvec3 beyond = sample.at + (sample.distance + kBeyond) * sample.normal;
-            return query_.inside(glm::vec3(node_.cell.low + node_.cell.size * beyond));
-        });
+        const auto inside = [&](const glm::dvec3& at) {
+            return query_.inside(glm::vec3(node_.cell.low + node_.cell.size * at));
+        };
+        std::vector<Sample> kept;
+        for (Sample& sample : samples_) {
+            if (inside(sample.at + (sample.distance + kBeyond) * sample.normal)) {
+                if (inside(sample.at)) {
+                    continue;
+                }
+                sample.distance = -sample.distance;
+                sample.normal = -sample.normal;
+            }
+            kept.push_back(sample);
+        }
+        samples_ = std::move(kept);
     }
 
     /// For a leaf without a surface.

@@ -17,8 +17,8 @@ constexpr int kFinalPairRounds = 4;
 /// Shapes that would pay off at this fraction of a byte's worth are tried at once, because a later step would have to
 /// recompute the columns of the cell.
 constexpr double kForesight = 0.5;
-/// Parts are assumed to lie between lines if the lines hit less than this fraction of the expected number. Their volume
-/// is estimated as kVolumePassedBy times the missing area to the power of 3/2.
+/// Parts are assumed to lie between lines if the lines hit less than this fraction of the expected number of triangles
+/// that face one way. Their volume is estimated as kVolumePassedBy times the missing area to the power of 3/2.
 constexpr double kPassedBy = 0.5;
 constexpr double kVolumePassedBy = 0.1;
 /// The mean error allowed by LeafFitter::hold(), as a fraction of `within`.
@@ -26,13 +26,18 @@ constexpr double kMeanShare = 0.5;
 
 /// Estimates the volume missed between the lines, in cells.
 double volumePassedBy(const CellColumns& columns, std::span<const ClippedTriangle> pieces) {
-    double expected = 0.0;
+    std::array<double, 2> expected{};
     for (const ClippedTriangle& piece : pieces) {
-        expected += columns.grid().expectedHits(piece);
+        expected[dot(piece.normal, columns.grid().along()) > 0.0 ? 1 : 0] +=
+            columns.grid().expectedHits(piece);
     }
-    const auto hits = static_cast<double>(columns.hits());
-    const double area = (expected - hits) * columns.grid().volumePerLength();
-    return hits < kPassedBy * expected ? kVolumePassedBy * area * std::sqrt(area) : 0.0;
+    double missing = 0.0;
+    for (const bool along : {false, true}) {
+        const auto hits = static_cast<double>(columns.hits(along));
+        missing += hits < kPassedBy * expected[along] ? expected[along] - hits : 0.0;
+    }
+    const double area = missing * columns.grid().volumePerLength();
+    return kVolumePassedBy * area * std::sqrt(area);
 }
 
 /// Tries the shapes of one leaf, in the order of kPatchShapes.
