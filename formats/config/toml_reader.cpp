@@ -348,7 +348,8 @@ void TableRules::checkUse(const TomlValue& table, const Field& field, std::strin
         for (const std::string_view other : needs) {
             names += (names.empty() ? "" : " or ") + table.full(other);
         }
-        at.fail(at.name() + " does nothing without " + names + "; add that, or remove this");
+        at.fail(at.name() + " has no effect without " + names + "; add " + names + ", or remove " +
+                at.name());
     }
 }
 

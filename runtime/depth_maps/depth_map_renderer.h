@@ -23,7 +23,7 @@ namespace relief {
 class DepthMapRenderer {
   public:
     /// \param width, height  texels of the largest map.
-    /// Errors: kLimit (beyond this GL's texture size, or out of memory), kUnsupported (formats not renderable),
+    /// Errors: kLimit (beyond this GL context's texture size, or out of memory), kUnsupported (formats not renderable),
     /// kFailure.
     [[nodiscard]] static Result<DepthMapRenderer> create(std::uint32_t width, std::uint32_t height);
 

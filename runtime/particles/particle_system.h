@@ -92,8 +92,8 @@ class ParticleSystem {
     static constexpr std::uint32_t kCapacityMax = 1U << 24;
 
     /// Every call that is not const needs a current context.
-    /// Errors: kUsage (capacity, epoch), kLimit (more than this GL supports), kUnsupported (also StepPath::kCompute
-    /// without compute shaders), kFailure.
+    /// Errors: kUsage (capacity, epoch), kLimit (more than this GL context supports), kUnsupported (also
+    /// StepPath::kCompute without compute shaders), kFailure.
     [[nodiscard]] static Result<ParticleSystem> create(const ParticleSystemOptions& options = {});
 
     /// Sets the colliders for subsequent steps and compiles the step for them. Particles are in the object space of a

@@ -108,7 +108,8 @@ TEST(TomlReader, Errors) {
               "f.toml:2:10: radius does nothing for form = \"box\"; remove it, or choose form = \"ball\"");
     EXPECT_EQ(error("count = [4, 2]\n"), "f.toml:1:9: count has a minimum above its maximum; swap them");
     EXPECT_EQ(error("range = [4]\n"), "f.toml:1:9: range must be two numbers [low, high]");
-    EXPECT_EQ(error("speed = 1\n"), "f.toml:1:9: speed does nothing without axis; add that, or remove this");
+    EXPECT_EQ(error("speed = 1\n"),
+              "f.toml:1:9: speed has no effect without axis; add axis, or remove speed");
     EXPECT_EQ(error("axis = [1, 0, 0]\nspeed = 0\n"),
               "f.toml:2:9: speed does nothing if it is 0; raise it or remove it");
     EXPECT_EQ(error("axis = [0, 0, 0]\n"),
