@@ -102,9 +102,9 @@ Result<Materials> readMaterials(const fb::Materials& stored) {
     if (stored.list()->size() > kMaterialsMax ||
         std::any_of(stored.list()->begin(), stored.list()->end(), is_long) ||
         (stored.sides() != nullptr && stored.sides()->size() > kMaterialSidesMax)) {
-        return invalidInput("its materials are more than " + std::to_string(kMaterialsMax) +
-                            ", or have names of more than " + std::to_string(kMaterialNameMax) +
-                            " bytes; bake the mesh again");
+        return invalidInput("it has more than " + std::to_string(kMaterialsMax) +
+                            " materials, or one with a name of more than " +
+                            std::to_string(kMaterialNameMax) + " bytes; bake the mesh again");
     }
     for (const fb::Material* one : *stored.list()) {
         materials.list.push_back({one->name()->str(), one->restitution(), one->friction(),

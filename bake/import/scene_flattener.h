@@ -6,7 +6,7 @@
 
 namespace relief {
 
-/// Merges everything that the scene shows into one mesh, with marks for the job's names and with warnings of skipped
+/// Merges everything that the scene shows into one mesh, with marks for the job's names and with warnings about skipped
 /// parts. Converts to metres if the frame or the job gives a unit, and to +Y up if one gives an axis. Counts all
 /// triangles before allocating, because a small file can place one mesh many times.
 /// Errors, without the file name: kInvalidInput (nothing to show, a node below itself, an invalid frame), kUsage (a

@@ -232,8 +232,8 @@ std::vector<TomlValue> TomlValue::tables(const FieldInfo& info) const {
             (*this)[i].wrongType(wanted);
         }
         if (i == info.rules.most) {
-            (*this)[i].fail("there are " + std::to_string(array()->size()) + " of [[" + name_ +
-                            "]], more than " + std::to_string(info.rules.most) + "; remove some");
+            (*this)[i].fail("there are " + std::to_string(array()->size()) + " [[" + name_ +
+                            "]] tables; at most " + std::to_string(info.rules.most) + " are allowed");
         }
         tables.push_back((*this)[i]);
     }

@@ -70,7 +70,7 @@ class WorldTextures : public ShaderCollider {
     /// Returns the texels per row of the texture with the reserved range.
     [[nodiscard]] std::size_t rowTexels() const { return std::size_t{1} << room_log2_width_; }
     /// Copies texels of a map of patches into the reserved range, for exchange(). Does not wait.
-    /// \param first  texture texel, counted as room() is.
+    /// \param first  index of a texel in the texture, room() or above.
     /// \param texels  whole texels of 8 bytes; may be part of a map.
     void upload(std::size_t first, std::span<const std::byte> texels);
     /// Gives all bodies that share this body's collider another map of patches from the reserved range, or restores

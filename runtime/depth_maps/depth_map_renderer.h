@@ -32,7 +32,7 @@ class DepthMapRenderer {
     /// create(); texels may be missing. If `encloses` is set, its rays start in free space. Otherwise, a surface hit
     /// from its inner side leaves the texel empty.
     void render(GpuMesh& mesh, const DepthMap& map) const;
-    /// As render(), inside a PassState of the caller.
+    /// Like render(), inside a PassState of the caller.
     void renderInPass(GpuMesh& mesh, const DepthMap& map) const;
 
     [[nodiscard]] std::uint32_t width() const { return width_; }

@@ -121,7 +121,7 @@ TEST(TomlReader, Errors) {
     EXPECT_EQ(error("[[part]]\nweight = 1\n[[part]]\nweight = 2\n"),
               "f.toml:4:10: part.weight is above the first; order the parts");
     EXPECT_EQ(error("part = [{ weight = 1 }, { weight = 1 }, { weight = 1 }]\n"),
-              "f.toml:1:41: there are 3 of [[part]], more than 2; remove some");
+              "f.toml:1:41: there are 3 [[part]] tables; at most 2 are allowed");
     EXPECT_EQ(error("file = \"../a\"\n").substr(0, 22), "f.toml:1:8: file = '..");
     EXPECT_NE(error("form = \n").find("f.toml:1:"), std::string::npos);
 }
