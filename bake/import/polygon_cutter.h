@@ -13,12 +13,11 @@ namespace relief {
 /// Triangulates polygons, including concave ones and those with corners on straight edges. Reuses its memory between
 /// polygons.
 ///
-/// Clips ears in corner order, in the coordinate plane closest to the polygon's own. Every ear has a nonzero
-/// area: a corner on a straight edge becomes part of such an ear, because a triangle without area would be dropped and
-/// leave a slit. If no
-/// such triangulation exists, because the polygon crosses itself or has no area, the result has the fewest flipped or
-/// flat triangles. Projected coordinates are the polygon's own, so precision does not depend on the distance from the
-/// origin.
+/// Clips ears in corner order, in the coordinate plane closest to the polygon's own. Every ear has a nonzero area: a
+/// corner on a straight edge becomes part of such an ear, because a triangle without area would be dropped and leave a
+/// slit. If no such triangulation exists, because the polygon crosses itself or has no area, the result has the fewest
+/// flipped or flat triangles. Projected coordinates are the polygon's own, so precision does not depend on the distance
+/// from the origin.
 ///
 /// The first attempt repeats assimp's tests in float precision, so that baked files keep their bytes. Its result is
 /// used only if every triangle has an area.

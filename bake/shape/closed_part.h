@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Closes parts with holes, and tells bodies that are cut off at the foot, such as a statue, from vessels.
+// Closes parts with holes, and distinguishes bodies cut off at the foot, such as a statue, from vessels.
 #pragma once
 
 #include <optional>

@@ -37,7 +37,7 @@
 
 namespace relief {
 
-/// Velocity integration. Both methods are of first order, and their results differ only by rounding.
+/// Velocity integration. Both methods are first-order, and their results differ only by rounding.
 enum class Integrator : std::uint8_t {
     kEuler,  ///< semi-implicit: v' = v + dt a, P' = P + dt v'
     kVerlet,  ///< P' = P + dt/dt_before (P − P_before) + dt² a; the velocity is the displacement of the last step
