@@ -338,7 +338,7 @@ void TableRules::checkUse(const TomlValue& table, const Field& field, std::strin
     const auto given = [&](std::string_view key) { return table.find(key).has_value(); };
     if (!info.rules.only.empty() && !listHas(info.rules.only, selected)) {
         const std::string by = table.full(selector());
-        at.fail(at.name() + " does nothing for " + by + " = \"" + std::string(selected) +
+        at.fail(at.name() + " has no effect for " + by + " = \"" + std::string(selected) +
                 "\"; remove it, or choose " + by + " = \"" + std::string(listWords(info.rules.only).front()) +
                 "\"");
     }
@@ -410,7 +410,7 @@ void readNumber(const TomlValue& from, FieldRef value, const FieldInfo& info) {
     value.setReal(value.type().size == sizeof(float) ? double{narrowed<float>(number, info.range)}
                                                      : narrowed<double>(number, info.range));
     if (info.rules.not_zero && value.number() == 0.0) {
-        from.fail(from.name() + " does nothing if it is 0; raise it or remove it");
+        from.fail(from.name() + " has no effect if it is 0; raise it or remove it");
     }
 }
 
