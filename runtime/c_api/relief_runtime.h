@@ -290,7 +290,7 @@ typedef struct relief_emitter_options {
 relief_emitter* relief_emitter_create(const relief_animation* animation, const char* group,
                                       const char* material, const relief_emitter_options* options);
 /* Creates an emitter on the surface that the maps of a collider represent. Parts thinner than 1/96 of its longest side
- * may be missing. The collider may be freed afterwards. Takes some tenths of a second. */
+ * may be missing. The collider may be freed afterwards. Takes a few tenths of a second. */
 relief_emitter* relief_emitter_create_on(const relief_collider* collider, const char* material,
                                          const relief_emitter_options* options);
 void relief_emitter_free(relief_emitter* emitter);
