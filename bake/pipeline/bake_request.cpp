@@ -277,8 +277,8 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
                     "is in units of the level, and each mesh is baked for its largest scale."});
     visit(
         "max_error", request.max_error,
-        {.help =
-             "Use the fewest bytes that misclassify at most this percentage of the points near the surface",
+        {.help = "Bake the smallest collider that misclassifies at most this percentage of points near the "
+                 "surface",
          .unit = "%",
          .range = {0.0},
          .details = "Tries budgets from 32kB to 64MB, or up to --budget, and measures each as `relief check` "
