@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses of an animated mesh, from a clip at a time or set by the caller. CPU reference of shaders/live/skin.vert.
+// Poses of an animated mesh, evaluated from a clip or set by the caller. CPU reference of shaders/live/skin.vert.
 #pragma once
 
 #include <cstddef>

@@ -169,7 +169,7 @@ void relief_textures_free(relief_textures* textures);
  * last pose applies. Since 1.2. */
 int relief_textures_set_poses(relief_textures* world_textures, const uint32_t* bodies,
                               const relief_pose* poses, size_t count);
-/* Sets an animated body to the pose of a clip at a time, clamped to its first and last key. The next call of
+/* Sets an animated body to the pose of a clip at `seconds`, clamped to its first and last key. The next call of
  * relief_textures_set_poses() applies it. After a jump, such as a change of clip, call relief_textures_set_poses()
  * twice; otherwise the jump counts as motion and pushes particles. `body`: a number returned by relief_world_add().
  * Since 1.2. */
