@@ -102,9 +102,9 @@ Result<Materials> readMaterials(const fb::Materials& stored) {
     if (stored.list()->size() > kMaterialsMax ||
         std::any_of(stored.list()->begin(), stored.list()->end(), is_long) ||
         (stored.sides() != nullptr && stored.sides()->size() > kMaterialSidesMax)) {
-        return invalidInput("its materials are more than " + std::to_string(kMaterialsMax) +
-                            ", or have names of more than " + std::to_string(kMaterialNameMax) +
-                            " bytes; bake the mesh again");
+        return invalidInput("it has more than " + std::to_string(kMaterialsMax) +
+                            " materials, or one with a name of more than " +
+                            std::to_string(kMaterialNameMax) + " bytes; bake the mesh again");
     }
     for (const fb::Material* one : *stored.list()) {
         materials.list.push_back({one->name()->str(), one->restitution(), one->friction(),
@@ -128,7 +128,7 @@ Result<Materials> readMaterials(const fb::Materials& stored) {
     if (size > kMaterialNodesMax * sizeof(MaterialNode) || size % sizeof(MaterialNode) != 0 ||
         (packing == Packing::kNone ? size != bytes.size()
                                    : packing != Packing::kZstd || size <= bytes.size())) {
-        return invalidInput("the size of the material nodes does not match their bytes");
+        return invalidInput("materials.nodes_size does not match the stored nodes");
     }
     std::vector<std::byte> nodes(bytes.begin(), bytes.end());
     if (packing == Packing::kZstd) {
@@ -238,7 +238,7 @@ bool ContainerReader::checkSizes() {
     }
     if (header.metadata_size > kContainerMetadataMax) {
         add(IssueCode::kMetadataLimit,
-            "metadata_size is " + std::to_string(header.metadata_size) + ", at most " +
+            "metadata_size is " + std::to_string(header.metadata_size) + "; at most " +
                 std::to_string(kContainerMetadataMax) + " are allowed",
             40);
         return false;

@@ -373,7 +373,7 @@ std::optional<PatchVote> votePatches(PatchTexels texels, const glm::vec3& p) {
 Result<void> validatePatches(PatchTexels texels) {
     const std::size_t count = texels.size() / kPatchTexelBytes;
     if (count == 0 || count > kPatchTexelsMax) {
-        return invalidInput("its tree of patches has " + std::to_string(count) + " texels, 1 to " +
+        return invalidInput("its tree of patches has " + std::to_string(count) + " texels; 1 to " +
                             std::to_string(kPatchTexelsMax) + " are allowed");
     }
     const auto [roots, levels] = patchTreeSize(texels);

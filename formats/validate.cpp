@@ -33,7 +33,7 @@ std::string words(const glm::vec3& v) {
 /// Returns the problem of a metadata text, or "".
 std::string faultOfText(const char* field, std::string_view text, std::size_t size_max) {
     if (text.size() > size_max) {
-        return std::string(field) + " has " + std::to_string(text.size()) + " bytes, " +
+        return std::string(field) + " has " + std::to_string(text.size()) + " bytes; at most " +
                std::to_string(size_max) + " are allowed";
     }
     return isPlainText(text) ? "" : std::string(field) + " is not UTF-8 without control characters";

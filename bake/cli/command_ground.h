@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `relief bake --heights` bakes a height map into a collider, or with --world into a folder of tiles and a file that places them.
-// `relief check` measures either against the height map.
+// `relief bake --heights` bakes a height map into a collider, or with --world into a folder of tiles and a file that
+// places them. `relief check` measures either against the height map.
 #pragma once
 
 #include <string>
@@ -14,8 +14,8 @@ namespace relief {
 /// Errors: those of settingsOf, HeightMap::open and bakeGroundOf; kUsage, kIo.
 [[nodiscard]] Result<void> runGroundCommand(const std::string& folder, const WorldCall& call);
 
-/// Returns whether `relief check` reads the file of --mesh as a height map without --heights: standard input or a file whose
-/// extension is not that of a mesh format.
+/// Returns whether `relief check` reads the file of --mesh as a height map without --heights: standard input or a file
+/// whose extension is not that of a mesh format.
 [[nodiscard]] bool namesHeightMap(const std::string& file);
 
 struct GroundCheckCall {

@@ -121,7 +121,8 @@ Result<std::string> outputOf(const ViewCommand& command) {
         return command.output;
     }
     if (command.file == "-") {
-        return fail(ErrorCode::kUsage, "a page of standard input has no default name; add -o OUT.html");
+        return fail(ErrorCode::kUsage,
+                    "a page made from standard input has no default name; add -o OUT.html");
     }
     return fs::path(command.file).replace_extension(".html").string();
 }

@@ -16,7 +16,8 @@ namespace relief {
 
 /// Checks, before the long work, that a page can be made and written. \param html  the value of --page; empty: no page
 /// \return the player page for a world, otherwise empty
-/// Errors: kUsage; kUnsupported if there is no player; kInvalidInput if the player has no place for data; those of FileGuard.
+/// Errors: kUsage; kUnsupported if there is no player; kInvalidInput if the player has no place for data; those of
+/// FileGuard.
 [[nodiscard]] Result<std::string> preflightPage(const std::string& file, const std::string& mesh,
                                                 const std::string& html, FileGuard& files);
 
@@ -26,7 +27,8 @@ namespace relief {
 [[nodiscard]] Result<std::string> makeCheckPage(const std::string& name, std::size_t bytes,
                                                 const MeshCheck& check, std::optional<float> max_error);
 
-/// Makes the page of a world. \param file  world.json \param check  a check with pictures \param player  result of preflightPage
+/// Makes the page of a world.
+/// \param file  world.json \param check  a check with pictures \param player  result of preflightPage
 /// Errors: kLimit if the data is larger than a page may hold; those of readForPage.
 [[nodiscard]] Result<std::string> makeWorldPage(const std::string& file, const WorldCheckJson& check,
                                                 const std::string& player, FileGuard& files);

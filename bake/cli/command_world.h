@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `relief bake --world` bakes a level into a folder of colliders and a file that places them. `relief check` measures it.
+// `relief bake --world` bakes a level into a folder of colliders and a file that places them. `relief check` measures
+// the world.
 #pragma once
 
 #include <filesystem>

@@ -10,7 +10,7 @@
 
 namespace relief {
 
-/// The range of a column's squares with ground.
+/// The height range of the squares with ground in a column.
 struct ColumnRange {
     float low = 0.0F;  ///< heights, object units
     float high = 0.0F;

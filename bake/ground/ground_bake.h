@@ -35,7 +35,7 @@ struct GroundTile {
     std::uint64_t gpu_bytes = 0;
     std::optional<WorldFile> coarse;  ///< set if hasCoarse()
     std::uint64_t squares = 0;        ///< number of squares with ground
-    std::uint64_t steep = 0;          ///< number of its own squares (no rim) steeper than kSteepest
+    std::uint64_t steep = 0;          ///< number of its own squares, without the rim, steeper than kSteepest
     double error_max = 0.0;  ///< error of its heights, excluding steep squares, metres; 0: all are steep
     Bounds box;              ///< of its surface, in its own space
 };

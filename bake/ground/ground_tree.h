@@ -15,10 +15,10 @@
 // without ground, or too steep, is split into single squares of 2² heights.
 //
 // Every stored height is within half a step of its leaf from the sample. 255 steps span the range of the leaf's 25
-// samples and a 512th of the leaf's side, rounded up by at most a sixteenth. The same bound holds for the surface,
-// because both surfaces are bilinear between the samples. Neighbouring leaves differ by at most the sum of their
-// bounds. Squares that rise by more than kSteepest of their side are the exception: there the surface may be displaced
-// sideways by up to kAside of a square.
+// samples plus a 512th of the leaf's side; this span is rounded up by at most a sixteenth. The same bound holds for the
+// surface, because both surfaces are bilinear between the samples. Neighbouring leaves differ by at most the sum of
+// their bounds. Squares that rise by more than kSteepest of their side are the exception: there the surface may be
+// displaced sideways by up to kAside of a square.
 #pragma once
 
 #include <cstdint>

@@ -160,7 +160,8 @@ Result<void> HeightMap::rewind() {
     std::unique_ptr<SampleRows> again = RELIEF_TRY(openRows());
     if (again->columns() != rows_->columns() || again->rows() != rows_->rows() ||
         again->most() != rows_->most()) {
-        return invalidInput(shown_ + ": the importer returned another size; save it again");
+        return invalidInput(shown_ +
+                            ": the importer returned a different size the second time; save it again");
     }
     rows_ = std::move(again);
     return {};

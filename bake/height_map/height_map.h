@@ -39,7 +39,7 @@ class SampleRange {
         insert(low_, sample);
         insert(high_, -sample);
     }
-    /// Returns the lone values, with the gap in samples; nullopt unless there are more than twice as many other values.
+    /// Returns the lone values, with the gap in samples; nullopt if the other values are at most twice as many.
     [[nodiscard]] std::optional<LoneSample> lone() const;
 
   private:

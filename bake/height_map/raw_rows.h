@@ -16,7 +16,7 @@ namespace relief {
 
 /// Opens raw samples.
 /// \param bytes  untrusted; must outlive the rows.
-/// Errors, without the file name: kInvalidInput (the size is not that of whole rows, or there is no square).
+/// Errors, without the file name: kInvalidInput (not a whole number of rows or, without a width, not a square).
 [[nodiscard]] Result<std::unique_ptr<SampleRows>> openRawRows(std::span<const std::byte> bytes,
                                                               const HeightsSpec& spec);
 
@@ -25,7 +25,8 @@ struct LikelierFormat {
     std::optional<SampleType> type = {};  ///< nullopt: as given
     std::optional<ByteOrder> order = {};  ///< nullopt: as given
     bool eight_bits = false;              ///< the given settings may also be correct: 8-bit samples times 256
-    /// No better setting was found, but the samples look like noise, or differ less with the other signedness.
+    /// No better setting was found, but the samples look like noise, or neighbours differ less with the other
+    /// signedness.
     bool doubtful = false;
 
     [[nodiscard]] bool found() const { return type || order; }

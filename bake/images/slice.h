@@ -22,8 +22,8 @@ struct SliceOptions {
     std::uint32_t size = 512;  ///< samples along the longer side
 };
 
-/// Samples on a regular grid that covers the bounds plus a tenth of their longer side on each side. The horizontal and
-/// vertical axes are (z, y) across x, (x, z) across y, and (x, y) across z.
+/// Samples on a regular grid that covers the bounds, with a margin of a tenth of their longer side all around. The
+/// horizontal and vertical axes are (z, y) across x, (x, z) across y, and (x, y) across z.
 struct Slice : AxisGrid {
     float at = 0.0F;                     ///< object units
     std::vector<FieldSample> samples{};  ///< row by row from the bottom

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A small part of a plane, coloured by where a collider is right and where it is wrong.
+// A small part of a plane, coloured by whether a collider classifies each point correctly.
 #pragma once
 
 #include <cstddef>

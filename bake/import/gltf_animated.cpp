@@ -214,7 +214,7 @@ class AnimatedReader {
         if (order.size() + 1 > kMeshNodesMax) {
             return fail(ErrorCode::kLimit, "it has " + std::to_string(order.size()) + " nodes, but at most " +
                                                std::to_string(kMeshNodesMax - 1) +
-                                               " can move; export less of the scene");
+                                               " are supported; export less of the scene");
         }
         const std::int32_t above = static_cast<std::int32_t>(mesh_.nodes.size()) - 1;
         nodes_.resize(from_.size());

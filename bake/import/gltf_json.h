@@ -16,7 +16,7 @@
 
 namespace relief {
 
-/// Parses like parseStrictJson(), but accepts trailing spaces and zeros.
+/// Parses like parseStrictJson(), but accepts trailing spaces and zero bytes.
 [[nodiscard]] Result<nlohmann::json> parseGltfJson(std::string_view text);
 
 /// An object of the document. A member of the wrong type, including null, is an error (kInvalidInput).
@@ -33,7 +33,8 @@ class GltfValue {
     /// Index in its parent list.
     [[nodiscard]] std::uint64_t index() const { return index_; }
 
-    /// Reads a member: bool, std::uint64_t, std::string, or a vector of float or of these; nullopt if it is missing.
+    /// Reads a member; nullopt if it is missing. T is bool, std::uint64_t, std::string, or a vector of one of these or
+    /// of float.
     template <class T>
     [[nodiscard]] Result<std::optional<T>> get(const char* name) const;
     /// Reads a member, or returns `otherwise` if it is missing.

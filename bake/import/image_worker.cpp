@@ -52,7 +52,7 @@ class WorkerRows : public SampleRows {
         RELIEF_TRY(receiveAnswer(std::as_writable_bytes(std::span(&size, 1))));
         if (size.columns == 0 || size.rows == 0 ||
             (size.most != 0 && size.most != 255 && size.most != 65535)) {
-            return invalidInput("the importer returned an invalid image size; save it again");
+            return invalidInput("the importer returned an invalid image size; save the image again");
         }
         columns_ = size.columns;
         rows_ = size.rows;

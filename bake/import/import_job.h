@@ -68,7 +68,7 @@ struct ImportJob {
     ImportKind kind = ImportKind::kMesh;
 };
 
-/// Reads the mesh; defined in the library bake_assimp. \return the input of ImportSource::finish. Errors: as
+/// Reads the mesh; defined in the library bake_assimp. \return the input of ImportSource::finish. Errors: those of
 /// importMesh.
 [[nodiscard]] Result<TriangleMesh> importRaw(const ImportJob& job);
 

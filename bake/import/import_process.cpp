@@ -116,7 +116,7 @@ Result<void> ImportProcess::start(const std::string& path, std::string_view kind
 }
 
 tl::unexpected<Error> ImportProcess::timeIsUp() const {
-    return fail(ErrorCode::kLimit, "the importer did not end within " + std::to_string(limits_.seconds) +
+    return fail(ErrorCode::kLimit, "the importer did not finish within " + std::to_string(limits_.seconds) +
                                        " s; " + smaller_ + " or raise --import-timeout");
 }
 

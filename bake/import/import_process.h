@@ -35,7 +35,7 @@ class ImportProcess {
     /// Validates the limits. Errors: kUsage.
     [[nodiscard]] Result<void> checkLimits() const;
     /// Starts the worker.
-    /// \param kind   a word of ImportKind, or kImportImage.
+    /// \param kind   a name of ImportKind, or kImportImage.
     /// \param more   further arguments.
     /// \param files  descriptors to pass as kImportMeshFd and the following numbers; -1: /dev/null.
     /// Errors: kFailure.

@@ -3,9 +3,10 @@
 //
 //     relief-import PATH MEMORY SECONDS TRIANGLES KIND [FIELD VALUE]… names [NAME…]
 //
-// PATH is the mesh as the user named it; it provides the extension, and the name for messages. MEMORY is in bytes.
-// TRIANGLES is ImportLimits::triangles. KIND is a word of ImportKind. FIELD and VALUE follow fields() of ImportOptions.
-// Each NAME is an entry of ImportOptions::names. The worker does not use standard input or output.
+// PATH is the path of the mesh as given by the user, for its extension and for messages. MEMORY is in bytes. SECONDS
+// limits processor time. TRIANGLES is ImportLimits::triangles. KIND is a name of ImportKind. FIELD and VALUE follow
+// fields() of ImportOptions. Each NAME is an entry of ImportOptions::names. The worker does not use standard input or
+// output.
 //
 // For an image, KIND is kImportImage, and one pipe serves as result and as kImportAliveFd. After the first byte, the
 // pipe carries an ImageSize and then each row as floats; a u32 of 0 precedes each of these. Any other u32 is an
@@ -45,7 +46,7 @@ inline constexpr int kImportExitTooLarge = 12;   ///< the message exceeds the re
 /// Added to the errno of the system call that failed.
 inline constexpr int kImportExitErrno = 128;
 
-/// Allocates the first bytes of a memfd now; otherwise a page that cannot be allocated raises SIGBUS on access.
+/// Allocates the first `bytes` bytes of a memfd now; otherwise a page that cannot be allocated raises SIGBUS on access.
 /// \return 0, or an errno: ENOSPC or ENOMEM if the system is out of memory.
 [[nodiscard]] inline int reserveMemory(int file, std::uint64_t bytes) {
     while (bytes != 0 && ::fallocate(file, 0, 0, static_cast<off_t>(bytes)) != 0) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Declares the readers of single formats, except the parts of glTF's reader, and readers shared with the runtime
-// (formats/polygons).
+// Declares the readers of mesh formats. The parts of the glTF reader have their own headers, and so do the readers that
+// the runtime shares (formats/polygons).
 // Errors name the line of a text file, not the file: kInvalidInput, kLimit, kUnsupported.
 #pragma once
 
@@ -24,16 +24,16 @@ namespace relief {
 
 /// Reads STL, as text or binary.
 ///
-/// Text starts with a line that begins with "solid"; keywords are case-insensitive, and line breaks are free. A file
-/// may contain several solids; a triangle gets the first word of its solid's name. Normals are ignored. A file that is
-/// at least as long as its header's triangle count requires is binary, regardless of its first bytes; bytes after the
-/// last triangle cause a warning.
+/// Text starts with a line that begins with "solid"; keywords are case-insensitive, and line breaks count as spaces. A
+/// file may contain several solids; a triangle gets the first word of its solid's name. Normals are ignored. A file
+/// that is at least as long as its header's triangle count requires is binary, regardless of its first bytes; bytes
+/// after the last triangle cause a warning.
 [[nodiscard]] Result<PolygonMesh> readStl(std::span<const std::byte> bytes);
 
 /// Reads AC3D, as text, including TORCS's extensions: triangle strips, normals and multiple textures.
 ///
-/// Each object becomes a node with its kids below it; its surfaces become one part per material. Lines are skipped and
-/// subdivision is not applied, both with a warning. The contents of `data` are ignored.
+/// Each object becomes a node with its kids below it; its surfaces become one part per material. Line primitives are
+/// skipped and subdivision is not applied, both with a warning. The contents of `data` are ignored.
 [[nodiscard]] Result<ImportScene> readAc3d(const ImportJob& job);
 
 /// Reads all other formats with assimp. Throws std::bad_alloc.

@@ -35,7 +35,7 @@ class ImportSource {
     /// \param raw    untrusted: positions, triangles, marks, unit, warnings, and dependencies with their hashes.
     /// Dependencies are relative to the folder and exclude the mesh file itself.
     /// \param names  number of ImportOptions::names; if it is 0, there must be no marks.
-    /// Errors: as finishMesh; kInvalidInput.
+    /// Errors: those of finishMesh; kInvalidInput.
     [[nodiscard]] Result<TriangleMesh> finish(TriangleMesh raw, std::size_t names = 0) const;
     /// Completes a level, and splits it into its meshes.
     [[nodiscard]] Result<Level> finishLevel(TriangleMesh raw, std::size_t names = 0,

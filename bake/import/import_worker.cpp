@@ -121,7 +121,7 @@ class Import {
             ::mmap(nullptr, size, PROT_READ, MAP_SHARED | MAP_POPULATE, result, 0), unmap);
         if (pages.get() == MAP_FAILED) {
             return fail(ErrorCode::kLimit, std::string("its triangles do not fit into memory (") +
-                                               std::strerror(errno) + "); simplify it, or free memory");
+                                               std::strerror(errno) + "); simplify the mesh, or free memory");
         }
         Result<TriangleMesh> raw =
             readImportMessage({static_cast<const std::byte*>(pages.get()), size}, worker_.limits().triangles);

@@ -123,11 +123,11 @@ struct Import {
         try {
             result.emplace(importWhatItIs(job));
         } catch (const std::bad_alloc&) {
-            result.emplace(fail(ErrorCode::kLimit, "out of memory; simplify it"));
+            result.emplace(fail(ErrorCode::kLimit, "out of memory; simplify the mesh"));
         } catch (const std::exception& e) {
             result.emplace(invalidInput(oneCleanLine(e.what()) + "; export it again"));
         } catch (...) {
-            result.emplace(invalidInput("the importer failed; export it again"));
+            result.emplace(invalidInput("the importer failed; export the file again"));
         }
     }
     static void* start(void* self) {

@@ -15,7 +15,7 @@ namespace relief {
 /// Reads a mesh file in a worker process (the program relief-import beside this one, or in ../libexec/relief). The
 /// worker has limits on memory and time, cannot write files, and reads only files below the mesh's folder. Its output
 /// is validated like an untrusted file. Blocks; leaves no process or file behind. The result equals that of importMesh.
-/// Errors, each naming the file: as importMesh; kInvalidInput (the importer crashed), kLimit (memory or time
+/// Errors, each naming the file: those of importMesh; kInvalidInput (the importer crashed), kLimit (memory or time
 /// exhausted), kFailure (the worker could not be started, or was killed from outside).
 [[nodiscard]] Result<TriangleMesh> importMeshInWorker(const std::filesystem::path& path,
                                                       const ImportOptions& options = {},
@@ -28,7 +28,7 @@ namespace relief {
 /// names. Skinned glTF meshes get the pose of the file's nodes; skinned meshes of other formats and morphed meshes keep
 /// their modelled shape, with a warning. Reads only regular files below the mesh's folder (import_files.h).
 /// Errors, each naming the file: kIo (missing, a folder, not readable), kUnsupported (format or feature), kInvalidInput
-/// (malformed, no triangles, or as finishMesh), kUsage (a name that no triangle has), kLimit.
+/// (malformed, no triangles, or as for finishMesh), kUsage (a name that no triangle has), kLimit.
 [[nodiscard]] Result<TriangleMesh> importMesh(const std::filesystem::path& path,
                                               const ImportOptions& options = {});
 

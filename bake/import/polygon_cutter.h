@@ -13,14 +13,14 @@ namespace relief {
 /// Triangulates polygons, including concave ones and those with corners on straight edges. Reuses its memory between
 /// polygons.
 ///
-/// Clips ears in corner order, in the coordinate plane closest to the polygon's own. Every ear has an area: a corner on
-/// a straight edge joins a triangle with area, because a triangle without area would be dropped and leave a slit. If no
-/// such triangulation exists, because the polygon crosses itself or has no area, the result has the fewest flipped or
-/// flat triangles. Projected coordinates are the polygon's own, so precision does not depend on the distance from the
-/// origin.
+/// Clips ears in corner order, in the coordinate plane closest to the polygon's own. Every ear has a nonzero area: a
+/// corner on a straight edge becomes part of such an ear, because a triangle without area would be dropped and leave a
+/// slit. If no such triangulation exists, because the polygon crosses itself or has no area, the result has the fewest
+/// flipped or flat triangles. Projected coordinates are the polygon's own, so precision does not depend on the distance
+/// from the origin.
 ///
-/// The first attempt repeats assimp's tests in float precision, so that bakes keep their bytes. Its result is used only
-/// if every triangle has an area.
+/// The first attempt repeats assimp's tests in float precision, so that baked files keep their bytes. Its result is
+/// used only if every triangle has an area.
 class PolygonCutter {
   public:
     /// Triangulates a polygon.
@@ -57,8 +57,8 @@ class PolygonCutter {
 };
 
 /// Rotates the corners of a polygon's triangles so that no triangle starts at the vertex at which the previous one
-/// started; shapes do not change. assimp marks polygon boundaries in this way. Keeping its order keeps the bytes of
-/// bakes.
+/// started; shapes do not change. assimp marks polygon boundaries in this way. Using its order keeps the bytes of
+/// baked files.
 class TriangleStarts {
   public:
     /// \param polygon  its triangles, as vertex indices of the mesh.

@@ -6,10 +6,10 @@
 
 namespace relief {
 
-/// Merges everything that the scene shows into one mesh, with marks for the job's names and with warnings of skipped
-/// parts. Converts to metres and +Y up if the frame or the job gives unit and axis. Counts all triangles before
-/// allocating, because a small file can place one mesh many times.
-/// Errors, without the file name: kInvalidInput (nothing to show, a node within itself, an invalid frame), kUsage (a
+/// Merges everything that the scene shows into one mesh, with marks for the job's names and with warnings about skipped
+/// parts. Converts to metres if the frame or the job gives a unit, and to +Y up if one gives an axis. Counts all
+/// triangles before allocating, because a small file can place one mesh many times.
+/// Errors, without the file name: kInvalidInput (nothing to show, a node below itself, an invalid frame), kUsage (a
 /// name that no triangle has), kLimit (more triangles than the job allows, or three times as many vertices).
 [[nodiscard]] Result<TriangleMesh> flatten(ImportScene scene, const ImportJob& job);
 

@@ -15,7 +15,7 @@
 
 namespace relief {
 
-/// Marks the names of LodGroup nodes in the result of markedFbx(), as a suffix. As long as "LodGroup".
+/// Marks the names of LodGroup nodes in the result of markedFbx(), as a suffix. It has the length of "LodGroup".
 inline constexpr std::string_view kLodGroupMark = "\x02LodGrp\x02";
 
 /// Patches an FBX document, binary or text, without changing its length, so that assimp exposes more. Visibility of

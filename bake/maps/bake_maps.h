@@ -27,7 +27,7 @@ struct BakeOptions {
         0.0F;  ///< of patches baked for a budget, object units: MapSpec::texel; 0: limited by the budget
     std::optional<Bounds> roots_hold{};  ///< PatchOptions::roots_hold
     unsigned threads = 0;                ///< 0: all cores; the result does not depend on it
-    /// Called periodically, from any thread but one at a time, with the fraction of the work done, in [0, 1]. Its
+    /// Called periodically with the fraction of the work done, in [0, 1]; from any thread, never concurrently. Its
     /// exceptions end bake() and propagate.
     std::function<void(double)> progress;
 };
@@ -63,7 +63,7 @@ struct Baked {
 /// mesh, regardless of the maps. Depends on the spacing of floats at the farthest corner, relative to the standard
 /// deviation of the points' distance from the surface. At most 50.
 [[nodiscard]] double wrongByFloats(const TriangleMesh& mesh);
-/// Whether floats cause at least half of the percentage: more bytes do not help.
+/// Whether floats cause more than half of the percentage, so that more bytes do not help.
 [[nodiscard]] inline bool floatsLimit(const TriangleMesh& mesh, double wrong_percent) {
     return 2.0 * wrongByFloats(mesh) > wrong_percent;
 }

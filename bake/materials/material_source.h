@@ -16,8 +16,8 @@ struct MaterialSource {
     std::vector<glm::uvec3> triangles;  ///< counter-clockwise seen from outside
     std::vector<std::uint8_t> ids;      ///< per triangle, an index into `list`
     std::vector<Material> list;         ///< in file order
-    /// True if the surface has no sheets. Then a normal can separate the materials on a board's two sides; a sheet has
-    /// the same material on both.
+    /// True if the surface has no sheets. Then the normal can distinguish the materials on the two sides of a board; a
+    /// sheet has the same material on both.
     bool sides = true;
 
     [[nodiscard]] bool empty() const { return list.empty(); }

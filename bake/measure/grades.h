@@ -11,7 +11,7 @@ namespace relief {
 inline constexpr double kGoodPercent = 1.0;
 inline constexpr double kFairPercent = 5.0;
 
-/// InsideAccuracy::far_face_percent; not graded below kInsidePointsLeast points.
+/// InsideAccuracy::far_face_percent; not graded with fewer than kInsidePointsLeast points.
 inline constexpr double kGoodInsidePercent = 3.0;
 inline constexpr double kFairInsidePercent = 10.0;
 inline constexpr std::uint64_t kInsidePointsLeast = 300;

@@ -7,7 +7,7 @@
 
 namespace relief {
 
-/// About unit length. Chosen so that no modelled edge or face is parallel to them.
+/// About unit length. Modelled edges and faces are unlikely to be parallel to them.
 inline constexpr std::array<glm::dvec3, 7> kParityDirections = {{{0.5773, 0.6137, 0.5386},
                                                                  {-0.7351, 0.3119, 0.6019},
                                                                  {0.2677, -0.8713, 0.4111},

@@ -15,7 +15,7 @@
 namespace relief {
 
 /// Offset of points from the surface, in units of the longest side. Separates the two sides of a surface, and keeps
-/// lines of sight off it. Half of the margin around a tight map.
+/// lines of sight off it. Half of the margin of a volume that fits the mesh (bake/views/view.h).
 inline constexpr double kSurfaceStep = 5e-5;
 
 /// A portable random generator: uses no library distribution and no libm.

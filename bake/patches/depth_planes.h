@@ -22,7 +22,7 @@ namespace relief {
 /// Returns the plane of a split cell, used by octants without a record.
 [[nodiscard]] CellPlane planeOfSplit(const MeshQuery& query, const PatchNode& node);
 
-/// Depth planes that replace the present ones of a leaf, with their cost and gain.
+/// Depth planes that replace the current ones of a leaf, with their cost and gain.
 struct DepthGain {
     static constexpr double kBytesMin = kPatchTexelBytes;
 

@@ -14,8 +14,8 @@ struct FrameChoice {
     bool two_sides = false;  ///< surface is visible both from above and from below
 };
 
-/// Returns the frame that sees most of the surface from one side. If the cell has surfaces that face both ways, as those
-/// of a thin wall do, returns the frame that sees most of them from above and below together. In other frames, sampling
+/// Returns the frame that sees most of the surface from one side. If the cell has surfaces that face both ways, as in a
+/// thin wall, returns the frame that sees most of them from above and below together. In other frames, sampling
 /// lines may be parallel to the wall and miss it, so that no error is detected.
 [[nodiscard]] FrameChoice chooseFrame(std::span<const ClippedTriangle> pieces);
 

@@ -11,7 +11,7 @@
 
 namespace relief {
 
-/// Lines along each side of a cell; multiples of 4.
+/// Number of sampling lines along each side of a cell; multiples of 4.
 struct LeafLines {
     unsigned choose = 12;  ///< to choose a shape
     unsigned keep = 20;    ///< to fit the 5² heights that are kept

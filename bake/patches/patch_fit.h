@@ -67,7 +67,7 @@ class PairFitter {
     [[nodiscard]] bool walls() const { return walls_; }
     /// A lower bound of FittedPair::wrong for any pair.
     [[nodiscard]] double least() const { return least_; }
-    /// As PatchFitter::fit.
+    /// Like PatchFitter::fit.
     [[nodiscard]] FittedPair fit(std::uint32_t side, int rounds) const;
 
   private:

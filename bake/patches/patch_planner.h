@@ -33,7 +33,7 @@ struct PatchOptions {
     /// A leaf is split on trial if its errors exceed the worth of this many bytes. Lower values find better trees and
     /// take longer.
     double trial_bytes = 45.0;
-    /// Called periodically, from any thread but only one at a time, with the fraction of the work done. Its exceptions end
+    /// Called periodically with the fraction of the work done; from any thread, never concurrently. Its exceptions end
     /// the bake and propagate.
     std::function<void(double)> progress{};
 };

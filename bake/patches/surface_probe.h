@@ -11,8 +11,8 @@
 
 namespace relief {
 
-/// Tests patches against points beside each triangle. Lines can miss features thinner than their spacing; these points
-/// cannot.
+/// Tests patches against points beside each triangle. The planner's sampling lines can miss features
+/// thinner than their spacing; these points cannot.
 class SurfaceProbe {
   public:
     /// \param query, cell  borrowed.

@@ -50,7 +50,7 @@ struct BakeResult : SolidMesh {
 [[nodiscard]] Result<BakeResult> bake(const BakeRequest& request, const BakeWatcher& watcher = {},
                                       std::optional<TriangleMesh> mesh = {});
 
-/// Prepares the solid of a mesh. Errors: as bake().
+/// Prepares the solid of a mesh. Errors: those of bake().
 [[nodiscard]] Result<SolidMesh> prepareSolid(const BakeRequest& request, TriangleMesh mesh);
 
 /// Bakes a prepared solid, with the request of prepareSolid(), or one with another budget if
@@ -59,7 +59,7 @@ struct BakeResult : SolidMesh {
 
 /// Returns the error curve of the trees of patches of a solid (bake/patches/patch_planner.h).
 /// \param request  for patches. \param bytes  of the largest tree.
-/// Errors: as bake().
+/// Errors: those of bake().
 [[nodiscard]] Result<ErrorCurve> planErrors(const BakeRequest& request, const SolidMesh& solid,
                                             std::uint64_t bytes);
 

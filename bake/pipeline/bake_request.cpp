@@ -263,8 +263,8 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
                       "colliders, and its default is 16MB."});
     visit(
         "texel", request.texel,
-        {.help = "Texel length of the patches, in object units or as 1cm; without --budget, their size is "
-                 "not limited",
+        {.help = "Texel length of the patches, in object units or with a unit, such as 1cm; the default of "
+                 "--budget then does not apply",
          .unit = "object units",
          .range = {0.0, 1e15, false},
          .value = "LENGTH",
@@ -277,8 +277,8 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
                     "is in units of the level, and each mesh is baked for its largest scale."});
     visit(
         "max_error", request.max_error,
-        {.help =
-             "Bake the smallest patches that misclassify at most this percentage of points near the surface",
+        {.help = "Bake the smallest collider that misclassifies at most this percentage of points near the "
+                 "surface",
          .unit = "%",
          .range = {0.0},
          .details = "Tries budgets from 32kB to 64MB, or up to --budget, and measures each as `relief check` "
@@ -336,7 +336,7 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
            .fallback = "fill",
            .recorded = true});
     visit("materials", request.materials,
-          {.help = "Keep or drop the mesh's named materials, which responses and events use",
+          {.help = "Keep or drop the mesh's named materials, which collisions and events use",
            .fallback = "keep if there are several",
            .recorded = true,
            .details = "The collider stores which material covers each part of its surface, in at most 6 % of "

@@ -93,7 +93,7 @@ struct BakedMaps {
 [[nodiscard]] Result<BakedMaps> bakeMaps(const BakeRequest& request, const BakeSettings& settings,
                                          const SolidMesh& solid, const BakeWatcher& watcher);
 
-/// Bakes the named maps of a solid, or patches for its budget (not for an error). Errors: as bake.
+/// Bakes the named maps of a solid, or patches for its budget (not for an error). Errors: those of bake.
 [[nodiscard]] Result<Baked> bakeSolid(const BakeRequest& request, const PreparedMesh& solid);
 
 /// Returns the warnings of a bake: of the import, the parts and the unit, the maps, and the measurement.

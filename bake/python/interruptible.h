@@ -122,7 +122,7 @@ Result<T> interruptible(Work work, std::optional<float> seconds = {}) {
         }
         if (late) {
             return fail(ErrorCode::kLimit,
-                        "the bake did not end within " + shortest(*seconds) +
+                        "the bake did not finish within " + shortest(*seconds) +
                             " s; simplify the mesh, lower the budget or resolution, or raise --timeout");
         }
     }

@@ -224,7 +224,7 @@ std::optional<TriangleMesh> meshOf(const std::optional<std::filesystem::path>& f
     TriangleMesh mesh;
     mesh.name = cleanUtf8(name);
     if (mesh.name.size() > kMeshNameMax) {
-        raise({ErrorCode::kUsage, "name has " + std::to_string(mesh.name.size()) + " bytes, " +
+        raise({ErrorCode::kUsage, "name has " + std::to_string(mesh.name.size()) + " bytes; at most " +
                                       std::to_string(kMeshNameMax) + " are allowed"});
     }
     mesh.positions.assign(positions.begin(), positions.end());

@@ -38,11 +38,11 @@ class ChildProcesses {
     ChildProcesses();
     ChildProcesses(const ChildProcesses&) = delete;
     ChildProcesses& operator=(const ChildProcesses&) = delete;
-    /// Ends running children, as endAll().
+    /// Ends running children, like endAll().
     ~ChildProcesses();
 
-    /// Starts this program with other arguments. Its standard input is empty. It is ended if this process dies. If
-    /// memory runs out, the system ends it before other processes.
+    /// Starts this program with other arguments. The child's standard input is empty. The child ends if this process
+    /// dies. If memory runs out, the system ends the child before other processes.
     /// \param arguments  without the program's name.
     /// Errors: kFailure (no process or no pipe).
     [[nodiscard]] Result<void> startSelf(const std::vector<std::string>& arguments, std::size_t tag);

@@ -34,7 +34,8 @@ struct RecipeJob {
     bool mesh_is_folder = false;         ///< the mesh is a folder whose mesh files form a level
     bool world = false;                  ///< `output` is a world's file, and the only output in its folder
     std::vector<std::string> arguments;  ///< of `relief bake`, files relative to the current folder; sorted
-    /// Everything that the output depends on: `arguments`, with files relative to the recipe's folder, and kWorldOption.
+    /// Everything that the output depends on: `arguments`, with files relative to the recipe's folder, and
+    /// kWorldOption.
     std::vector<std::string> options;
 };
 
@@ -56,7 +57,7 @@ struct RecipeJobs {
                                             const std::filesystem::path& output_folder, FileGuard files = {});
 
 /// Reserves the folder of a world: its containers, including those that are up to date, and its caches.
-/// \param option  that names the folder. Errors: as FileGuard::writes().
+/// \param option  the option that names the folder, for messages. Errors: those of FileGuard::writes().
 [[nodiscard]] Result<void> ownWorldFolder(const std::filesystem::path& folder, std::string_view option,
                                           FileGuard& files);
 

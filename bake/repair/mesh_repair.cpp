@@ -102,7 +102,7 @@ Result<TriangleMesh> wrapMesh(const TriangleMesh& mesh, double alpha) {
         }
         return meshOf(mesh, soup, wrap);
     } catch (const std::bad_alloc&) {
-        return fail(ErrorCode::kLimit, mesh.name + ": wrapping it ran out of memory; simplify the mesh");
+        return fail(ErrorCode::kLimit, mesh.name + ": out of memory while wrapping; simplify the mesh");
     } catch (const std::exception& e) {
         std::string line = e.what();
         std::replace(line.begin(), line.end(), '\n', ' ');

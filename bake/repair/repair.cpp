@@ -72,8 +72,8 @@ void fields(FieldVisitor& visit, RepairOptions& options) {
           {.help = "Reject a mesh that is not a closed solid with outward winding (exit code 3)",
            .details = "With --repair, it rejects a repaired mesh that is still open."});
     visit("repair", options.method,
-          {.help = "Bake a closed surface wrapped around the mesh, which spans gaps up to ALPHA times its "
-                   "longest side (default: 0.01)",
+          {.help = "Bake a closed surface wrapped around the mesh, which spans gaps of up to ALPHA times "
+                   "the longest side of the mesh (default: 0.01)",
            .value = "wrap[=ALPHA]",
            .recorded = true});
 }

@@ -17,7 +17,7 @@ struct MeshCheckReport {
     std::string file;                     ///< name of the collider
     std::optional<float> max_error = {};  ///< percent
 
-    /// The grade. With `max_error`, its text includes whether the imported mesh meets the limit.
+    /// The verdict. With `max_error`, its text states whether the error against the imported mesh is within the limit.
     [[nodiscard]] Verdict verdict() const;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parts with holes, after closing, and whether they are bodies or vessels.
+// Closes parts with holes, and distinguishes bodies cut off at the foot, such as a statue, from vessels.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@ namespace relief {
 struct ClosedPart {
     std::optional<PreparedMesh> mesh;
     bool balanced = true;
-    bool is_body = true;  ///< not a vessel
+    bool is_body = true;  ///< cut off at its foot; not a vessel
 };
 
 /// Closes a part. Returns no mesh if the holes cannot be closed, or if the result encloses nothing.

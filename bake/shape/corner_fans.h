@@ -25,10 +25,10 @@ class CornerFans {
     [[nodiscard]] bool areCut(std::uint32_t a, std::uint32_t b) const {
         return fan_of_[a] == fan_of_[b] && roots_[a] != roots_[b];
     }
-    /// The cuts: for each, the two corners of the vertex on both sides of it. The triangle side that begins at the
+    /// For each cut, the two corners of the vertex next to the cut. The triangle side that begins at the
     /// first corner was cut, and is now open.
     [[nodiscard]] const std::vector<std::array<std::uint32_t, 2>>& cuts() const { return cuts_; }
-    /// The fans around vertices without a border that were cut: the roots of each.
+    /// For each cut fan around a vertex inside the sheet, its roots.
     [[nodiscard]] const std::vector<std::vector<std::uint32_t>>& lids() const { return lids_; }
 
   private:

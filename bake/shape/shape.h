@@ -39,7 +39,7 @@ struct ShapeReport {
     std::uint64_t sheets = 0;
     std::uint64_t closable_sheets = 0;  ///< large sheets that would be solids if their holes were closed
     std::uint64_t unjoined_shells =
-        0;  ///< open shells within another shell, with nearly facing mouths; their space is filled
+        0;  ///< open shells within another shell, with rims too far apart to join; the space inside is solid
     std::uint64_t ambiguous_walls =
         0;  ///< walls of two joined shells whose winding does not distinguish a lining from a body
     std::uint64_t terrains = 0;

@@ -12,7 +12,8 @@
 
 namespace relief {
 
-/// Triangles of a mesh, joined across edges of two triangles. No two triangles have the same vertices.
+/// Triangles of a mesh, joined across each edge that exactly two of them share. No two triangles have the same
+/// vertices.
 struct Sheet {
     std::vector<glm::vec3> positions;    ///< unique
     std::vector<glm::uvec3> triangles;   ///< indices into positions, wound consistently across joined edges

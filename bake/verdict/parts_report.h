@@ -35,7 +35,7 @@ void fields(FieldVisitor& visit, const IgnoredParts& ignored);
 /// Returns "pillar_17 (stone)", "part 17 of wood" or "part 17". \param index  into SurfaceParts::parts; the text counts
 /// from 1.
 [[nodiscard]] std::string partName(const SurfacePart& part, std::size_t index);
-/// Returns how to keep a lost or coarse part: a budget, a resolution, a thickness, or a bake of its own.
+/// Returns how to keep a lost or coarse part: a budget, a resolution, a thickness, or a separate bake.
 [[nodiscard]] std::string partCure(const SurfacePart& part, const Collider& collider);
 /// Returns the side of the finest texels at the centre of a part, or of patches in its bounds, object units; 0 without
 /// maps.

@@ -5,13 +5,13 @@
 // the camera (r, u, −d) is right-handed. u is +y projected perpendicular to d, or ∓z for a view within 2.6° of ±y: a
 // view along -y (from above) has +x to the right and −z up. `up` of a spec replaces +y.
 //
-// The volume of an orthographic map is the extent of the box along r, u and d. The texels inside the border cover it
-// exactly:
+// The volume of an orthographic map is the extent of the mesh's box along r, u and d. The texels inside the border
+// cover it exactly:
 //
 //     texels across      0 |  1 … width−2  | width−1           texel = extent / (width − 2)
 //     map x              0  1/w         1−1/w  1
 //
-// Tight volumes leave free space around the mesh, 1e-4 of its longest side, and are at least 1 % of that side thick.
+// A volume that fits the mesh has a margin of 1e-4 of the mesh's longest side, and is at least 1 % of that side thick.
 #pragma once
 
 #include <algorithm>
@@ -76,8 +76,8 @@ struct View {
         return compare == Compare::kBoth || (compare == Compare::kLess) == (end == RayEnd::kNear);
     }
     [[nodiscard]] bool startsFree(RayEnd end) const { return starts_free[static_cast<std::size_t>(end)]; }
-    /// Returns whether texels without a surface mean "outside", because the rays of a stored surface start in free space
-    /// and cross the whole volume.
+    /// Returns whether texels without a surface mean "outside", because the rays of a stored surface start in free
+    /// space and cross the whole volume.
     [[nodiscard]] bool emptyIsOutside() const;
 
     /// Orthographic: the offsets from `origin` at which the rays of a column, and of a row, start.

@@ -4,7 +4,7 @@
 // The errors of a mesh fall with its bytes along a curve. A small plan provides the start of the curve, and a power law
 // continues it. In all shares, one more byte reduces the weighted error by the same amount:
 //
-//     weight · −d wrong / d bytes = worth,
+//     weight · −d wrong / d bytes = worth.
 //
 // No share is below an eighth of an even share. Shares are rounded down to steps of an eighth of an octave: if one mesh
 // changes, most others keep their share and need no new bake.
@@ -43,7 +43,7 @@ using PlanErrors = std::function<Result<ErrorCurve>(std::size_t mesh, std::uint6
 
 /// Distributes half of the budget evenly and half by weight, for maps without error curves.
 /// \param shares  at least one; weights are areas in world space.
-/// Errors: as shareByErrors.
+/// Errors: those of shareByErrors.
 [[nodiscard]] Result<void> shareByArea(std::uint64_t budget, std::span<BudgetShare> shares);
 
 /// Returns the largest 2^(k/8), rounded down, that does not exceed `bytes` (at least 1).

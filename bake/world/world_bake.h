@@ -36,7 +36,7 @@ struct WorldBakeResult {
     [[nodiscard]] std::uint64_t gpuBytes() const;
 };
 
-/// Follows a bake. Each function may be empty. Calls are sequential, from any thread.
+/// Receives the progress of a bake. Each function may be empty. Calls are sequential, from any thread.
 struct WorldWatcher {
     std::function<void(const char* stage)> begin;
     std::function<void(std::size_t done, std::size_t all)> ended;  ///< a mesh is done

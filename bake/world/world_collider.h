@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The request of a bake of a world, and the result for each collider.
+// The request to bake a world, and the result for each collider.
 #pragma once
 
 #include <array>

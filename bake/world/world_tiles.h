@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cuts very large colliders of a world into tiles. Each tile is a collider and a body of the world, so that parts of a
-// mesh can be on the GPU without the others. bake/patches/patch_tiles.h makes the cuts.
+// Cuts very large colliders of a world into tiles. Each tile is a collider and a body of the world, so that one part
+// of a mesh can be on the GPU without the others. bake/patches/patch_tiles.h makes the cuts.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ struct ColliderTile {
 /// power of two, so that it rarely changes as a level grows.
 [[nodiscard]] std::uint32_t tilesMost(std::size_t meshes, std::size_t bodies);
 
-/// Returns the bytes for which to plan a collider so that its tiles, which duplicate some cells, fit into its share.
+/// Returns the budget of a collider whose tiles then fit into `share` bytes, although they duplicate some cells.
 [[nodiscard]] std::uint64_t bytesBeforeCut(std::uint64_t share, const PatchTileOptions& options);
 
 }  // namespace relief

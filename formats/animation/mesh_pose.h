@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses of an animated mesh, from a clip at a time or set by the caller. CPU reference of shaders/live/skin.vert.
+// Poses of an animated mesh, evaluated from a clip or set by the caller. CPU reference of shaders/live/skin.vert.
 #pragma once
 
 #include <cstddef>
@@ -40,8 +40,8 @@ struct MeshPose {
 /// \param pose  has as many joints and weights as the mesh.
 [[nodiscard]] std::vector<glm::vec3> posed(const AnimatedMesh& mesh, const MeshPose& pose);
 
-/// Bounds poses at a cost per joint, not per vertex: a skinned vertex is a convex combination of its joints' positions
-/// for it, so it lies in the bounds of the transformed boxes of these joints.
+/// Bounds poses at a cost per joint, not per vertex: a skinned vertex is a convex combination of the positions to
+/// which its joints move it, so it lies in the bounds of the transformed boxes of these joints.
 class PoseBounds {
   public:
     explicit PoseBounds(const AnimatedMesh& mesh);

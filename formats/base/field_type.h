@@ -26,7 +26,7 @@ using GivenFields = std::function<bool(const std::string& path)>;
 /// An error reported by a struct's check().
 struct FieldFault {
     std::string path;  ///< path of the field, as in GivenFields; empty: the struct itself
-    std::string text;  ///< appended to the field's name: "does nothing without a name; give one"
+    std::string text;  ///< appended to the field's name: "has no effect without a name; give one"
 };
 
 enum class FieldForm : std::uint8_t {

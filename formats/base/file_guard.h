@@ -68,14 +68,14 @@ class FileGuard {
     /// that leaves the folder.
     [[nodiscard]] Result<void> writes(const NumberedFiles& files, std::string_view option);
     [[nodiscard]] Result<void> writes(const FilesByEnding& files, std::string_view option);
-    /// Creates a folder that the run fills, as MadeFolders::make(). The last copy of this guard removes the folder if
+    /// Creates a folder that the run fills, like MadeFolders::make(). The last copy of this guard removes the folder if
     /// it is empty, unless keepFolders() was called.
     [[nodiscard]] Result<void> makes(const std::filesystem::path& folder, std::string_view option) {
         return folders_->make(folder, option);
     }
     void keepFolders() { folders_->keep(); }
     /// Registers a cache file. A link at that path is replaced, not followed. Several caches may share one file, and
-    /// the folder need not exist. \param option  the option that names the folder. Errors: kUsage, as writes().
+    /// the folder need not exist. \param option  the option that names the folder. Errors: kUsage, as for writes().
     [[nodiscard]] Result<void> keeps(const std::filesystem::path& path, std::string_view option);
 
     /// Registers an output whose folder may not exist yet; does not check that it is writable.

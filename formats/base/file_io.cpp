@@ -169,7 +169,7 @@ Result<void> replaceFile(const fs::path& target, const std::string& name, std::s
     // A folder that is writable but not readable cannot be synced; the file is complete nevertheless.
     if (const Descriptor opened(openRetry(folder.c_str(), O_RDONLY | O_DIRECTORY)); opened) {
         if (const int sync_code = syncToDisk(opened.get())) {
-            return ioError("sync (although it is in place)", name, sync_code);
+            return ioError("sync", name + " to disk (the new file is in place)", sync_code);
         }
     }
     return {};

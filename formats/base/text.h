@@ -60,7 +60,7 @@ enum class Bidi : std::uint8_t { kReplace, kKeep };
 /// \param size_max  bytes; truncates before the character that would exceed it.
 [[nodiscard]] std::string cleanUtf8(std::string_view bytes, std::size_t size_max = std::string::npos,
                                     Bidi bidi = Bidi::kReplace);
-/// As cleanUtf8, but with hexadecimal escapes ("\x1b"), so that different names stay different.
+/// Like cleanUtf8, but with hexadecimal escapes ("\x1b"), so that different names stay different.
 [[nodiscard]] std::string escapedUtf8(std::string_view bytes);
 /// Cleans another program's output for a one-line message: cleanUtf8, control characters as spaces, trimmed.
 [[nodiscard]] std::string oneCleanLine(std::string_view text);

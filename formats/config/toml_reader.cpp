@@ -232,8 +232,8 @@ std::vector<TomlValue> TomlValue::tables(const FieldInfo& info) const {
             (*this)[i].wrongType(wanted);
         }
         if (i == info.rules.most) {
-            (*this)[i].fail("there are " + std::to_string(array()->size()) + " of [[" + name_ +
-                            "]], more than " + std::to_string(info.rules.most) + "; remove some");
+            (*this)[i].fail("there are " + std::to_string(array()->size()) + " [[" + name_ +
+                            "]] tables; at most " + std::to_string(info.rules.most) + " are allowed");
         }
         tables.push_back((*this)[i]);
     }
@@ -338,7 +338,7 @@ void TableRules::checkUse(const TomlValue& table, const Field& field, std::strin
     const auto given = [&](std::string_view key) { return table.find(key).has_value(); };
     if (!info.rules.only.empty() && !listHas(info.rules.only, selected)) {
         const std::string by = table.full(selector());
-        at.fail(at.name() + " does nothing for " + by + " = \"" + std::string(selected) +
+        at.fail(at.name() + " has no effect for " + by + " = \"" + std::string(selected) +
                 "\"; remove it, or choose " + by + " = \"" + std::string(listWords(info.rules.only).front()) +
                 "\"");
     }
@@ -348,7 +348,8 @@ void TableRules::checkUse(const TomlValue& table, const Field& field, std::strin
         for (const std::string_view other : needs) {
             names += (names.empty() ? "" : " or ") + table.full(other);
         }
-        at.fail(at.name() + " does nothing without " + names + "; add that, or remove this");
+        at.fail(at.name() + " has no effect without " + names + "; add " + names + ", or remove " +
+                at.name());
     }
 }
 
@@ -409,7 +410,7 @@ void readNumber(const TomlValue& from, FieldRef value, const FieldInfo& info) {
     value.setReal(value.type().size == sizeof(float) ? double{narrowed<float>(number, info.range)}
                                                      : narrowed<double>(number, info.range));
     if (info.rules.not_zero && value.number() == 0.0) {
-        from.fail(from.name() + " does nothing if it is 0; raise it or remove it");
+        from.fail(from.name() + " has no effect if it is 0; raise it or remove it");
     }
 }
 

@@ -131,7 +131,8 @@ void JsonValue::needArray(const FieldRange& count) const {
                   : std::string()));
     }
     if (static_cast<double>(json_->size()) > count.high) {
-        fail("has " + std::to_string(json_->size()) + " elements; at most " + decimal(count.high));
+        fail("has " + std::to_string(json_->size()) + " elements; at most " + decimal(count.high) +
+             " are allowed");
     }
 }
 

@@ -21,8 +21,9 @@ struct ObjMesh {
 /// Reads a mesh. Statements may be indented, continued by a backslash, and followed by a comment. A vertex has three
 /// coordinates, optionally followed by a weight that divides them or by a colour in 0…1. Corners are "7", "7/1", "7//3"
 /// or "7/1/3"; negative indices count back from the last vertex so far. Faces may precede their vertices. A face has
-/// the names of its material and of the current group or object, whichever started last: a group's whole line and each
-/// of its words. A new material does not end the group. Errors, with the line but not the file: kInvalidInput.
+/// the name of its material, and the names of the current group or object, whichever started last. The names of a group
+/// are its whole line and each of its words. A new material does not end the group. Errors, with the line but not the
+/// file: kInvalidInput.
 [[nodiscard]] Result<ObjMesh> readObj(std::span<const std::byte> bytes,
                                       PolygonColors colors = PolygonColors::kSkip);
 

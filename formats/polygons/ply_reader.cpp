@@ -53,7 +53,8 @@ Result<void> addElement(std::span<const std::string_view> words, PlyHeader& head
 /// \param words  of the property's line.
 Result<void> addProperty(std::span<const std::string_view> words, PlyHeader& header) {
     if (header.elements.empty() || header.elements.back().properties.size() == kPlyPropertiesMax) {
-        return invalidInput("a property of its header belongs to no element, or its element has too many");
+        return invalidInput("a property in its header precedes all elements, or an element has more than " +
+                            std::to_string(kPlyPropertiesMax) + " properties");
     }
     const bool list = words.size() == 5 && words[1] == "list";
     if (!list && words.size() != 3) {

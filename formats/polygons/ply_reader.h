@@ -82,10 +82,10 @@ class PlyNumbers {
 /// Returns the error of a failed next(), without the file.
 [[nodiscard]] tl::unexpected<Error> plyNumberError(const PlyNumbers& numbers);
 
-/// Reads the length of a list. Errors: as plyNumberError; kInvalidInput for an invalid length.
+/// Reads the length of a list. Errors: those of plyNumberError; kInvalidInput for an invalid length.
 [[nodiscard]] Result<std::uint64_t> takePlyLength(PlyNumbers& numbers, PlyType type);
 
-/// Skips a property: a number or a list. Errors: as takePlyLength.
+/// Skips a property: a number or a list. Errors: those of takePlyLength.
 [[nodiscard]] Result<void> passPlyProperty(const PlyProperty& property, PlyNumbers& numbers);
 
 /// Reads the properties of one element that a reader needs: single numbers, by name.
@@ -97,7 +97,7 @@ class PlyColumns {
     /// Returns how many properties of the element have this name: 1 in a well-formed header.
     [[nodiscard]] std::size_t count(std::size_t name) const;
     /// Reads the element's next item. \param values  entries without a property are unchanged.
-    /// Errors: as takePlyLength.
+    /// Errors: those of takePlyLength.
     [[nodiscard]] Result<void> read(PlyNumbers& numbers, std::span<double> values) const;
 
   private:

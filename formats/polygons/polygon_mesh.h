@@ -60,7 +60,8 @@ struct PolygonMesh {
     return invalidInput("line " + std::to_string(line) + ": " + what);
 }
 
-/// Fails with kLimit if a file contains, or its header declares, more than `most` "triangles" or "vertices".
+/// Fails with kLimit if a file contains, or its header declares, more than `most` elements.
+/// \param things  "triangles" or "vertices", for the message.
 [[nodiscard]] inline Result<void> checkCount(std::uint64_t count, std::uint64_t most, const char* things) {
     return count <= most ? Result<void>()
                          : fail(ErrorCode::kLimit, "it has " + std::to_string(count) + " " + things +

@@ -12,7 +12,7 @@
  *
  * It reads the containers that `relief bake` writes by default: one map of patches, not compressed. Containers of
  * `relief bake --compress` also need a decompressor: pass ZSTD_decompress of <zstd.h>. Containers of `--map` and
- * `--paper` are RELIEF_UNSUPPORTED.
+ * `--paper` are rejected as RELIEF_UNSUPPORTED.
  *
  * Files may be hostile. relief_open() validates a container completely, as formats/README.md specifies. The other
  * functions therefore never read outside the texels.
@@ -117,8 +117,8 @@ float relief_distance(const relief_collider* collider, const float point[3], flo
 
 /* Collides a particle with a collider. If the distance of `position` is less than `radius`, moves the particle along
  * the normal to that distance. If it also moves inwards, multiplies its normal velocity by -restitution and its
- * tangential velocity by 1 - friction, both in 0...1: 0 and 0 slides, 0 and 1 sticks. Returns whether it has hit.
- * Threads may share a collider. */
+ * tangential velocity by 1 - friction, both in 0...1: 0 and 0 make it slide, 0 and 1 make it stick. Returns
+ * whether it hit. Threads may share a collider. */
 int relief_collide(const relief_collider* collider, float position[3], float velocity[3], float radius,
                    float restitution, float friction);
 

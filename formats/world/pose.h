@@ -32,8 +32,8 @@ struct Pose {
     return world;
 }
 
-/// Returns a row of a transform from object space as that of the transform from world space: in doubles, because a world
-/// may be large.
+/// Converts a row of a transform from object space into that row of the transform from world space. Computes in double,
+/// because a world may be large.
 [[nodiscard]] inline glm::vec4 fromWorld(const Pose& pose, const glm::vec4& row) {
     const glm::dvec3 turned =
         glm::mat3_cast(glm::dquat(pose.rotation)) * glm::dvec3(row) / double{pose.scale};

@@ -119,11 +119,11 @@ struct LoadedWorld {
                                             const ContainerLimits& limits = {},
                                             WorldDetail detail = WorldDetail::kFine);
 
-/// Loads only the world file. Errors: as loadWorld.
+/// Loads only the world file. Errors: those of loadWorld.
 [[nodiscard]] Result<World> loadWorldFile(const std::filesystem::path& path);
 
 /// Loads one collider of a world.
-/// \param folder  of the world. Errors: as loadWorld, prefixed with the position of the collider.
+/// \param folder  of the world. Errors: those of loadWorld, prefixed with the position of the collider.
 [[nodiscard]] Result<Collider> loadWorldCollider(const World& world, std::size_t collider, WorldDetail detail,
                                                  const std::filesystem::path& folder,
                                                  const ContainerLimits& limits = {});

@@ -31,9 +31,9 @@ class WorldField {
         return loaded_.colliders[world().bodies[body].collider];
     }
 
-    /// Returns the minimum distance to all bodies.
+    /// Evaluates the union of all bodies.
     [[nodiscard]] WorldSample evaluate(const glm::vec3& p) const;
-    /// Returns the minimum distance to some bodies. \param bodies  in ascending order.
+    /// Evaluates the union of some bodies. \param bodies  in ascending order.
     [[nodiscard]] WorldSample evaluate(const glm::vec3& p, std::span<const std::uint32_t> bodies) const;
     /// Returns the bodies that may contain a point of a box; the box is outside all others. In ascending order.
     [[nodiscard]] std::vector<std::uint32_t> bodiesIn(const Bounds& box) const;

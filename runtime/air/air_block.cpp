@@ -86,7 +86,7 @@ Result<AirBlock> AirBlock::create(const AirSettings& air) {
         const std::uint32_t side = *std::max_element(flow.size.begin(), flow.size.end());
         if (side > static_cast<std::uint32_t>(side_max)) {
             return fail(ErrorCode::kLimit, "the flow has " + std::to_string(side) +
-                                               " nodes along an axis; this GL supports " +
+                                               " nodes along an axis; this GL context supports " +
                                                std::to_string(side_max) + "; resample it");
         }
         static_assert(sizeof(glm::vec3) == 3 * sizeof(float));

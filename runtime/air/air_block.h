@@ -21,7 +21,7 @@ class AirBlock {
 
     /// Uploads settings. Needs a current context. Without forces it allocates nothing, and bind() and attach() do
     /// nothing.
-    /// Errors: those of checkAir; kLimit (a flow larger than this GL supports, or out of memory).
+    /// Errors: those of checkAir; kLimit (a flow larger than this GL context supports, or out of memory).
     [[nodiscard]] static Result<AirBlock> create(const AirSettings& air);
 
     /// Changes everything except the flow, for subsequent draws. Does not wait; programs remain valid.

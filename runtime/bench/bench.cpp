@@ -123,7 +123,7 @@ Result<Json> timeInTurns(const Bench& bench, const std::vector<Work>& works, con
         }
     }
     if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
-        return fail(ErrorCode::kFailure, "the GL reports error " + std::to_string(error));
+        return fail(ErrorCode::kFailure, "OpenGL reports error " + std::to_string(error));
     }
     return rows;
 }

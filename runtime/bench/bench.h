@@ -36,7 +36,7 @@ struct Bench {
 struct Work {
     std::string name;
     std::function<Result<void>()> run;
-    std::string over = {};              ///< name of the work for the ratio; empty: no ratio
+    std::string over = {};              ///< name of the workload for the ratio; empty: no ratio
     std::function<void()> before = {};  ///< called before each block, not timed; may be empty
     std::function<void()> after = {};   ///< called after each block, not timed; may be empty
 };
@@ -44,16 +44,16 @@ struct Work {
 /// A block is a number of calls between two glFinish. Each call is flushed like the end of a frame; otherwise a driver
 /// may keep calls until glFinish, and the GPU would idle.
 struct Blocks {
-    int rounds = 7;  ///< blocks per work; --blocks overrides it
+    int rounds = 7;  ///< blocks per workload; --blocks overrides it
     int calls = 0;   ///< calls per block; 0: as many as take 10 ms
 };
 
-/// Times works in alternation, after one untimed call of each for shader compilation. Returns an array of {name, ms,
-/// cpu_ms, gpu_ms, over: {of, median, least, most}}: milliseconds per call as medians over the blocks, by wall clock,
-/// CPU time of all threads, and GPU time (null on a software renderer). A ratio is the median over rounds, so that
-/// other load on the machine affects both works equally. With a software renderer, ratios use CPU time, which other
-/// load hardly changes.
-/// Errors: those of the works.
+/// Times workloads in alternation, after one untimed call of each for shader compilation. Returns an array of {name,
+/// ms, cpu_ms, gpu_ms, over: {of, median, least, most}}: milliseconds per call as medians over the blocks, by wall
+/// clock, CPU time of all threads, and GPU time (null on a software renderer). A ratio is the median over rounds, so
+/// that other load on the machine affects both workloads equally. With a software renderer, ratios use CPU time, which
+/// other load hardly changes.
+/// Errors: those of the workloads.
 [[nodiscard]] Result<Json> timeInTurns(const Bench& bench, const std::vector<Work>& works,
                                        const Blocks& blocks);
 

@@ -8,7 +8,7 @@
 namespace relief {
 
 /// Uploads a tree. The textures and defines of the rival also fit bench/mesh_query.frag.
-/// \param keeps  stores a bound of the distance with each particle, which avoids queries or limits their range. The
+/// \param keeps  stores a bound on the distance with each particle, which avoids queries or limits their range. The
 ///               particles move exactly as without the bound.
 /// Errors: kLimit (GL limits), kFailure.
 [[nodiscard]] Result<Rival> makeMeshRival(const MeshTree& tree, bool keeps = false);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A particle step with another method than depth maps as collider, with the same forces, types, uniforms and state as
+// A particle step that collides by a method other than depth maps, with the same forces, types, uniforms and state as
 // Relief's step.
 #pragma once
 

@@ -42,7 +42,7 @@ void carry(const EmitterMotion& motion, double time, std::span<Birth> births,
 
 /// Calls emit() for each emitter in turn; if there is too little room, earlier emitters have priority.
 /// \param motions  one for each emitter, or empty: they transform and filter the births. Rejected births use no room.
-/// \param time     start of these `dt` seconds, on the clock of the motions.
+/// \param time     start of the interval of `dt` seconds, on the clock of the motions.
 /// \return the sum of the values that emit() returned.
 std::uint64_t emitAll(std::span<Emitter> emitters, double dt, std::uint64_t room, std::vector<Birth>& births,
                       std::span<const EmitterMotion> motions = {}, double time = 0.0);

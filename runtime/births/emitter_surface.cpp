@@ -39,7 +39,7 @@ Result<EmitterSurface> EmitterSurface::create(std::span<const glm::uvec3> triang
     EmitterSurface made;
     for (const glm::uvec3& t : triangles) {
         if (std::max({t.x, t.y, t.z}) >= positions.size()) {
-            return fail(ErrorCode::kUsage, "a surface has a triangle with a missing corner");
+            return fail(ErrorCode::kUsage, "a triangle of a surface uses a vertex that does not exist");
         }
         if (weights.empty() || weights[t.x] + weights[t.y] + weights[t.z] > 0.0F) {
             made.triangles_.push_back(t);

@@ -7,8 +7,8 @@
 //
 // Between the two ends of a step, vertices move along straight lines at constant speed. For rotation at ω rad/s at
 // distance r from the axis, positions are off by at most r (ω dt)² / 8 and velocities by r ω² dt / 2. Areas are those
-// at the end of the step. On a stretching surface, the step length therefore changes the triangles of some births. Their
-// fraction is as small as the stretch within a step.
+// at the end of the step. On a stretching surface, the step length therefore changes the triangles of some births.
+// Their fraction is of the order of the stretch within a step.
 #pragma once
 
 #include <cstddef>
@@ -44,7 +44,7 @@ class EmitterSurface : public BirthSurface {
     [[nodiscard]] std::unique_ptr<BirthSurface> clone() const override {
         return std::make_unique<EmitterSurface>(*this);
     }
-    /// \param before, now  vertices() each. Costs time per triangle.
+    /// Takes time proportional to the number of triangles. \param before, now  vertices() positions each.
     void move(std::span<const glm::vec3> before, std::span<const glm::vec3> now, double seconds) override;
     [[nodiscard]] double area() const override { return upto_.empty() ? 0.0 : upto_.back(); }
     [[nodiscard]] Bounds bounds() const override;

@@ -99,7 +99,7 @@ Result<PlyHeader> takePointsHeader(std::string_view& text) {
     }
     const std::uint64_t points = header.elements.front().count;
     if (points > kPointsMax) {
-        return fail(ErrorCode::kLimit, std::to_string(points) + " points are more than " +
+        return fail(ErrorCode::kLimit, std::to_string(points) + " points exceed the limit of " +
                                            std::to_string(kPointsMax) + "; remove some");
     }
     return header;

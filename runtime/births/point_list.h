@@ -27,7 +27,7 @@ inline constexpr std::uint64_t kPointBytesMax = std::uint64_t{256} << 20;
 /// (more than kPointsMax points).
 [[nodiscard]] Result<PointList> parsePointList(std::span<const std::byte> bytes, const std::string& name);
 
-/// Combines readFile and parsePointList. Errors: theirs; kLimit above kPointBytesMax.
+/// Combines readFile and parsePointList. Errors: those of both; kLimit above kPointBytesMax.
 [[nodiscard]] Result<PointList> loadPointList(const std::filesystem::path& path);
 
 }  // namespace relief

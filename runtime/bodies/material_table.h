@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The materials of bodies as words for the texture that shaders/bodies/materials.glsl reads. Independent of GL.
+// Encodes the materials of bodies as texels of the texture that shaders/bodies/materials.glsl reads. Independent of GL.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,9 @@ namespace relief {
 /// Materials of one body; must match materials.glsl.
 struct MaterialHead {
     glm::vec4 cube{0.0F};  ///< lowest corner, object space, and 1 / side
-    glm::ivec4 grids{
-        0};  ///< texel index of the first material and of the top grid, log2 of the cells of both
+    /// Texel indices of the first material (0: none) and of the top grid; log2 of the cells along the cube and along the
+    /// top grid.
+    glm::ivec4 grids{0};
 };
 
 struct MaterialTable {
@@ -24,7 +25,7 @@ struct MaterialTable {
         names;  ///< unique names, in the order of the bodies; empty: there are no materials
     std::vector<glm::uvec4> texels;  ///< texture texels, row by row; empty if `names` is
     int log2_width = 0;              ///< of the row length; the height does not exceed it
-    int bricks = 0;                  ///< maximum nesting depth
+    int bricks = 0;                  ///< maximum number of nested bricks
     bool responds = false;           ///< a material changes the reaction of particles
     bool loses = false;              ///< a material costs lifetime
     MaterialHead head;               ///< for a single body

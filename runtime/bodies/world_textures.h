@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Colliders with poses and materials on the GPU: either a world of bodies, which uses an additional texture
-// (body_table.h), or a single collider in its own object space. Materials are stored in one more texture of RGBA32UI
+// (body_table.h), or a single collider in its own object space. Materials are stored in one more RGBA32UI texture
 // (material_table.h), which only steps read.
 //
-// The maps of a live body (runtime/live) have no texels at first. Each gets a rectangle of its texture to render into,
-// below the packed texels. Each also gets a rectangle of the float texture (RGBA32F) for the motion of the surface in
-// each texel: one half for the front and one above it for the back.
+// The maps of a live body (runtime/live) have no texels at first. Each is rendered into a rectangle of its layout's
+// texture, below the packed texels. Each also gets a rectangle of the float texture (RGBA32F) for the motion of the
+// surface in each texel: one half for the front and one above it for the back.
 #pragma once
 
 #include <cstddef>
@@ -57,7 +57,7 @@ class WorldTextures : public ShaderCollider {
     [[nodiscard]] static Result<WorldTextures> create(const Collider& collider);
     /// Uploads up to kBodiesMax bodies that share a world. A collider that several bodies use is uploaded once. The
     /// maps of live bodies are empty at first.
-    /// \param room_texels  reserved for maps of patches that upload() adds later.
+    /// \param room_texels  number of texels reserved for maps of patches that upload() adds later.
     /// Errors: as above; kLimit (too many bodies), kUsage (a scale that is not above 0, a pose that is not finite, a
     /// factor outside 0…1, a group above 7).
     [[nodiscard]] static Result<WorldTextures> create(std::span<const ColliderBody> bodies,
@@ -65,12 +65,12 @@ class WorldTextures : public ShaderCollider {
 
     /// Returns the first reserved texel.
     [[nodiscard]] std::size_t room() const { return room_; }
-    /// Returns the maximum patch texels in a texture of this GL, including those of the bodies.
+    /// Returns the maximum number of patch texels in one texture of this context, including those of the bodies.
     [[nodiscard]] static std::size_t texelsMost();
     /// Returns the texels per row of the texture with the reserved range.
     [[nodiscard]] std::size_t rowTexels() const { return std::size_t{1} << room_log2_width_; }
     /// Copies texels of a map of patches into the reserved range, for exchange(). Does not wait.
-    /// \param first  texture texel, counted as room() is.
+    /// \param first  index of a texel in the texture, room() or above.
     /// \param texels  whole texels of 8 bytes; may be part of a map.
     void upload(std::size_t first, std::span<const std::byte> texels);
     /// Gives all bodies that share this body's collider another map of patches from the reserved range, or restores
@@ -82,7 +82,7 @@ class WorldTextures : public ShaderCollider {
 
     /// Sets the poses at the end of the next step; the poses of the previous call become those at its start. Call it
     /// before each step while anything moves, and once after it stops. Bodies beyond poses.size() are unchanged. Scales
-    /// must not change. Costs time per body that has ever moved.
+    /// must not change. The cost grows with the number of bodies that have ever moved.
     void setPoses(std::span<const Pose> poses);
 
     /// Returns one slot for each map of a live body, in order; empty for other bodies. The textures belong to this

@@ -35,7 +35,7 @@ inline constexpr std::size_t kHandleKinds = 7;
 
 /// Handles of the C API. A handle is a number in the form of a pointer: the highest bit (which no user-space address
 /// has set), a serial number, and the kind in the low bits (so it is never the address of an aligned object). Handles
-/// are looked up, never dereferenced, so an invalid handle cannot crash. Numbers are never reused.
+/// are looked up, never dereferenced, so an invalid handle cannot cause a crash. Numbers are never reused.
 ///
 /// All functions are thread-safe. Removing an object while another thread uses it is a race.
 class HandleTable {

@@ -169,7 +169,7 @@ void relief_textures_free(relief_textures* textures);
  * last pose applies. Since 1.2. */
 int relief_textures_set_poses(relief_textures* world_textures, const uint32_t* bodies,
                               const relief_pose* poses, size_t count);
-/* Sets an animated body to the pose of a clip at a time, clamped to its first and last key. The next call of
+/* Sets an animated body to the pose of a clip at `seconds`, clamped to its first and last key. The next call of
  * relief_textures_set_poses() applies it. After a jump, such as a change of clip, call relief_textures_set_poses()
  * twice; otherwise the jump counts as motion and pushes particles. `body`: a number returned by relief_world_add().
  * Since 1.2. */
@@ -290,7 +290,7 @@ typedef struct relief_emitter_options {
 relief_emitter* relief_emitter_create(const relief_animation* animation, const char* group,
                                       const char* material, const relief_emitter_options* options);
 /* Creates an emitter on the surface that the maps of a collider represent. Parts thinner than 1/96 of its longest side
- * may be missing. The collider may be freed afterwards. Takes some tenths of a second. */
+ * may be missing. The collider may be freed afterwards. Takes a few tenths of a second. */
 relief_emitter* relief_emitter_create_on(const relief_collider* collider, const char* material,
                                          const relief_emitter_options* options);
 void relief_emitter_free(relief_emitter* emitter);

@@ -17,7 +17,7 @@ Result<ColliderTextures> ColliderTextures::create(const Collider& collider) {
     if (const std::size_t most = mapsInBlock(static_cast<std::size_t>(block_max));
         collider.maps.size() > most) {
         return fail(ErrorCode::kLimit, "the collider has " + std::to_string(collider.maps.size()) +
-                                           " maps; this GL supports " + std::to_string(most) +
+                                           " maps; this GL context supports " + std::to_string(most) +
                                            "; bake it with fewer maps");
     }
     const std::vector<PlacedMap> maps = placedMaps(collider);

@@ -20,8 +20,8 @@ namespace relief {
 class ColliderTextures : public ShaderCollider {
   public:
     /// Uploads a collider without its materials. Needs a current context.
-    /// Errors: kLimit (more texels or maps than this GL supports; the message contains both numbers), kUnsupported (no
-    /// maps).
+    /// Errors: kLimit (more texels or maps than this GL context supports; the message contains both numbers),
+    /// kUnsupported (no maps).
     [[nodiscard]] static Result<ColliderTextures> create(const Collider& collider);
 
     using ShaderCollider::attach;

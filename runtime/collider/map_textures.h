@@ -23,7 +23,7 @@ namespace relief {
 
 class MapTextures {
   public:
-    /// Returns the maximum texture side of this GL, in texels.
+    /// Returns the maximum texture side of this GL context, in texels.
     [[nodiscard]] static GLint sideMax();
 
     MapTextures() = default;

@@ -88,8 +88,9 @@ struct Progress::Impl {
         wipe();
         TemporaryFile::removeAll();
         reportError({ErrorCode::kLimit,
-                     options.name + ": the bake did not end within " + secondsText(double{*options.seconds}) +
-                         "; it was " + stage + ", for " + secondsText(secondsSince(stage_start)) +
+                     options.name + ": the bake did not finish within " +
+                         secondsText(double{*options.seconds}) + "; it was " + stage + ", for " +
+                         secondsText(secondsSince(stage_start)) +
                          "; simplify the mesh, lower the budget or resolution, or raise --timeout"});
         ::_exit(static_cast<int>(ErrorCode::kLimit));
     }

@@ -23,7 +23,7 @@ namespace relief {
 class DepthMapRenderer {
   public:
     /// \param width, height  texels of the largest map.
-    /// Errors: kLimit (beyond this GL's texture size, or out of memory), kUnsupported (formats not renderable),
+    /// Errors: kLimit (beyond this GL context's texture size, or out of memory), kUnsupported (formats not renderable),
     /// kFailure.
     [[nodiscard]] static Result<DepthMapRenderer> create(std::uint32_t width, std::uint32_t height);
 
@@ -32,7 +32,7 @@ class DepthMapRenderer {
     /// create(); texels may be missing. If `encloses` is set, its rays start in free space. Otherwise, a surface hit
     /// from its inner side leaves the texel empty.
     void render(GpuMesh& mesh, const DepthMap& map) const;
-    /// As render(), inside a PassState of the caller.
+    /// Like render(), inside a PassState of the caller.
     void renderInPass(GpuMesh& mesh, const DepthMap& map) const;
 
     [[nodiscard]] std::uint32_t width() const { return width_; }

@@ -87,11 +87,11 @@ Slots assignSlots(std::uint32_t vertices, std::span<const glm::uvec3> triangles)
 
 tl::unexpected<Error> tooLarge(const std::string& what, std::uint64_t count, std::uint64_t most) {
     return fail(ErrorCode::kLimit, "a mesh of " + std::to_string(count) + " " + what +
-                                       " exceeds the limit of this GL, " + std::to_string(most) +
+                                       " exceeds the limit of this GL context, " + std::to_string(most) +
                                        "; simplify the mesh");
 }
 
-/// Checks that this GL's textures and draws support this many vertices and triangles.
+/// Checks that this GL context's textures and draws support this many vertices and triangles.
 Result<void> checkSize(std::size_t vertices, std::size_t triangles) {
     GLint side = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side);

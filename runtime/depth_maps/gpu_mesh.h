@@ -30,7 +30,7 @@ class GpuMesh {
     /// \param positions  finite, object space, at least one.
     /// \param triangles  at least one; counter-clockwise seen from outside.
     /// Errors: kInvalidInput (an index out of range, a position that is not finite, no triangles), kLimit (more than
-    /// this GL's textures or indices support, or out of memory), kUnsupported, kFailure (shader compilation).
+    /// this GL context's textures or indices support, or out of memory), kUnsupported, kFailure (shader compilation).
     [[nodiscard]] static Result<GpuMesh> create(std::span<const glm::vec3> positions,
                                                 std::span<const glm::uvec3> triangles);
 

@@ -71,8 +71,8 @@ class EventList {
     /// Returns the lists of the last request as four RGBA32F textures with kEventsWidth texels per row: position,
     /// surface, velocity and identity (shaders/events/event_list.frag). Each list starts in a new row.
     [[nodiscard]] std::span<const GlTexture, 4> textures() const { return list_; }
-    /// Returns a texel with the number of events of the first list in x, of the second in y, and so on; each list
-    /// stores at most `most` of them.
+    /// Returns a texture of one texel: the number of events of the first list in x, of the second in y, and so on. Each
+    /// list stores at most `most` of them.
     [[nodiscard]] const GlTexture& total() const { return counts_[kLevels - 1].texture; }
 
   private:

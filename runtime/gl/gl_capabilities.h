@@ -13,7 +13,7 @@ namespace relief {
 /// Returns true if the current context has compute shaders: OpenGL 4.3, OpenGL ES 3.1, or later.
 [[nodiscard]] bool hasCompute();
 
-/// \param name  "GL_EXT_color_buffer_float"
+/// Returns true if the current context has the extension. \param name  such as "GL_EXT_color_buffer_float".
 [[nodiscard]] bool hasGlExtension(const char* name);
 
 /// Returns true if the GPU was reset; checkGpu() turns this into an error.

@@ -64,7 +64,8 @@ Result<void> checkTextureSize(std::uint64_t width, std::uint64_t height, const s
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side_max);
     if (std::max(width, height) > static_cast<std::uint64_t>(std::max(side_max, 0))) {
         return fail(ErrorCode::kLimit, what + " need a texture of " + std::to_string(width) + "x" +
-                                           std::to_string(height) + " texels; this GL supports sides up to " +
+                                           std::to_string(height) +
+                                           " texels; this GL context supports sides up to " +
                                            std::to_string(side_max) + "; " + cure);
     }
     return {};
@@ -76,7 +77,7 @@ Result<void> waitForGpu(const std::string& what) {
     while (!fence.passed(kWaitSlice)) {
         if (fence.failed()) {
             RELIEF_TRY(checkGpu("waiting for " + what));
-            return fail(ErrorCode::kFailure, "the GL cannot wait for " + what +
+            return fail(ErrorCode::kFailure, "the GL driver cannot wait for " + what +
                                                  "; try another driver, or another device with --device");
         }
     }

@@ -7,7 +7,7 @@
 
 #include <GLES3/gl31.h>
 
-// Desktop GL only. isGles() is constant in browsers, so calls of these functions are eliminated.
+// Desktop GL only. isGles() is constant in browsers, so calls to these functions are eliminated.
 #define GL_CLAMP_READ_COLOR 0x891C
 #define GL_COLOR_LOGIC_OP 0x0BF2
 #define GL_DEPTH_CLAMP 0x864F

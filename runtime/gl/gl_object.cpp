@@ -190,8 +190,8 @@ Result<GlFramebuffer> makeFramebuffer(std::span<const GLuint> color_textures, GL
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<GLuint>(bound));
     if (status != GL_FRAMEBUFFER_COMPLETE) {
         char text[96];
-        std::snprintf(text, sizeof(text), "this GL cannot render to the required textures (status 0x%04x)",
-                      status);
+        std::snprintf(text, sizeof(text),
+                      "this GL context cannot render to the required textures (status 0x%04x)", status);
         return fail(ErrorCode::kUnsupported, text);
     }
     return framebuffer;
@@ -359,7 +359,7 @@ Result<std::vector<float>> readTextureFloats(const GlTexture& texture, GLsizei w
     const Result<void> alive = checkGpu("reading a texture back");
     glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(bound));
     if (!complete) {
-        return fail(ErrorCode::kUnsupported, "this GL cannot read back float textures");
+        return fail(ErrorCode::kUnsupported, "this GL context cannot read back float textures");
     }
     if (!alive) {
         return forward(alive);

@@ -132,11 +132,11 @@ void bindPackBuffer(GlBuffer& buffer, GLsizeiptr bytes);
 [[nodiscard]] Result<GlProgram> makeScreenProgram(std::string_view fragment, std::string_view defines = {});
 
 /// Creates a program from a compute shader in the same subset of GLSL. Its version line is `#version 430 core` or
-/// `#version 310 es`, and RELIEF_COMPUTE is defined. Requires hasCompute(). Errors: as makeProgram.
+/// `#version 310 es`, and RELIEF_COMPUTE is defined. Requires hasCompute(). Errors: those of makeProgram.
 [[nodiscard]] Result<GlProgram> makeComputeProgram(std::string_view compute, std::string_view defines = {});
 
 /// Creates a program with only a vertex shader, whose outputs transform feedback writes interleaved, in order. Errors:
-/// as makeProgram.
+/// those of makeProgram.
 [[nodiscard]] Result<GlProgram> makeFeedbackProgram(std::string_view vertex,
                                                     std::span<const char* const> outputs,
                                                     std::string_view defines = {});

@@ -33,8 +33,8 @@ struct BlockMap {
 /// Returns the whole block of a single collider, std140: the head and the maps.
 [[nodiscard]] std::vector<std::byte> colliderBlock(std::span<const PlacedMap> maps, const MapLayout& layout);
 
-/// Returns lines for makeProgram for a single collider. They exclude code that no map needs, because a GL may execute
-/// every branch for every map. A program is therefore specific to a collider.
+/// Returns lines for makeProgram for a single collider. They exclude code that no map needs, because a GL driver may
+/// execute every branch for every map. A program is therefore specific to a collider.
 [[nodiscard]] std::string colliderDefines(std::span<const PlacedMap> maps, const MapLayout& layout);
 /// Returns the lines for any maps: widths of the textures, formats and flags.
 [[nodiscard]] std::string mapDefines(std::span<const PlacedMap> maps, const MapLayout& layout);

@@ -28,7 +28,7 @@ Result<void> reserve(std::span<const PlacedMap> maps, std::int32_t side_max, std
     for (TexelLayout& texture : textures) {
         if (!texture.finish(side_max)) {
             return fail(ErrorCode::kLimit, "the collider's maps have " + std::to_string(texture.texels()) +
-                                               " texels of one layout; this GL supports " +
+                                               " texels of one layout; this GL context supports " +
                                                std::to_string(side_max) + "x" + std::to_string(side_max) +
                                                " in a texture; bake it with a smaller budget");
         }
@@ -98,7 +98,7 @@ TexelKind texelKindOf(MapFormat format) {
 Result<MapLayout> MapLayout::create(std::span<const PlacedMap> maps, std::int32_t side_max,
                                     std::size_t room_texels) {
     if (maps.empty()) {
-        return fail(ErrorCode::kUnsupported, "a collider without maps has nothing to collide with");
+        return fail(ErrorCode::kUnsupported, "the collider has no maps, so nothing can collide with it");
     }
     MapLayout layout;
     auto& textures = layout.textures;

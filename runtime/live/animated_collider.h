@@ -29,7 +29,7 @@ namespace relief {
 
 /// Returns liveFrames() around the origin for a mesh whose poses fit into a box of this size. Space around the mesh
 /// counts as outside.
-/// \param box_size  object units, see poseExtent(). Errors: as liveFrames().
+/// \param box_size  object units, see poseExtent(). Errors: those of liveFrames().
 [[nodiscard]] Result<Collider> animatedFrames(const glm::vec3& box_size, std::uint32_t resolution);
 
 struct AnimatedColliderOptions {

@@ -23,8 +23,8 @@ class SkinPass {
     /// \param mesh     valid.
     /// \param normals  one per vertex, of unit length or zero, in the space of the positions. If empty, run() only
     /// writes positions.
-    /// Errors: kUsage (a different number of normals), kLimit (more than this GL's textures support), kFailure (shader
-    /// compilation).
+    /// Errors: kUsage (a different number of normals), kLimit (more than the textures of this context can hold),
+    /// kFailure (shader compilation).
     [[nodiscard]] static Result<SkinPass> create(const AnimatedMesh& mesh,
                                                  std::span<const glm::vec3> normals = {});
 

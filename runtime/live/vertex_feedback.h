@@ -13,7 +13,7 @@ namespace relief {
 /// The output for each vertex.
 enum class VertexOutput : std::uint8_t {
     kPositions,           ///< v_position: three floats, tightly packed
-    kPositionsAndNormals  ///< also v_normal: six floats, as ColliderMesh's vertices
+    kPositionsAndNormals  ///< also v_normal: six floats, like the vertices of ColliderMesh
 };
 
 class VertexFeedback {
@@ -31,7 +31,7 @@ class VertexFeedback {
     [[nodiscard]] const GlBuffer& buffer() const { return output_; }
     [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
-    /// Requires the program in use with its uniforms set. Does not wait; the caller must not have transform feedback
+    /// The program must be in use, and its uniforms set. Does not wait; the caller must not have transform feedback
     /// active.
     void run() const;
 

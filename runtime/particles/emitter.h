@@ -40,7 +40,7 @@ struct EmitterAim {
     float cone_degrees = 0.0F;  ///< half angle, 0…180; uniform over the solid angle
     float speed_min = 0.0F;     ///< object units/s, ≥ 0; uniform between both limits
     float speed_max = 0.0F;
-    float speed_deviation = 0.0F;  ///< standard deviation of the normal term, ≥ 0; its mean is 0
+    float speed_deviation = 0.0F;  ///< standard deviation of the normally distributed term, ≥ 0; mean 0
 };
 
 /// Emitting points.

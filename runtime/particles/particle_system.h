@@ -37,7 +37,7 @@
 
 namespace relief {
 
-/// Velocity integration. Both methods are of first order, and their results differ only by rounding.
+/// Velocity integration. Both methods are first-order, and their results differ only by rounding.
 enum class Integrator : std::uint8_t {
     kEuler,  ///< semi-implicit: v' = v + dt a, P' = P + dt v'
     kVerlet,  ///< P' = P + dt/dt_before (P − P_before) + dt² a; the velocity is the displacement of the last step
@@ -92,8 +92,8 @@ class ParticleSystem {
     static constexpr std::uint32_t kCapacityMax = 1U << 24;
 
     /// Every call that is not const needs a current context.
-    /// Errors: kUsage (capacity, epoch), kLimit (more than this GL supports), kUnsupported (also StepPath::kCompute
-    /// without compute shaders), kFailure.
+    /// Errors: kUsage (capacity, epoch), kLimit (more than this GL context supports), kUnsupported (also
+    /// StepPath::kCompute without compute shaders), kFailure.
     [[nodiscard]] static Result<ParticleSystem> create(const ParticleSystemOptions& options = {});
 
     /// Sets the colliders for subsequent steps. Particles are in the object space of a single collider, or in the world

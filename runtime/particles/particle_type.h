@@ -23,7 +23,7 @@ struct ParticleType {
     float friction = 0.0F;            ///< ν, 0…1: fraction of the tangential speed that is lost
     float friction_threshold = 0.0F;  ///< no friction below this speed, world units/s
     OnCollision on_collision = OnCollision::kBounce;
-    float lifetime_loss = 0.0F;                      ///< seconds of life lost in each step in contact, ≥ 0
+    float lifetime_loss = 0.0F;  ///< seconds of lifetime lost in each step in contact, ≥ 0
     std::uint32_t collides_with = kCollidesWithAll;  ///< bit mask of what it collides with
 };
 

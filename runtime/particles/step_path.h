@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The GPU path of particle work: steps, births, depth sort and rendering.
+// Selects fragment or compute shaders for the GPU work on particles: steps, births, depth sort and rendering.
 #pragma once
 
 #include <cstdint>

@@ -48,7 +48,7 @@ struct CameraMatrices {
         : view(camera.view()), projection(camera.projection(aspect)) {}
 
     [[nodiscard]] float tanHalfFov() const { return 1.0F / projection[1][1]; }
-    /// As Camera::depthOfDistance().
+    /// Like Camera::depthOfDistance().
     [[nodiscard]] glm::vec2 depthOfDistance() const {
         return {0.5F - 0.5F * projection[2][2], 0.5F * projection[3][2]};
     }

@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: Apache-2.0
-// Draws a collider on a floor in front of a background: from its mesh, or from its depth maps without one. Tracing the
-// field is expensive, so the picture is cached in a texture until the collider, camera, size or style changes.
+// SPDX-License-Identifier: Apache-2.0 Draws a collider on a floor in front of a background: from its mesh if given,
+// otherwise from its depth maps. Tracing the field is expensive, so the picture is cached in a texture until the
+// collider, camera, size or style changes.
 //
 //     bytes on the GPU = 12 · width · height   (RGBA16F and 32-bit depth)
 #pragma once

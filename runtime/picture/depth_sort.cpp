@@ -52,8 +52,9 @@ Result<void> checkStorage(std::uint32_t capacity) {
         return fail(ErrorCode::kLimit,
                     "sorting " + std::to_string(capacity) + " particles needs storage blocks of " +
                         std::to_string(GLint64{capacity} * kElementBytes) + " bytes and work groups of " +
-                        std::to_string(kRadixDigits) + "; this GL has " + std::to_string(most) + " and " +
-                        std::to_string(together) + "; choose a smaller capacity or the fragment path");
+                        std::to_string(kRadixDigits) + "; this GL context has " + std::to_string(most) +
+                        " and " + std::to_string(together) +
+                        "; choose a smaller capacity or the fragment path");
     }
     return {};
 }

@@ -25,7 +25,7 @@ Result<Frame> Frame::create(std::uint32_t width, std::uint32_t height) {
     const std::uint64_t pixels = std::uint64_t{width} * height;
     if (std::max(width, height) > limit || pixels > kPixelsMax) {
         return fail(ErrorCode::kLimit,
-                    "a picture of " + size + " pixels is too large; this GL supports sides up to " +
+                    "a picture of " + size + " pixels is too large; this GL context supports sides up to " +
                         std::to_string(limit) + ", and Relief " + std::to_string(kPixelsMax) + " pixels");
     }
     Frame frame;

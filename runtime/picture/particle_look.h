@@ -45,8 +45,8 @@ struct ParticleLook {
     AgeTrack<float> rotation;      ///< radians, anticlockwise in the picture; empty: 0
     float rotation_spread = 0.0F;  ///< radians, ≥ 0: random initial rotation within ± rotation_spread
     float spin_spread = 0.0F;      ///< radians/s, ≥ 0: random angular speed within ± spin_spread
-    /// Exposure time in seconds, ≥ 0. Above 0, a sprite is stretched back along its velocity by the distance of that
-    /// time; rotation, turn and spin then have no effect. Only for quads.
+    /// Exposure time in seconds, ≥ 0. Above 0, a sprite is stretched back along its velocity by the distance travelled
+    /// in that time; rotation, turn and spin then have no effect. Only for quads.
     float stretch = 0.0F;
     /// Returns the name of a setting that needs quads, or nullptr.
     [[nodiscard]] const char* needsQuads() const { return stretch > 0.0F ? "stretch" : nullptr; }

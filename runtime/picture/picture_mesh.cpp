@@ -134,7 +134,8 @@ std::vector<glm::uvec3> trianglesOf(const PictureMesh& mesh) {
 
 Result<void> checkMesh(const PictureMesh& mesh) {
     if (mesh.triangles.empty() || mesh.triangles.size() % 3 != 0) {
-        return fail(ErrorCode::kInvalidInput, "a mesh must have triangles with three indices each");
+        return fail(ErrorCode::kInvalidInput,
+                    "the number of a mesh's indices must be a positive multiple of 3");
     }
     if (!mesh.normals.empty() && mesh.normals.size() != mesh.positions.size()) {
         return fail(ErrorCode::kInvalidInput, "a mesh has " + std::to_string(mesh.positions.size()) +

@@ -15,7 +15,7 @@ namespace relief {
 struct PictureMesh {
     std::vector<glm::vec3> positions;      ///< object units, finite
     std::vector<glm::vec3> normals;        ///< per vertex, unit length or zero; or empty
-    std::vector<std::uint32_t> triangles;  ///< three indices each, anticlockwise from outside
+    std::vector<std::uint32_t> triangles;  ///< three indices each, counter-clockwise from outside
     /// Per vertex, or empty: sRGB, and the amount of snow that stays, 0…255.
     std::vector<std::array<std::uint8_t, 4>> colors{};
 };
@@ -32,7 +32,7 @@ inline constexpr float kCrease = 1.0F;  ///< radians
 /// Returns the mesh with normals. The normal of a corner is the mean of the normals of the triangles around its vertex,
 /// weighted by angle. Triangles at an angle of more than `crease` to the corner's own triangle are excluded. Vertices
 /// on creases are duplicated.
-/// \param mesh    valid by checkMesh(); its normals are replaced.
+/// \param mesh    validated by checkMesh(); its normals are replaced.
 /// \param crease  radians.
 [[nodiscard]] PictureMesh withNormals(const PictureMesh& mesh, float crease = kCrease);
 
@@ -40,7 +40,7 @@ inline constexpr float kCrease = 1.0F;  ///< radians
 /// in every pose, weighted by area.
 class MovingMesh {
   public:
-    /// \param mesh  valid by checkMesh().
+    /// \param mesh  validated by checkMesh().
     explicit MovingMesh(const PictureMesh& mesh);
 
     /// \param positions  of all vertices of the mesh passed to the constructor; object units, finite.

@@ -106,7 +106,7 @@ Result<TilePainter> TilePainter::create() {
     glGetIntegerv(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, &together);
     if (together < kTileSide * kTileSide || together < kRadixDigits) {
         return fail(ErrorCode::kUnsupported,
-                    "the work groups of this GL are too small for tiles; use the fragment path");
+                    "the work groups of this GL context are too small for tiles; use the fragment path");
     }
     const std::string counted = "#define RELIEF_RADIX_COUNTED\n";
     TilePainter painter;

@@ -302,7 +302,7 @@ Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
               bounds.max[i] <= kLengthMax)) {
             return fail(ErrorCode::kInvalidInput, "the collider's bounds are empty, or reach beyond " +
                                                       numberText(kLengthMax) +
-                                                      "; bake the mesh again, scaled");
+                                                      "; scale the mesh and bake it again");
         }
     }
     // A collider without extent still gets a scene with a size that floats can resolve at its position.

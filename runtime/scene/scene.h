@@ -54,7 +54,7 @@ struct SceneCollision {
     float restitution = 0.0F;  ///< as in ParticleType, like the next two
     float friction = 1.0F;
     float friction_threshold = 0.0F;
-    std::optional<float> sweep;  ///< as ParticleSystem::setSweep(); nullopt: computed by SceneSweep
+    std::optional<float> sweep;  ///< for ParticleSystem::setSweep(); nullopt: computed by SceneSweep
 };
 
 void fields(FieldVisitor& visit, SceneCollision& c);
@@ -177,7 +177,8 @@ struct Scene {
     /// Position of the key, "scene.toml:3:8", for messages; empty without a scene file.
     std::string world_origin;
     std::optional<SceneStream> stream;  ///< nullopt: the whole world has full detail
-    /// Colliders of the file. Loading appends the bodies of the world that no table names; then there is at least one.
+    /// Colliders of the file. Loading appends the bodies of the world that no table names. After loading, there is at
+    /// least one collider.
     std::vector<SceneCollider> colliders;
     std::vector<MaterialResponse> materials;  ///< of all colliders, by name
     SceneTime time;
@@ -208,7 +209,8 @@ void fields(FieldVisitor& visit, Scene& scene);
 /// Return the steps after which the first and the last frame are due; 0 is before the first step.
 [[nodiscard]] std::uint32_t firstFrame(const Scene& scene);
 [[nodiscard]] std::uint32_t lastFrame(const Scene& scene);
-/// Returns whether a frame is due after a step: every `render.steps_per_frame` steps from the first frame on, and at the last.
+/// Returns whether a frame is due after a step: every `render.steps_per_frame` steps from the first frame on, and at
+/// the last.
 [[nodiscard]] bool frameDue(const Scene& scene, std::uint32_t step);
 /// Returns the number of frames of the run.
 [[nodiscard]] std::uint32_t frameCount(const Scene& scene);

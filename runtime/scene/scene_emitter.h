@@ -38,7 +38,7 @@ inline constexpr const FieldCustom* kFieldCustom<NameList> = &kNameListField;
 
 void fields(FieldVisitor& visit, SceneTouching& touching);
 
-/// An emitter as in its table. completeEmitters() fills values that depend on the collider and on the run.
+/// An emitter, as read from its table. completeEmitters() fills values that depend on the collider and on the run.
 struct SceneEmitter : EmitterSettings {
     SceneEmitter();
 

@@ -43,10 +43,12 @@ Result<fs::path> fileOf(const fs::path& folder, const std::string& mesh) {
         if (fs::is_regular_file(file, error)) {
             return resolveInside(folder, name + extension)
                        ? Result<fs::path>(file)
-                       : invalidInput(quotedPath(file) + " is a link out of its folder; copy the file there");
+                       : invalidInput(quotedPath(file) +
+                                      " is a link to a file outside its folder; replace it with the file");
         }
     }
-    return invalidInput(quotedPath(folder) + " has no '" + name + ".ply' or .obj for a collider; add it");
+    return invalidInput(quotedPath(folder) + " has no mesh '" + name + ".ply' or '" + name +
+                        ".obj' for a collider; add one");
 }
 
 /// Returns the place of render.meshes, for messages.

@@ -16,7 +16,7 @@ class TomlValue;  // formats/config/toml_reader.h
 /// \param text    contents of the file; untrusted.
 /// \param path    name of the file in messages. Paths in the scene are relative to its folder and may not leave it
 ///                (confined_path.h).
-/// \param root    another folder that they may refer to; empty: none.
+/// \param root    another folder in which the scene's files may lie; empty: none.
 /// Errors: kInvalidInput, one line "file:line:column: what is wrong; what to do".
 [[nodiscard]] Result<Scene> parseScene(std::string_view text, const std::filesystem::path& path,
                                        const std::filesystem::path& root = {});

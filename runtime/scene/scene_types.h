@@ -9,7 +9,7 @@
 
 namespace relief {
 
-/// All fields except `collides_with`, which names bodies.
+/// All fields except `collides_with`, which refers to bodies by name.
 void fields(FieldVisitor& visit, ParticleType& type);
 
 void fields(FieldVisitor& visit, SpawnSettings& s);

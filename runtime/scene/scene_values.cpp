@@ -90,7 +90,7 @@ void readNames(const TomlValue& from, void* value, const FieldInfo& /*info*/) {
         names.push_back(one.text());
     }
     if (std::count(names.begin(), names.end(), "") > 0 || count == 0) {
-        from.fail(from.name() + " has no name, or an empty one; add one, or remove it");
+        from.fail(from.name() + " must list at least one name, and no empty name");
     }
 }
 

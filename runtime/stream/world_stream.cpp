@@ -295,8 +295,9 @@ Result<std::unique_ptr<WorldStream>> WorldStream::create(const World& world,
     }
     if (coarse_bytes > options.gpu_bytes) {
         return fail(ErrorCode::kLimit, "the resident colliders of this world take " +
-                                           std::to_string(coarse_bytes) + " bytes of the GPU, more than " +
-                                           std::to_string(options.gpu_bytes) + "; allow more");
+                                           std::to_string(coarse_bytes) +
+                                           " bytes of GPU memory, more than the limit of " +
+                                           std::to_string(options.gpu_bytes) + "; raise the limit");
     }
     RELIEF_TRY(checkContext());
     const std::uint64_t most =
@@ -323,7 +324,7 @@ Result<std::unique_ptr<WorldStream>> WorldStream::create(const World& world,
         if (state->colliders[i].texels > room) {
             state->giveUp(
                 i, state->names[i] + " takes " + std::to_string(kTexelSize * state->colliders[i].texels) +
-                       " bytes of the GPU, but there is room for " + std::to_string(kTexelSize * room));
+                       " bytes of GPU memory, but there is room for " + std::to_string(kTexelSize * room));
         }
     }
     return std::unique_ptr<WorldStream>(new WorldStream(std::move(state)));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A world whose colliders are streamed to the GPU on demand. A coarse collider of each is always resident, so that
-// nothing falls through. The full maps are loaded by a thread, uploaded a few bytes per update, and evicted by least
-// recent use.
+// A world whose colliders are streamed to the GPU on demand. Their coarse colliders are always resident, so that no
+// particle falls through. A thread loads the full maps. Each update uploads a limited number of bytes, and evicts the
+// least recently used maps first.
 //
 //     auto world = *WorldStream::open("level/world.json", {.gpu_bytes = 64 << 20});
 //     particles.setCollider(&world->textures());
@@ -35,7 +35,7 @@ namespace relief {
 struct StreamOptions {
     std::uint64_t gpu_bytes = std::uint64_t{256} << 20;     ///< for all texels, including the coarse ones
     std::uint64_t upload_bytes = std::uint64_t{128} << 10;  ///< copied per update, at least 8
-    /// Maximum colliders in memory that are being loaded or wait for their upload, at least 1.
+    /// Maximum number of colliders in memory that are being loaded or wait for their upload, at least 1.
     std::size_t under_way = 2;
 };
 
@@ -50,8 +50,7 @@ struct StreamCounts {
 class WorldStream {
   public:
     /// Uploads the coarse colliders. Needs a current context, as do all functions that are not const.
-    /// \param bodies  use the world's colliders through the pointers in `coarse`; bodies with other colliders are
-    /// allowed.
+    /// \param bodies  point to the colliders in `coarse`, or to others, which are not streamed.
     /// \param coarse  the world's colliders with WorldDetail::kCoarse, in order. Not needed after the call.
     /// Errors: those of WorldTextures::create; kLimit if the coarse colliders exceed gpu_bytes.
     [[nodiscard]] static Result<std::unique_ptr<WorldStream>> create(const World& world,
@@ -63,7 +62,7 @@ class WorldStream {
     [[nodiscard]] static Result<std::unique_ptr<WorldStream>> open(const std::filesystem::path& path,
                                                                    const StreamOptions& options = {},
                                                                    const ContainerLimits& limits = {});
-    /// Opens a world that was loaded with WorldDetail::kCoarse. \param path  of its file.
+    /// Opens a world that was loaded with WorldDetail::kCoarse. \param path  the world file.
     [[nodiscard]] static Result<std::unique_ptr<WorldStream>> open(const LoadedWorld& coarse,
                                                                    const std::filesystem::path& path,
                                                                    const StreamOptions& options = {},
@@ -75,7 +74,7 @@ class WorldStream {
     /// The address of the textures is stable. Set poses with setPoses() below.
     [[nodiscard]] const WorldTextures& textures() const;
     [[nodiscard]] WorldTextures& textures();
-    /// Sets poses as WorldTextures::setPoses().
+    /// Sets poses like WorldTextures::setPoses().
     void setPoses(std::span<const Pose> poses);
 
     /// Call it before a step. Its work and uploads are bounded, and it waits neither for the loader nor for the GPU.

@@ -52,7 +52,7 @@ export class Collider {
 
     get handle() {
         if (!this.#handle) {
-            throw new ReliefError("this collider is disposed of");
+            throw new ReliefError("this collider has been disposed of");
         }
         return this.#handle;
     }
@@ -109,7 +109,7 @@ export class GpuCollider {
 
     #ready() {
         if (!this.#handle) {
-            throw new ReliefError("this GpuCollider is disposed of");
+            throw new ReliefError("this GpuCollider has been disposed of");
         }
         useUnlessLost(this.#gl, this.#losses, "create a new GpuCollider");
     }

@@ -91,7 +91,7 @@ export class ParticleSystem {
                 throw new ReliefError("a ParticleSystem needs the option 'collider' or 'world', or a scene that names its colliders");
             }
         } else if (options.collider) {
-            throw new ReliefError("a scene given as text must name its colliders; pass them in 'files'");
+            throw new ReliefError("a scene given as text excludes the option 'collider'; name the collider in the scene and pass it in 'files'");
         }
         for (const [name, content] of Object.entries(options.world?.files ?? {})) {
             files[`world/${name}`] = content;
@@ -136,7 +136,7 @@ export class ParticleSystem {
 
     get handle() {
         if (!this.#handle) {
-            throw new ReliefError(this.#folder === null ? "this system is disposed of" : "this system failed to restart");
+            throw new ReliefError(this.#folder === null ? "this system has been disposed of" : "this system failed to restart");
         }
         return this.#handle;
     }
@@ -148,7 +148,7 @@ export class ParticleSystem {
 
     restart() {
         if (this.#folder === null) {
-            throw new ReliefError("this system is disposed of");
+            throw new ReliefError("this system has been disposed of");
         }
         use(this.#gl);
         this.#free();

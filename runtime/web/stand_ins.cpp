@@ -80,7 +80,7 @@ Result<std::vector<std::byte>> decompress(std::span<const std::byte> stored, std
     const int size = relief_js_decompress(stored.data(), static_cast<int>(stored.size()), raw.data(),
                                           static_cast<int>(raw.size()));
     if (size < 0) {
-        return invalidInput("its payload is no zstd frame, or does not decompress");
+        return invalidInput("its payload is not a zstd frame, or does not decompress");
     }
     if (static_cast<std::size_t>(size) != raw.size()) {
         return invalidInput("its payload decompresses to " + std::to_string(size) + " bytes, not " +

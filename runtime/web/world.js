@@ -99,7 +99,7 @@ export class World {
 
     get handle() {
         if (!this.#handle) {
-            throw new ReliefError("this world is disposed of");
+            throw new ReliefError("this world has been disposed of");
         }
         return this.#handle;
     }

@@ -4,7 +4,7 @@
 
 namespace relief {
 
-/// Maximum attractors, and maximum vortices, in the block of air.glsl.
+/// Maximum number of attractors, and of vortices, in the block of air.glsl.
 inline constexpr int kAirFieldsMax = 8;
 /// Maximum distance from the origin in lattice units: beyond it, floats do not resolve a cell of curl noise.
 inline constexpr float kCurlCellMax = 1048576.0F;

@@ -27,7 +27,7 @@ start=$(date +%s%N)
 limited 1 "$bunny" --max-error 0.001% -q
 took=$((($(date +%s%N) - start) / 1000000))
 [ "$code" -eq 6 ] && [ "$(wc -l <stderr)" -eq 1 ] || die "exit code $code: $(cat stderr)"
-grep -qE "^relief: error: '.*bunny\.obj': the bake did not end within 1 s; it was [a-z ]+, for [0-9.]+ s; .*--timeout" stderr ||
+grep -qE "^relief: error: '.*bunny\.obj': the bake did not finish within 1 s; it was [a-z ]+, for [0-9.]+ s; .*--timeout" stderr ||
     die "the error says: $(cat stderr)"
 [ "$took" -lt 5000 ] || die "it took $took ms"
 outputs_are old || die "a stopped bake leaves $(ls -lA out)"

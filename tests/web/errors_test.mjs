@@ -79,15 +79,15 @@ const kErrors = {
     "gpu.bind(1000)": /no texture unit 1000/,
     "gpu.bind(0, -1)": /no uniform block binding -1/,
     // disposed objects
-    "(collider.dispose(), collider.query([0, 0, 0]))": /this collider is disposed of/,
-    "(collider.dispose(), new relief.GpuCollider(gl, collider))": /this collider is disposed of/,
-    "(collider.dispose(), new relief.ParticleSystem(gl, { collider }))": /this collider is disposed of/,
-    "(gpu.dispose(), gpu.dispose(), gpu.attach(null))": /this GpuCollider is disposed of/,
-    "(gpu.dispose(), gpu.bind())": /this GpuCollider is disposed of/,
-    "(system.dispose(), system.dispose(), system.step())": /this system is disposed of/,
-    "(system.dispose(), system.draw({ view: eye, projection: eye }))": /this system is disposed of/,
-    "(system.dispose(), system.restart())": /this system is disposed of/,
-    "(system.dispose(), system.info)": /this system is disposed of/,
+    "(collider.dispose(), collider.query([0, 0, 0]))": /this collider has been disposed of/,
+    "(collider.dispose(), new relief.GpuCollider(gl, collider))": /this collider has been disposed of/,
+    "(collider.dispose(), new relief.ParticleSystem(gl, { collider }))": /this collider has been disposed of/,
+    "(gpu.dispose(), gpu.dispose(), gpu.attach(null))": /this GpuCollider has been disposed of/,
+    "(gpu.dispose(), gpu.bind())": /this GpuCollider has been disposed of/,
+    "(system.dispose(), system.dispose(), system.step())": /this system has been disposed of/,
+    "(system.dispose(), system.draw({ view: eye, projection: eye }))": /this system has been disposed of/,
+    "(system.dispose(), system.restart())": /this system has been disposed of/,
+    "(system.dispose(), system.info)": /this system has been disposed of/,
 };
 
 test("each error has its message", { timeout: 60_000 }, async (t) => {

@@ -58,7 +58,7 @@ export function validateMaterials({ list, sides, origin, size, nodes, compressio
     if (nodes || nodesSize !== 0) {
         check(nodesSize <= kNodesMax * kNodeBytes && nodesSize % kNodeBytes === 0 &&
               (compression === 0 ? nodesSize === stored.length : compression === 1 && nodesSize > stored.length),
-              "the size of the material nodes does not match their bytes");
+              "materials.nodes_size does not match the stored nodes");
         raw = compression === 0 ? stored : unpack(stored, nodesSize, decompress, "the tree of the materials");
     }
     const corner = [0, 4, 8].map((at) => origin.getFloat32(at, true));

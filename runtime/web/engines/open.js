@@ -61,7 +61,7 @@ function checkDescription({ boundsMin, boundsMax, unit, provenance, materials },
     checkText("tool_version", provenance.toolVersion);
     const texts = (provenance.options ?? []).flatMap(({ name, value }) => [name, value]);
     const size = texts.reduce((sum, text) => sum + text.byteLength, 0);
-    check(size <= kTextMax.options, `the options take ${size} bytes, ${kTextMax.options} are allowed`);
+    check(size <= kTextMax.options, `the options take ${size} bytes; at most ${kTextMax.options} are allowed`);
     const all = new Uint8Array(size);
     texts.reduce((at, text) => (all.set(bytesOf(text), at), at + text.byteLength), 0);
     checkText("options", new DataView(all.buffer));

@@ -105,12 +105,13 @@ TEST(TomlReader, Errors) {
     EXPECT_EQ(error("form = \"bal\"\n"), "f.toml:1:8: form = 'bal' is unknown; did you mean 'ball'?");
     EXPECT_EQ(error("form = \"box\"\n"), "f.toml:1:8: form = \"box\" also requires side");
     EXPECT_EQ(error("side = [1, 1, 1]\nradius = 2\n"),
-              "f.toml:2:10: radius does nothing for form = \"box\"; remove it, or choose form = \"ball\"");
+              "f.toml:2:10: radius has no effect for form = \"box\"; remove it, or choose form = \"ball\"");
     EXPECT_EQ(error("count = [4, 2]\n"), "f.toml:1:9: count has a minimum above its maximum; swap them");
     EXPECT_EQ(error("range = [4]\n"), "f.toml:1:9: range must be two numbers [low, high]");
-    EXPECT_EQ(error("speed = 1\n"), "f.toml:1:9: speed does nothing without axis; add that, or remove this");
+    EXPECT_EQ(error("speed = 1\n"),
+              "f.toml:1:9: speed has no effect without axis; add axis, or remove speed");
     EXPECT_EQ(error("axis = [1, 0, 0]\nspeed = 0\n"),
-              "f.toml:2:9: speed does nothing if it is 0; raise it or remove it");
+              "f.toml:2:9: speed has no effect if it is 0; raise it or remove it");
     EXPECT_EQ(error("axis = [0, 0, 0]\n"),
               "f.toml:1:8: axis has no direction; use a nonzero vector such as [0, 1, 0]");
     EXPECT_EQ(error("heavy = 0\ncount = 1\n"), "f.toml:1:9: heavy and count exclude each other; remove one");
@@ -120,7 +121,7 @@ TEST(TomlReader, Errors) {
     EXPECT_EQ(error("[[part]]\nweight = 1\n[[part]]\nweight = 2\n"),
               "f.toml:4:10: part.weight is above the first; order the parts");
     EXPECT_EQ(error("part = [{ weight = 1 }, { weight = 1 }, { weight = 1 }]\n"),
-              "f.toml:1:41: there are 3 of [[part]], more than 2; remove some");
+              "f.toml:1:41: there are 3 [[part]] tables; at most 2 are allowed");
     EXPECT_EQ(error("file = \"../a\"\n").substr(0, 22), "f.toml:1:8: file = '..");
     EXPECT_NE(error("form = \n").find("f.toml:1:"), std::string::npos);
 }

@@ -94,7 +94,7 @@ inline Result<std::vector<FieldSample>> FieldQuery::evaluate(std::span<const glm
     std::vector<FieldSample> samples;
     samples.reserve(points.size());
     RELIEF_TRY(checkTextureSize(kWidth, std::min(kBatch, points.size()) / kWidth, "the points of a query",
-                                "this GL is too small for it"));
+                                "this GL context is too small for it"));
     for (std::size_t first = 0; first < points.size(); first += kBatch) {
         const std::span<const glm::vec3> batch =
             points.subspan(first, std::min(kBatch, points.size() - first));

@@ -352,8 +352,9 @@ TEST_F(DrawnMeshesTest, LinksOutOfTheFolderAreNotRead) {
     const fs::path secret = elsewhere.write("secret.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     fs::remove(folder_.path() / "floor.obj");
     fs::create_symlink(secret, folder_.path() / "floor.obj");
-    expectErrorOf(drawnFiles(scene), "scene.toml:5:", "floor.obj' is a link out of its folder");
-    expectErrorOf(loadDrawnMeshes(scene), "scene.toml:5:", "floor.obj' is a link out of its folder");
+    expectErrorOf(drawnFiles(scene), "scene.toml:5:", "floor.obj' is a link to a file outside its folder");
+    expectErrorOf(loadDrawnMeshes(scene),
+                  "scene.toml:5:", "floor.obj' is a link to a file outside its folder");
 }
 
 TEST_F(DrawnMeshesTest, AllFilesCoverEveryRun) {

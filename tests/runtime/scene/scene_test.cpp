@@ -335,8 +335,8 @@ TEST(SceneErrors, TypeNames) {
                                               {"type = 2\n" + types, "4:8", "2 types"}});
     expectErrors(kSceneHead + types + "[[spawn]]\n",
                  {{"on = \"death\"\ntype = 2", "9:8", "2 types"},
-                  {"on = \"death\"\nmin_speed = 1", "9:13", "does nothing"},
-                  {"on = \"death\"\ncone = 10", "9:8", "does nothing"}});
+                  {"on = \"death\"\nmin_speed = 1", "9:13", "has no effect"},
+                  {"on = \"death\"\ncone = 10", "9:8", "has no effect"}});
 }
 
 TEST(SceneErrors, EmitterSurfaces) {
