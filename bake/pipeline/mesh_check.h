@@ -61,7 +61,7 @@ struct MeshCheck {
     SurfaceParts parts;                ///< of `baked`
     PartsAccuracy part_accuracy;
     std::vector<WorstPlace> places;
-    DepthProof proof;  ///< against the mesh that was baked
+    DepthProof proof;            ///< against the mesh that was baked
     std::vector<Advice> advice;  ///< filled in by the caller, because it requires bakes
 
     /// The measurement against the mesh that was baked.
