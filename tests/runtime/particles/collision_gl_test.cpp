@@ -71,6 +71,27 @@ TEST_P(CollisionGlTest, BallsTouchEdgesAndCorners) {
     EXPECT_LE(nearerThan(0.7F * kRadius), 4) << "one may be missed at a texel's rim";
 }
 
+// The direction of a projected map lies 60 degrees off the normal of a box's top, so that the map states twice the
+// distance to it. A ball touches the top within its own radius.
+TEST_P(CollisionGlTest, BallsTouchSlopesOfProjectedMaps) {
+    const glm::vec3 fall(0.0F, -0.03F / kDt, 0.0F);
+    Collider top;
+    top.bounds = {{-1.0F, -1.0F, -1.0F}, {1.0F, 0.0F, 1.0F}};
+    top.maps.push_back(test::makeMap(
+        *test::makeBox({0.0, -0.5, 0.0}, {1.0, 0.5, 1.0}),
+        test::centeredFrame({0.0, 0.0, 0.0}, test::rotation({1.0, 0.0, 0.0}, 30.0), glm::dvec3(3.0)),
+        MapFormat::kFixed8, Compare::kLess, 128, 128));
+    make({.capacity = 1});
+    collideWith(top);
+    setType({.radius = 0.1F, .restitution = 1.0F});
+    EXPECT_TRUE(particles_->setForces({}));
+    spawnOne({{0.0F, 0.12F, 0.0F}, fall, 100.0F, 0});
+    step();
+    const ParticleState ball = state().at(0);
+    EXPECT_EQ(ball.contact, Contact::kCollided);
+    EXPECT_LT(glm::length(ball.velocity + fall), 0.02F * glm::length(fall));
+}
+
 // A ball that lies slightly below a floor and rolls into a wall bounces off the wall according to its type. Its floor
 // contact must not mark it as caught by the wall, which would return it at full speed.
 TEST_P(CollisionGlTest, BallsOnAFloorBounceOffWalls) {
