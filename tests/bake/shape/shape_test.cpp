@@ -448,6 +448,22 @@ TEST(Shape, ShellOfASharpWedgeHasFullThickness) {
     }
 }
 
+/// A shell is at least 1/10,000 of its sheet thick, and thicker than the resolution of floats at the mesh's far end.
+TEST(Shape, ShellsHaveALeastThickness) {
+    const TriangleMesh plane = makePlane(0.0F, 4);
+    const double side = double{plane.bounds.longestSide()};
+    EXPECT_TRUE(shapeMesh(PreparedMesh(plane), {ShapeAs::kShell, 1.01e-4 * side}));
+    const TriangleMesh far = joined(
+        {plane, moved(plane, [&](const glm::dvec3& p) { return p + glm::dvec3(100.0 * side, 0.0, 0.0); })});
+    for (const auto& [mesh, thickness] : {std::pair(plane, 0.99e-4), {far, 3.9e-4}}) {
+        const Result<ShapedMesh> shape = shapeMesh(PreparedMesh(mesh), {ShapeAs::kShell, thickness * side});
+        ASSERT_FALSE(shape) << thickness;
+        EXPECT_EQ(shape.error().code, ErrorCode::kUsage);
+        EXPECT_NE(shape.error().message.find("thick; increase it"), std::string::npos)
+            << shape.error().message;
+    }
+}
+
 TEST(Shape, TwoSidedSheetIsOneSheet) {
     const TriangleMesh plane = makePlane(0.0F, 4);
     const ShapedMesh shape = shaped(joined({plane, reversed(plane)}));
