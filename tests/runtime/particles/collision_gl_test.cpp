@@ -93,7 +93,8 @@ TEST_P(CollisionGlTest, BallsTouchSlopesOfProjectedMaps) {
 }
 
 // A ball that lies slightly below a floor and rolls into a wall bounces off the wall according to its type. Its floor
-// contact must not mark it as caught by the wall, which would return it at full speed.
+// contact must not mark it as caught by the wall, which would return it at full speed. A ball that overlaps the wall is
+// caught, although its centre is outside.
 TEST_P(CollisionGlTest, BallsOnAFloorBounceOffWalls) {
     constexpr float kRadius = 0.1F;
     const Collider corner =
@@ -103,17 +104,23 @@ TEST_P(CollisionGlTest, BallsOnAFloorBounceOffWalls) {
     for (const bool posed : {false, true}) {
         const Pose pose = posed ? Pose{{3.0F, 0.0F, 0.0F}, turn({0.0F, 1.0F, 0.0F}, 0.7F), 2.0F} : Pose{};
         const auto turned = [&](const glm::vec3& v) { return pose.scale * (pose.rotation * v); };
-        make({.capacity = 1});
+        make({.capacity = 2});
         const ColliderBody body{&corner, pose};
         collideWith(posed ? WorldTextures::create(std::span(&body, 1)) : WorldTextures::create(corner));
         setType({.radius = pose.scale * kRadius, .restitution = 0.5F});
         // 0.01 below the floor, and at the wall after a step and a half.
         const glm::vec3 at(0.5F - kRadius - 1.5F * 0.03F, kRadius - 0.01F, 0.05F);
         EXPECT_TRUE(particles_->setForces({}));
-        spawnOne({pose.position + turned(at), turned({0.03F / kDt, 0.0F, 0.0F}), 100.0F, 0});
-        step(2);
+        const glm::vec3 velocity = turned({0.03F / kDt, 0.0F, 0.0F});
+        spawnOne({pose.position + turned(at), velocity, 100.0F, 0});
+        spawnOne({pose.position + turned({0.51F - kRadius, 0.3F, 0.05F}), velocity, 100.0F, 0});
+        step();
+        const ParticleState caught = state().at(1);
+        EXPECT_EQ(caught.contact, Contact::kCaught) << posed;
+        EXPECT_LT(glm::length(caught.velocity + velocity), 0.02F * glm::length(velocity)) << posed;
+        step();
         const ParticleState ball = state().at(0);
-        const glm::vec3 expected = turned({-0.5F * 0.03F / kDt, 0.0F, 0.0F});
+        const glm::vec3 expected = -0.5F * velocity;
         EXPECT_EQ(ball.contact, Contact::kCollided) << posed;
         EXPECT_LT(glm::length(ball.velocity - expected), 0.02F * glm::length(expected)) << posed;
     }
