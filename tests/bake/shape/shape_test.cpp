@@ -628,6 +628,16 @@ TEST(Shape, SmallOrSlantedSheetIsNotTerrain) {
     const TriangleMesh disc =
         without(makeHeights(hills), [](const glm::dvec3& p) { return p.x * p.x + p.z * p.z > 0.9; });
     expectKinds(shaped(disc).report, 0, 0, 1, 0);
+    // A sheet as long as its mesh, but only half as wide.
+    for (const int axis : {0, 2}) {
+        const TriangleMesh strip = moved(makeHeights(hills), [&](glm::dvec3 p) {
+            p[axis] *= 0.5;
+            return p;
+        });
+        glm::dvec3 post(0.0);
+        post[axis] = 0.9;
+        expectKinds(shaped(joined({strip, makeBoxMesh(post, glm::dvec3(0.1))})).report, 1, 0, 1, 0);
+    }
 }
 
 TEST(Shape, AsOverridesRays) {
