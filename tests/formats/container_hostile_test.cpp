@@ -339,6 +339,18 @@ void expectMetadataFaults() {
     std::copy(other.begin(), other.end(), std::search(bytes.begin(), bytes.end(), name.begin(), name.end()));
     test::fixChecksums(bytes);
     expectIssue(bytes, kMaterials);
+    // A part of a material node.
+    with_materials.materials = test::someMaterials();
+    bytes = test::written(with_materials);
+    const fb::Materials* materials = fb::GetCollider(bytes.data() + sizeof(ContainerHeader))->materials();
+    const std::uint32_t size = materials->nodes()->size() - 1;
+    ASSERT_EQ(materials->nodes_size(), size + 1) << "uncompressed";
+    const auto offset = reinterpret_cast<const std::byte*>(materials->nodes()) - bytes.data();
+    std::memcpy(bytes.data() + offset, &size, sizeof(size));
+    auto* table = reinterpret_cast<flatbuffers::Table*>(const_cast<fb::Materials*>(materials));
+    table->SetField<std::uint32_t>(fb::Materials::VT_NODES_SIZE, size, 0);
+    test::fixChecksums(bytes);
+    expectIssue(bytes, kMaterials);
 }
 
 void expectPayloadFaults() {

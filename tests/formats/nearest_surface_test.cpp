@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <glm/geometric.hpp>
@@ -141,6 +142,59 @@ TEST(NearestSurface, RotatedBox) {
         }
     }
     EXPECT_LT(worst, 1.0 * scene.texel);
+}
+
+/// Three planes, one per map, seen from the origin. The nearest point of their corner is on a face, an edge or the tip.
+TEST(NearestSurface, CornerOfThreePlanes) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    for (int count = 0; count < 1000;) {
+        std::array<glm::dvec3, 3> normals;
+        std::array<double, 3> at{};  // distances of the planes
+        Collider collider;
+        collider.bounds = {glm::vec3(-1.0F), glm::vec3(1.0F)};
+        for (int i = 0; i < 3; ++i) {
+            const double x = unit(random);
+            const double y = unit(random);
+            normals[i] = glm::normalize(glm::dvec3(x, y, unit(random) + 0.3));
+            at[i] = 0.45 + 0.4 * unit(random);
+            // The plane at the ray of the only texel, from z = −4.
+            const double depth = (4.0 - at[i] / normals[i].z) / 8.0;
+            if (depth < 0.0 || depth > 1.0) {
+                break;
+            }
+            DepthMap map = emptyMap(centeredFrame({0, 0, 0}, glm::dmat3(1.0), {8, 8, 8}), MapFormat::kFloat32,
+                                    Compare::kLess, 3, 3);
+            map.decode = Decode::kPlane;
+            encodeTexel(map.format, {Surface{static_cast<float>(depth), glm::vec3(normals[i])}, std::nullopt},
+                        map.texelAt(0, 1, 1));
+            collider.maps.push_back(map);
+        }
+        if (collider.maps.size() < 3) {
+            continue;
+        }
+        double truth = 1e30;
+        const auto offer = [&](const glm::dvec3& y) {
+            bool behind = true;
+            for (int i = 0; i < 3; ++i) {
+                behind = behind && at[i] + glm::dot(normals[i], y) < 1e-9;
+            }
+            truth = behind ? std::min(truth, glm::length(y)) : truth;
+        };
+        for (int i = 0; i < 3; ++i) {
+            const int next = (i + 1) % 3;
+            const double cosine = glm::dot(normals[i], normals[next]);
+            offer(-at[i] * normals[i]);
+            offer(((cosine * at[next] - at[i]) * normals[i] + (cosine * at[i] - at[next]) * normals[next]) /
+                  (1.0 - cosine * cosine));
+        }
+        offer(-glm::dvec3(at[0], at[1], at[2]) *
+              glm::inverse(glm::dmat3(normals[0], normals[1], normals[2])));
+        if (truth < 0.9) {  // within the bounds
+            ASSERT_NEAR(nearestSurface(collider, glm::vec3(0.0F)).distance, truth, 1e-3) << count;
+            ++count;
+        }
+    }
 }
 
 /// A central cube map sees floor and walls at grazing angles beside their edges.

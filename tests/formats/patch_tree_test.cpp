@@ -115,7 +115,10 @@ TEST(PatchTree, PlanesAreExactUpToTheirCodes) {
                 std::mt19937 random(3);
                 std::uniform_real_distribution<double> unit(0.0, 1.0);
                 for (int i = 0; i < 100; ++i) {
-                    const glm::dvec3 p(unit(random), unit(random), unit(random));
+                    glm::dvec3 p(unit(random), unit(random), unit(random));
+                    for (int k = 0; i < 8 && k < 3; ++k) {
+                        p[k] *= i >> k & 1;  // mirrored frames transform 0 to their last row or column
+                    }
                     const Vote said = *vote(map, glm::vec3(p));
                     const double sign = outside_below ? -1.0 : 1.0;
                     EXPECT_NEAR(said.distance, sign * glm::dot(n, p - 0.5), 1.5 * double{codes.step()});
@@ -204,13 +207,19 @@ TEST(PatchTree, BrokenTreesAreRejected) {
     // Children that are the node itself, not the next texels, beyond the map, or deeper than the header states.
     refused({{1, 1, 1}, 3}, {PatchRecord::split(1, 0, 1, up, 0)}, "not the next texels");
     refused({{1, 1, 1}, 3}, {PatchRecord::split(1, 0, 3, up, 0), leaf, leaf}, "not the next texels");
-    refused({{4, 4, 1}, 0}, std::vector<PatchRecord>(16, PatchRecord::split(1, 0, 17, up, 0)),
-            "not the next texels");
+    std::vector<PatchRecord> beyond(16, leaf);  // room for 15 children
+    beyond[0] = PatchRecord::split(0xff, 0, 17, up, 0);
+    beyond[1] = PatchRecord::split(0xff, 0, 25, up, 0);
+    refused({{4, 4, 1}, 1}, beyond, "not the next texels");
+    refused({{1, 1, 1}, 0}, {PatchRecord::split(1, 0, 2, up, 0), leaf}, "not the next texels");
     refused({{1, 1, 1}, 0}, {PatchRecord::patch(frame, false, codes, 1)}, "heights are out of place");
     refused({{1, 1, 1}, 0}, {PatchRecord::patch(frame, false, codes, 14)}, "heights are out of place");
-    PatchRecord odd = PatchRecord::patch(frame, false, codes, 2);
-    odd.low |= 3U << 5U;
-    refused({{1, 1, 1}, 0}, {odd}, "an unknown kind");
+    PatchRecord odd;
+    for (const unsigned bit : {5U, 7U}) {  // the diagonal and the first axis
+        odd = PatchRecord::patch(frame, false, codes, 2);
+        odd.low |= 3U << bit;
+        refused({{1, 1, 1}, 0}, {odd}, "an unknown kind");
+    }
     // Pairs that refer to themselves, beyond the map, to another kind, to pairs, and to patches without heights.
     refused({{1, 1, 1}, 0}, {PatchRecord::pair(true, 1)}, "patches are out of place");
     refused({{1, 1, 1}, 0}, {PatchRecord::pair(true, 15)}, "patches are out of place");

@@ -424,7 +424,12 @@ TEST(ImportGltf, SparseAndQuantizedAccessors) {
          {replaced(whole, R"("byteStride":4)", R"("byteStride":2)"),
           "a buffer view with a stride of 2 bytes"},
          {replaced(whole, R"("normalized":true)", R"("normalized":1)"), "accessors[0].normalized"},
-         {with(std::string(bytes).replace(12, 1, "\3")), "sparse.indices are not in ascending order"}});
+         {with(std::string(bytes).replace(12, 1, "\3")), "sparse.indices are not in ascending order"},
+         // The next byte, 0, is the second index.
+         {replaced(replaced(replaced(whole, R"("count":1)", R"("count":2)"), R"("byteLength":1})",
+                            R"("byteLength":2})"),
+                   R"("byteOffset":13,"byteLength":3})", R"("byteOffset":0,"byteLength":6})"),
+          "sparse.indices are not in ascending order"}});
 }
 
 TEST(ImportGltf, FlatAndMorphedPartsWarn) {

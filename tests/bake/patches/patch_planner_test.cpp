@@ -166,6 +166,13 @@ TEST(PatchPlanner, BoxFacesAreExactToQuantization) {
         ASSERT_TRUE((said.distance < 0.0F) == (local.y < 1.0) || std::abs(local.y - 1.0) < 1e-3);
         ASSERT_GT(glm::dot(glm::dvec3(said.normal), axes[1]), 0.99985);  // 1 degree
     }
+    // Below the middle of a face, cells have no patch, but the plane of that face.
+    for (int i = 0; i < 500; ++i) {
+        const double y = 0.8 + 0.1 * unit(random);
+        const Vote said = vote(map, glm::vec3(axes * glm::dvec3(0.2 * unit(random), y, 0.0))).value();
+        ASSERT_NEAR(said.distance, y - 1.0, 0.02);
+        ASSERT_GT(glm::dot(glm::dvec3(said.normal), axes[1]), 0.999);
+    }
 }
 
 TEST(PatchPlanner, FlatShapesUseOnlyTheBytesTheyNeed) {

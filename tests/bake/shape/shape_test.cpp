@@ -448,6 +448,22 @@ TEST(Shape, ShellOfASharpWedgeHasFullThickness) {
     }
 }
 
+/// A shell is at least 1/10,000 of its sheet thick, and thicker than the resolution of floats at the mesh's far end.
+TEST(Shape, ShellsHaveALeastThickness) {
+    const TriangleMesh plane = makePlane(0.0F, 4);
+    const double side = double{plane.bounds.longestSide()};
+    EXPECT_TRUE(shapeMesh(PreparedMesh(plane), {ShapeAs::kShell, 1.01e-4 * side}));
+    const TriangleMesh far = joined(
+        {plane, moved(plane, [&](const glm::dvec3& p) { return p + glm::dvec3(100.0 * side, 0.0, 0.0); })});
+    for (const auto& [mesh, thickness] : {std::pair(plane, 0.99e-4), {far, 3.9e-4}}) {
+        const Result<ShapedMesh> shape = shapeMesh(PreparedMesh(mesh), {ShapeAs::kShell, thickness * side});
+        ASSERT_FALSE(shape) << thickness;
+        EXPECT_EQ(shape.error().code, ErrorCode::kUsage);
+        EXPECT_NE(shape.error().message.find("thick; increase it"), std::string::npos)
+            << shape.error().message;
+    }
+}
+
 TEST(Shape, TwoSidedSheetIsOneSheet) {
     const TriangleMesh plane = makePlane(0.0F, 4);
     const ShapedMesh shape = shaped(joined({plane, reversed(plane)}));
@@ -612,6 +628,16 @@ TEST(Shape, SmallOrSlantedSheetIsNotTerrain) {
     const TriangleMesh disc =
         without(makeHeights(hills), [](const glm::dvec3& p) { return p.x * p.x + p.z * p.z > 0.9; });
     expectKinds(shaped(disc).report, 0, 0, 1, 0);
+    // A sheet as long as its mesh, but only half as wide.
+    for (const int axis : {0, 2}) {
+        const TriangleMesh strip = moved(makeHeights(hills), [&](glm::dvec3 p) {
+            p[axis] *= 0.5;
+            return p;
+        });
+        glm::dvec3 post(0.0);
+        post[axis] = 0.9;
+        expectKinds(shaped(joined({strip, makeBoxMesh(post, glm::dvec3(0.1))})).report, 1, 0, 1, 0);
+    }
 }
 
 TEST(Shape, AsOverridesRays) {

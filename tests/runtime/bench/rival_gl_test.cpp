@@ -399,7 +399,7 @@ class MeshStepGlTest : public testing::TestWithParam<StepPath> {};
 
 // The exact rival makes the step of patches: particles that touch nothing move alike, those born outside stay outside.
 TEST_P(MeshStepGlTest, ParticlesMoveAsAmongPatches) {
-    constexpr std::uint32_t kParticles = 8 * 1024;
+    constexpr std::uint32_t kCount = 8 * 1024;
     constexpr int kSteps = 100;
     const auto context = required(GlContext::create(GlApi::kGl33Core));
     const glm::dmat3 turn = test::rotation({1, 2, 3}, 40.0);
@@ -407,7 +407,7 @@ TEST_P(MeshStepGlTest, ParticlesMoveAsAmongPatches) {
         required(MeshQuery::build(test::joined({test::makeTorusMesh(1.0, 0.35, 96, 48),
                                                 test::makeBoxMesh({0.1, 0.2, 1.9}, {0.9, 0.3, 0.2}, turn)})));
     const BenchScene scene =
-        makeBenchScene(test::bakeSpecs(query.prepared(), {"patches:budget=200000"}), kParticles);
+        makeBenchScene(test::bakeSpecs(query.prepared(), {"patches:budget=200000"}), kCount);
     const MeshTree tree = treeOf(query.mesh());
     BenchSystem patches = required(makeBenchSystem(scene, GetParam()));
     RivalStep exact = required(RivalStep::create(required(makeMeshRival(tree)), scene, GetParam()));
@@ -420,14 +420,14 @@ TEST_P(MeshStepGlTest, ParticlesMoveAsAmongPatches) {
         exact.step();
         kept.step();
     }
-    const State ours(patches.particles->positions(), patches.particles->velocities(), kParticles);
-    const State theirs(exact.positions(), exact.velocities(), kParticles);
-    const State same(kept.positions(), kept.velocities(), kParticles);
+    const State ours(patches.particles->positions(), patches.particles->velocities(), kCount);
+    const State theirs(exact.positions(), exact.velocities(), kCount);
+    const State same(kept.positions(), kept.velocities(), kCount);
     EXPECT_EQ(same.position, theirs.position);
     EXPECT_EQ(same.velocity, theirs.velocity);
     const auto deep = 0.01 * double{scene.side};
     std::size_t free = 0, differ = 0, inside_ours = 0, inside_theirs = 0, deep_theirs = 0, leaked = 0;
-    for (std::size_t i = 0; i < kParticles; ++i) {
+    for (std::size_t i = 0; i < kCount; ++i) {
         if (!ours.touched(i) && !theirs.touched(i)) {
             ++free;
             differ += ours.p(i) != theirs.p(i) ? 1 : 0;
@@ -440,12 +440,12 @@ TEST_P(MeshStepGlTest, ParticlesMoveAsAmongPatches) {
             distance < -1e-6 * double{scene.side} && query.signedDistance(scene.births[i].position) > 0.0 ? 1
                                                                                                           : 0;
     }
-    EXPECT_GT(free, kParticles / 4);
-    EXPECT_LT(free, kParticles / 10 * 9);
+    EXPECT_GT(free, kCount / 4);
+    EXPECT_LT(free, kCount / 10 * 9);
     EXPECT_EQ(differ, 0U);
     EXPECT_EQ(leaked, 0U);
     EXPECT_EQ(deep_theirs, 0U);
-    EXPECT_NEAR(static_cast<double>(inside_theirs), static_cast<double>(inside_ours), 0.01 * kParticles);
+    EXPECT_NEAR(static_cast<double>(inside_theirs), static_cast<double>(inside_ours), 0.01 * kCount);
 }
 
 INSTANTIATE_TEST_SUITE_P(Paths, MeshStepGlTest, testing::Values(StepPath::kFragment, StepPath::kCompute),

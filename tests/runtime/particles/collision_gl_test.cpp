@@ -71,8 +71,30 @@ TEST_P(CollisionGlTest, BallsTouchEdgesAndCorners) {
     EXPECT_LE(nearerThan(0.7F * kRadius), 4) << "one may be missed at a texel's rim";
 }
 
+// The direction of a projected map lies 60 degrees off the normal of a box's top, so that the map states twice the
+// distance to it. A ball touches the top within its own radius.
+TEST_P(CollisionGlTest, BallsTouchSlopesOfProjectedMaps) {
+    const glm::vec3 fall(0.0F, -0.03F / kDt, 0.0F);
+    Collider top;
+    top.bounds = {{-1.0F, -1.0F, -1.0F}, {1.0F, 0.0F, 1.0F}};
+    top.maps.push_back(test::makeMap(
+        *test::makeBox({0.0, -0.5, 0.0}, {1.0, 0.5, 1.0}),
+        test::centeredFrame({0.0, 0.0, 0.0}, test::rotation({1.0, 0.0, 0.0}, 30.0), glm::dvec3(3.0)),
+        MapFormat::kFixed8, Compare::kLess, 128, 128));
+    make({.capacity = 1});
+    collideWith(top);
+    setType({.radius = 0.1F, .restitution = 1.0F});
+    EXPECT_TRUE(particles_->setForces({}));
+    spawnOne({{0.0F, 0.12F, 0.0F}, fall, 100.0F, 0});
+    step();
+    const ParticleState ball = state().at(0);
+    EXPECT_EQ(ball.contact, Contact::kCollided);
+    EXPECT_LT(glm::length(ball.velocity + fall), 0.02F * glm::length(fall));
+}
+
 // A ball that lies slightly below a floor and rolls into a wall bounces off the wall according to its type. Its floor
-// contact must not mark it as caught by the wall, which would return it at full speed.
+// contact must not mark it as caught by the wall, which would return it at full speed. A ball that overlaps the wall is
+// caught, although its centre is outside.
 TEST_P(CollisionGlTest, BallsOnAFloorBounceOffWalls) {
     constexpr float kRadius = 0.1F;
     const Collider corner =
@@ -82,17 +104,23 @@ TEST_P(CollisionGlTest, BallsOnAFloorBounceOffWalls) {
     for (const bool posed : {false, true}) {
         const Pose pose = posed ? Pose{{3.0F, 0.0F, 0.0F}, turn({0.0F, 1.0F, 0.0F}, 0.7F), 2.0F} : Pose{};
         const auto turned = [&](const glm::vec3& v) { return pose.scale * (pose.rotation * v); };
-        make({.capacity = 1});
+        make({.capacity = 2});
         const ColliderBody body{&corner, pose};
         collideWith(posed ? WorldTextures::create(std::span(&body, 1)) : WorldTextures::create(corner));
         setType({.radius = pose.scale * kRadius, .restitution = 0.5F});
         // 0.01 below the floor, and at the wall after a step and a half.
         const glm::vec3 at(0.5F - kRadius - 1.5F * 0.03F, kRadius - 0.01F, 0.05F);
         EXPECT_TRUE(particles_->setForces({}));
-        spawnOne({pose.position + turned(at), turned({0.03F / kDt, 0.0F, 0.0F}), 100.0F, 0});
-        step(2);
+        const glm::vec3 velocity = turned({0.03F / kDt, 0.0F, 0.0F});
+        spawnOne({pose.position + turned(at), velocity, 100.0F, 0});
+        spawnOne({pose.position + turned({0.51F - kRadius, 0.3F, 0.05F}), velocity, 100.0F, 0});
+        step();
+        const ParticleState caught = state().at(1);
+        EXPECT_EQ(caught.contact, Contact::kCaught) << posed;
+        EXPECT_LT(glm::length(caught.velocity + velocity), 0.02F * glm::length(velocity)) << posed;
+        step();
         const ParticleState ball = state().at(0);
-        const glm::vec3 expected = turned({-0.5F * 0.03F / kDt, 0.0F, 0.0F});
+        const glm::vec3 expected = -0.5F * velocity;
         EXPECT_EQ(ball.contact, Contact::kCollided) << posed;
         EXPECT_LT(glm::length(ball.velocity - expected), 0.02F * glm::length(expected)) << posed;
     }
