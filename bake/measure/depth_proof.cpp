@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
-#include <limits>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bake/mesh/loops.h"
@@ -26,6 +28,8 @@ constexpr double kHeightRounding = 512.0 * 0x1p-24;
 constexpr double kTransformRounding = 8.0 * 0x1p-24;
 /// Bound of the rounding errors of distances in doubles.
 constexpr double kDistanceRounding = 1e-9;
+/// Larger coordinates and distances may overflow in floats.
+constexpr double kRangeMax = 1e30;
 
 enum class Side : std::int8_t { kInside, kOutside, kBoth };
 
@@ -41,14 +45,20 @@ struct Cell {
     Side side = Side::kBoth;  ///< kBoth: of a patch or pair
 };
 
-/// Lists all leaves of a valid tree.
-std::vector<Cell> cellsOf(PatchTexels texels) {
+/// Limit of the cells in memory, about 150 bytes each.
+constexpr std::size_t kCellsMax = 4'000'000;
+
+/// Lists all leaves of a valid tree; nullopt if there are more than kCellsMax.
+std::optional<std::vector<Cell>> cellsOf(PatchTexels texels) {
     struct Node {
         glm::dvec3 low;
         double size;
         std::uint32_t texel;
     };
     const glm::uvec3 roots = patchTreeSize(texels).roots;
+    if (std::uint64_t{roots.x} * roots.y * roots.z > kCellsMax) {
+        return std::nullopt;
+    }
     std::vector<Node> nodes;
     for (std::uint32_t z = 0; z < roots.z; ++z) {
         for (std::uint32_t y = 0; y < roots.y; ++y) {
@@ -59,6 +69,9 @@ std::vector<Cell> cellsOf(PatchTexels texels) {
     }
     std::vector<Cell> cells;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
+        if (std::max(nodes.size(), cells.size()) > kCellsMax) {
+            return std::nullopt;
+        }
         const Node node = nodes[i];
         const PatchRecord record = patchTexel(texels, node.texel);
         if (record.kind() != Kind::kSplit) {
@@ -178,29 +191,48 @@ struct Box {
 
 class Prover {
   public:
-    Prover(const MeshQuery& query, const Collider& collider)
+    Prover(const MeshQuery& query, const Collider& collider, std::vector<Cell> cells)
         : query_(query),
           collider_(collider),
           texels_(collider.maps.front().texels),
-          cells_(cellsOf(texels_)) {
-        double terms = 0.0;
+          cells_(std::move(cells)) {
         for (int i = 0; i < 3; ++i) {
             const glm::dvec4 row = collider.maps.front().object_to_map.row[i];
             offset_[i] = row.w;
-            double sum = std::abs(row.w);
             for (int k = 0; k < 3; ++k) {
                 to_map_[k][i] = row[k];
-                const Bounds& box = query.mesh().bounds;
-                sum += std::abs(row[k]) * double{std::max(std::abs(box.min[k]), std::abs(box.max[k]))};
             }
-            terms = std::max(terms, sum);
         }
         to_object_ = glm::inverse(to_map_);
         for (int corner = 0; corner < 4; ++corner) {
             const glm::dvec3 way(1.0, (corner & 1) != 0 ? -1.0 : 1.0, (corner & 2) != 0 ? -1.0 : 1.0);
             radius_ = std::max(radius_, glm::length(to_object_ * way));
         }
+        const glm::dvec3 roots(patchTreeSize(texels_).roots);
+        for (unsigned corner = 0; corner < 8; ++corner) {
+            const glm::dvec3 share(corner & 1U, corner >> 1U & 1U, corner >> 2U);
+            farthest_ = glm::max(farthest_, glm::abs(objectOf(share * roots)));
+        }
+        double terms = 0.0;
+        for (int i = 0; i < 3; ++i) {
+            double sum = std::abs(offset_[i]);
+            for (int k = 0; k < 3; ++k) {
+                sum += std::abs(to_map_[k][i]) * farthest_[k];
+            }
+            terms = std::max(terms, sum);
+        }
         rounding_ = radius_ * kTransformRounding * terms;
+    }
+
+    /// Whether floats represent the distances and positions of all cells.
+    [[nodiscard]] bool isInRange() const {
+        const double scale = double{collider_.maps.front().object_per_map.x};
+        const bool distances = std::all_of(cells_.begin(), cells_.end(), [&](const Cell& cell) {
+            return cell.record.kind() == Kind::kSplit || cell.record.kind() == Kind::kPatch ||
+                   std::abs(double{std::bit_cast<float>(cell.record.high)}) * scale < kRangeMax;
+        });
+        return distances && std::isfinite(rounding_) &&
+               glm::all(glm::lessThan(farthest_, glm::dvec3(kRangeMax)));
     }
 
     [[nodiscard]] bool rootsHoldMesh() const {
@@ -239,15 +271,16 @@ class Prover {
                 }
             }
             open.insert(open.end(), boxes.begin(), boxes.end());
-            const double goal = proof.boxes < options.boxes_max
-                                    ? std::max(options.tolerance * proof.deepest, least)
-                                    : std::numeric_limits<double>::infinity();
+            const double goal = std::max(options.tolerance * proof.deepest, least);
             std::erase_if(open, [&](const Box& box) {
                 const bool enough = double{box.bound} <= goal;
                 closed = enough ? std::max(closed, double{box.bound}) : closed;
                 return enough;
             });
-            boxes = divideLargest(open);
+            boxes = divideLargest(open, options.boxes_max - std::min(options.boxes_max, proof.boxes));
+        }
+        for (const Box& box : open) {
+            closed = std::max(closed, double{box.bound});
         }
         proof.depth = std::max(closed, proof.deepest) + rounding_;
         return proof;
@@ -258,16 +291,20 @@ class Prover {
         return to_object_ * (in_map - offset_);
     }
 
-    /// Removes the boxes with at least half the largest bound, and returns their octants. The others wait, because a
-    /// deeper error may still close them.
-    [[nodiscard]] static std::vector<Box> divideLargest(std::vector<Box>& open) {
+    /// Removes the boxes with at least half the largest bound, and returns their octants; none if there are more than
+    /// `most`. The others wait, because a deeper error may still close them.
+    [[nodiscard]] static std::vector<Box> divideLargest(std::vector<Box>& open, std::uint64_t most) {
         float largest = 0.0F;
         for (const Box& box : open) {
             largest = std::max(largest, box.bound);
         }
+        const auto divides = [&](const Box& box) { return box.bound >= 0.5F * largest; };
         std::vector<Box> octants;
+        if (8 * static_cast<std::uint64_t>(std::count_if(open.begin(), open.end(), divides)) > most) {
+            return octants;
+        }
         std::erase_if(open, [&](const Box& box) {
-            if (box.bound < 0.5F * largest) {
+            if (!divides(box)) {
                 return false;
             }
             for (unsigned octant = 0; octant < 8; ++octant) {
@@ -323,7 +360,8 @@ class Prover {
         const double bound = !agree              ? (closest.distance + radius) * (1.0 + kDistanceRounding)
                              : distance > radius ? 0.0
                                                  : radius - distance;
-        box.bound = bound > 0.0 ? std::nextafter(static_cast<float>(bound), kFarOutside) : 0.0F;
+        // A NaN is no proof.
+        box.bound = !(bound <= 0.0) ? std::nextafter(static_cast<float>(bound), kFarOutside) : 0.0F;
         const bool wrong =
             !agree && distance > known && sideOf(evaluateInside(collider_, centre).inside) != here;
         box.deepest = wrong ? static_cast<float>(distance) : 0.0F;
@@ -336,8 +374,9 @@ class Prover {
     glm::dmat3 to_map_{1.0};
     glm::dmat3 to_object_{1.0};
     glm::dvec3 offset_{0.0};
-    double radius_ = 0.0;    // object units, of a box whose half side is 1
-    double rounding_ = 0.0;  // object units, of the transform to map space
+    glm::dvec3 farthest_{0.0};  // largest coordinates of the roots, object space
+    double radius_ = 0.0;       // object units, of a box whose half side is 1
+    double rounding_ = 0.0;     // object units, of the transform to map space
 };
 
 std::string reasonAgainst(const MeshQuery& query, const Collider& collider) {
@@ -358,7 +397,16 @@ DepthProof proveDepth(const MeshQuery& query, const Collider& collider, const De
     if (!proof.unproven.empty()) {
         return proof;
     }
-    const Prover prover(query, collider);
+    std::optional<std::vector<Cell>> cells = cellsOf(collider.maps.front().texels);
+    if (!cells) {
+        proof.unproven = "the map has too many cells";
+        return proof;
+    }
+    const Prover prover(query, collider, std::move(*cells));
+    if (!prover.isInRange()) {
+        proof.unproven = "the map has coordinates or distances out of range";
+        return proof;
+    }
     if (!prover.rootsHoldMesh()) {
         proof.unproven = "the mesh reaches outside the cells of the map";
         return proof;

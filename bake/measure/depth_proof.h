@@ -33,15 +33,17 @@ struct DepthProofOptions {
 
 struct DepthProof {
     std::string unproven;  ///< why no depth can be proven; empty if it is proven
-    /// Proven bound, object units. It includes the rounding of an evaluation in floats, fused or not.
+    /// Proven bound, object units. It includes the rounding of an evaluation in floats by the library or by shaders with
+    /// RELIEF_PRECISE.
     double depth = 0.0;
-    double deepest = 0.0;     ///< distance from the surface of the deepest error found, object units; 0: none
-    glm::vec3 place{0.0F};    ///< of that error, object space
+    double deepest = 0.0;   ///< distance from the triangles of the deepest error found, object units; 0: none
+    glm::vec3 place{0.0F};  ///< of that error, object space
     std::uint64_t boxes = 0;  ///< examined
 };
 
-/// Unproven: maps other than one map of patches; a mesh that is not watertight, has filled cavities, or reaches outside
-/// the roots. The result does not depend on the number of threads.
+/// Unproven: maps other than one map of patches, or with more than four million cells or numbers above 10³⁰; a mesh that
+/// is not watertight, has filled cavities, or reaches outside the roots. Triangles inside the solid, where parts overlap,
+/// count like others. The result does not depend on the number of threads.
 /// \param query  of the solid that the collider represents.
 [[nodiscard]] DepthProof proveDepth(const MeshQuery& query, const Collider& collider,
                                     const DepthProofOptions& options = {});

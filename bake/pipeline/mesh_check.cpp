@@ -15,8 +15,9 @@ namespace relief {
 namespace {
 
 constexpr std::uint64_t kSamplesMax = 100'000'000;
-/// Limit of the proof, so that it takes about as long as the samples.
+/// Limits of the proof, in time and memory.
 constexpr std::uint64_t kBoxesPerSample = 10;
+constexpr std::uint64_t kBoxesMax = 5'000'000;
 /// Bounds that differ by more than this, in units of the longest side, are those of another mesh.
 constexpr double kBoundsTolerance = 1e-3;
 /// The offset of a wrap, which enlarges the bounds: see wrapMesh.
@@ -148,7 +149,8 @@ Result<void> measure(const CheckRequest& request, MeshCheck& run) {
     run.part_accuracy = measureParts(*run.query, run.parts, fieldOf(run.collider), part_options);
     const Sights sights(run.collider.maps, *run.query);
     run.places = worstPlaces(run.judged().samples, *run.query, sights, run.collider);
-    run.proof = proveDepth(*run.query, run.collider, {.boxes_max = kBoxesPerSample * request.samples});
+    run.proof = proveDepth(*run.query, run.collider,
+                           {.boxes_max = std::min(kBoxesPerSample * request.samples, kBoxesMax)});
     return {};
 }
 

@@ -97,8 +97,8 @@ std::string proofText(const DepthProof& proof, double longest_side, const std::s
         return lengthText(value, unit) + " (" + percentText(100.0 * value / longest_side) + ")";
     };
     return "Proven: no point farther than " + length(proof.depth) +
-           " from the surface is on the wrong side.\n" +
-           (proof.deepest > 0.0 ? "The deepest error found is " + length(proof.deepest) + " from it, at " +
+           " from every triangle is on the wrong side.\n" +
+           (proof.deepest > 0.0 ? "The deepest error found is " + length(proof.deepest) + " from them, at " +
                                       positionText(proof.place) + ".\n"
                                 : "");
 }
@@ -285,12 +285,12 @@ void fields(FieldVisitor& visit, const DepthProofReport& report) {
     const bool proven = proof.unproven.empty();
     const bool found = proof.deepest > 0.0;
     visit("depth", onlyIf(proven, proof.depth),
-          {"No point farther than this from the surface is on the wrong side; null if not proven",
+          {"No point farther than this from every triangle is on the wrong side; null if not proven",
            "object units", kFromZero});
     visit("depth_percent", onlyIf(proven, 100.0 * proof.depth / report.longest_side),
           {"The same", "% of the longest side", kFromZero});
     visit("deepest", onlyIf(found, proof.deepest),
-          {"Distance from the surface of the deepest error found; null if none is found", "object units",
+          {"Distance of the deepest error found from the triangles; null if none is found", "object units",
            kFromZero});
     visit("place", onlyIf(found, proof.place), {"That point, for `relief query`", "object units"});
     visit("boxes", proof.boxes, {"Boxes that the proof examined"});

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Encodes the bodies of a world as texels of the texture that
+// SPDX-License-Identifier: Apache-2.0
+// Encodes the bodies of a world as texels of the texture that
 // shaders/bodies/world.glsl reads: maps, poses, and separate broad phases for static and moving bodies. Independent of
 // GL.
 #pragma once

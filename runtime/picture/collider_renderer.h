@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Draws a collider on a floor in front of a background: from its mesh if given,
+// SPDX-License-Identifier: Apache-2.0
+// Draws a collider on a floor in front of a background: from its mesh if given,
 // otherwise from its depth maps. Tracing the field is expensive, so the picture is cached in a texture until the
 // collider, camera, size or style changes.
 //

@@ -39,7 +39,7 @@ const kErrors = {
     "new relief.ParticleSystem(gl, { collider, scene: { forces: { gravity: [0, NaN, 0] } } })": /^scene: forces.gravity must be a number/,
     "new relief.ParticleSystem(gl, { collider, scene: { emitter: { rate: () => 3 } } })": /a scene can contain numbers/,
     "new relief.ParticleSystem(gl, { collider, scene: { particles: { capacity: 2e7 } } })": /capacity.*16777216/,
-    "new relief.ParticleSystem(gl, { collider, scene: 'capacity = 3' })": /pass them in 'files'/,
+    "new relief.ParticleSystem(gl, { collider, scene: 'capacity = 3' })": /pass it in 'files'/,
     "new relief.ParticleSystem(gl, { scene: '[collider]\\nfile = \"other.relief\"' })": /other\.relief/,
     "new relief.ParticleSystem(gl, { scene: '[collider' })": /scene\.toml:1/,
     "new relief.ParticleSystem(gl, { scene: { collider: { file: '../../etc/passwd' } } })": /passwd/,

@@ -2,7 +2,10 @@
 // Proven bounds of errors compared with closed forms, and with random points of damaged trees.
 #include "bake/measure/depth_proof.h"
 
+#include <bit>
 #include <cmath>
+#include <cstring>
+#include <limits>
 #include <random>
 
 #include "bake/measure/truth.h"
@@ -166,6 +169,32 @@ TEST(DepthProof, DoesNotDependOnThreads) {
     EXPECT_EQ(one.depth, all.depth);
     EXPECT_EQ(one.deepest, all.deepest);
     EXPECT_EQ(one.boxes, all.boxes);
+}
+
+TEST(DepthProof, RejectsDistancesThatOverflow) {
+    // A vote of −(largest float) or less is no vote: the cell would be outside.
+    const MeshQuery query = queryOf(makeIcosphere({0, 0, 0}, 1.0, 3));
+    Collider collider = bakedOf(query, 16'384);
+    std::vector<std::byte>& texels = collider.maps[0].texels;
+    std::uint32_t leaf = 1;
+    while (patchTexel(texels, leaf).kind() != PatchRecord::Kind::kInside) {
+        ++leaf;
+    }
+    PatchRecord record = patchTexel(texels, leaf);
+    record.high = std::bit_cast<std::uint32_t>(-std::numeric_limits<float>::max());
+    std::memcpy(&texels[std::size_t{leaf} * kPatchTexelBytes], &record, kPatchTexelBytes);
+    ASSERT_TRUE(validateTexels(collider.maps[0]));
+    EXPECT_EQ(proveDepth(query, collider).unproven, "the map has coordinates or distances out of range");
+}
+
+TEST(DepthProof, RejectsTreesThatAreTooLargeForMemory) {
+    // Ten bytes of a file may stand for millions of cells.
+    const MeshQuery query = queryOf(makeIcosphere({0, 0, 0}, 1.0, 3));
+    const std::vector<PatchRecord> roots(std::size_t{100} * 100 * 100,
+                                         PatchRecord::split(0, 255, 1'000'001, {0, 0, 1}, 0.0F));
+    const Collider collider = colliderOf(query, patchesOf({{100, 100, 100}, 1}, roots));
+    ASSERT_TRUE(validateTexels(collider.maps[0]));
+    EXPECT_EQ(proveDepth(query, collider).unproven, "the map has too many cells");
 }
 
 TEST(DepthProof, NamesWhatItCannotProve) {
