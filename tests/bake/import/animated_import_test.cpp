@@ -405,7 +405,7 @@ TEST(AnimatedImport, InvalidFilesAreRejectedInOneLine) {
         {"has 3 weights for 2 morph targets", morphingCube, set("/nodes/0/weights", {1, 2, 3})},
         {"exceeds the limit of 1024 morph targets", morphingCube,
          set(kPrimitive + "/targets", std::vector<Json>(1025, Json::object())), ErrorCode::kLimit},
-        {"but at most 8191 can move", robot,
+        {"but at most 8191 are supported", robot,
          [](GltfBuilder& s) {
              for (int i = 3; i < 8200; ++i) {
                  s.json["nodes"].push_back(Json::object());

@@ -527,12 +527,16 @@ TEST_P(CollisionGlTest, NewValuesDoNotRecompile) {
     std::vector<ParticleType> types(2);
     ASSERT_TRUE(particles_->setTypes(types));
     ASSERT_TRUE(particles_->setSweep(0.1F));
+    step();
     const std::vector<GLuint> before = programs();
     types[0].restitution = 1.0F;
     ASSERT_TRUE(particles_->setTypes(types));
     ASSERT_TRUE(particles_->setSweep(0.01F));
+    step();
     EXPECT_EQ(programs(), before);
     ASSERT_TRUE(particles_->setSweep(0.0F));
+    EXPECT_EQ(programs(), before);
+    step();
     EXPECT_NE(programs(), before);
     // The new values are used.
     spawnOne({{0.0F, 0.01F, 0.0F}, {0.0F, -1.0F, 0.0F}, 100.0F, 0});

@@ -351,8 +351,8 @@ TEST(SceneErrors, EmitterSurfaces) {
                   {"[[emitter.key]]\ntime = 0\n[[emitter.key]]\ntime = 1\n", "6:1", "emitter.mesh"},
                   {"touching = { within = 1, material = 3 }\n", "6:37", "list of names"},
                   {"touching = { within = 1, material = [\"earth\", 3] }\n", "6:47", "list of names"},
-                  {"touching = { within = 1, material = [] }\n", "6:37", "has no name"},
-                  {"touching = { within = 1, material = \"\" }\n", "6:37", "an empty one"}});
+                  {"touching = { within = 1, material = [] }\n", "6:37", "at least one name"},
+                  {"touching = { within = 1, material = \"\" }\n", "6:37", "no empty name"}});
 }
 
 const std::string kBox = "box_min = [0, 0, 0]\nbox_max = [1, 2, 3]\n";
