@@ -24,6 +24,7 @@
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
 #include "formats/container.h"
+#include "formats/fields/field.h"
 #include "formats/nearest_surface.h"
 #include "formats/validate.h"
 #include "formats/world/world_field.h"
@@ -333,6 +334,7 @@ py::tuple check(const SharedCollider& collider, const CheckRequest& request,
         py::arg("lost_parts") = run.part_accuracy.countOf(PartVerdict::kLost),
         py::arg("ignored_parts") = run.part_accuracy.countOf(PartVerdict::kMinor),
         py::arg("grade") = verdictOf(run.wrongPercent(), run.part_accuracy, run.collider.unit).grade,
+        py::arg("proven_depth") = onlyIf(run.proof.unproven.empty(), run.proof.depth),
         py::arg("worst_places") = placesOf(run.places));
     return py::make_tuple(measured, textsOf(run.warnings));
 }

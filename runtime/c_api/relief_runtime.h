@@ -258,7 +258,7 @@ void relief_particles_free(relief_particles* particles);
 int relief_particles_set(relief_particles* particles, const relief_particles_options* options);
 /* Queues births for the next step and returns the number accepted. Needs no context. */
 size_t relief_particles_spawn(relief_particles* particles, const relief_birth* births, size_t count);
-/* Advances the particles. `seconds`: above 0, up to 1e9. */
+/* Advances the particles. `seconds`: above 0, up to 1e9. Compiles a program if the colliders or types need another. */
 int relief_particles_step(relief_particles* particles, float seconds);
 relief_counts relief_particles_counts(const relief_particles* particles);
 /* Reads the particles back, which waits for the GPU. Writes at most `capacity` particles, in index order. Returns the

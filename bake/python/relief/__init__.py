@@ -292,6 +292,8 @@ class Accuracy:
     """ "good", "fair" or "poor", as in `relief check`: the worse of the grades of the whole mesh and of its parts. A lost part
     is poor. Coarse parts lower the grade to "fair" if they and the ignored parts together miss more than 1 % of the points near
     the surface. Ignored parts by themselves do not lower it."""
+    proven_depth: float | None = None
+    """No point farther than this from every triangle is on the wrong side, in the mesh's units; None if it is not proven."""
     worst_places: tuple[WorstPlace, ...] = ()
     """The worst first; at most three."""
 

@@ -153,6 +153,7 @@ def test_checks_match_the_tool(bake, arguments, mesh, tmp_path):
     assert (accuracy.grade, accuracy.lost_parts) == (said["verdict"]["grade"], said["verdict"]["lost_parts"])
     ignored = said["verdict"]["ignored_parts"]
     assert accuracy.ignored_parts == ignored["lost"] + ignored["thickened"]
+    assert (accuracy.proven_depth or 0) == pytest.approx(said["depth_proof"]["depth"] or 0, rel=1e-6)
     assert len(accuracy.worst_places) == len(said["worst_places"])
     for place, other in zip(accuracy.worst_places, said["worst_places"]):
         assert place.position == pytest.approx(other["position"], abs=1e-6)
