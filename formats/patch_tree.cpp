@@ -65,6 +65,25 @@ float onSide(bool inside, float distance, float nearest) {
 /// Minimum distance between the surface and cells without a patch, in cells, after rounding.
 constexpr float kNearest = 1.0F / 1024.0F;
 
+/// Returns the encoded range of a patch's heights, without their codes.
+PatchHeights heightRange(const PatchRecord& patch) {
+    PatchHeights heights;
+    heights.side = patch.side();
+    heights.base = static_cast<int>(patch.low >> 11U & 0xfffU) - kBaseZero;
+    heights.scale = static_cast<std::uint8_t>(patch.high >> 24U);
+    return heights;
+}
+
+/// \param i  of a height, x fastest.
+std::uint8_t heightCode(PatchTexels texels, const PatchRecord& patch, std::uint32_t i) {
+    const std::uint32_t side = patch.side();
+    if (i == side * side - 1) {
+        return static_cast<std::uint8_t>(patch.low >> 23U);
+    }
+    const PatchRecord texel = side == 2 ? patch : patchTexel(texels, patch.first() + i / 8);
+    return static_cast<std::uint8_t>((side == 2 || (i & 4U) != 0 ? texel.high : texel.low) >> 8U * (i & 3U));
+}
+
 PatchVote votePatch(PatchTexels texels, const PatchRecord& patch, const glm::vec3& in_cell) {
     const PatchFrame frame = patch.frame();
     const std::uint32_t side = patch.side();
@@ -77,21 +96,12 @@ PatchVote votePatch(PatchTexels texels, const PatchRecord& patch, const glm::vec
     const float s = x - column;
     const float t = y - row;
     const std::uint32_t corner = static_cast<std::uint32_t>(row) * side + static_cast<std::uint32_t>(column);
-    const auto code = [&](std::uint32_t i) {
-        std::uint32_t byte = patch.low >> 23U & 0xffU;
-        if (i != side * side - 1) {
-            const PatchRecord texel = side == 2 ? patch : patchTexel(texels, patch.first() + i / 8);
-            byte = (side == 2 || (i & 4U) != 0 ? texel.high : texel.low) >> 8U * (i & 3U) & 0xffU;
-        }
-        return static_cast<float>(byte);
-    };
+    const auto code = [&](std::uint32_t i) { return static_cast<float>(heightCode(texels, patch, i)); };
     const float c00 = code(corner);
     const float c10 = code(corner + 1);
     const float c01 = code(corner + side);
     const float c11 = code(corner + side + 1);
-    PatchHeights heights;
-    heights.base = static_cast<int>(patch.low >> 11U & 0xfffU) - kBaseZero;
-    heights.scale = static_cast<std::uint8_t>(patch.high >> 24U);
+    const PatchHeights heights = heightRange(patch);
     const float step = heights.step();
     const float lower = c00 + s * (c10 - c00);
     const float upper = c01 + s * (c11 - c01);
@@ -278,17 +288,10 @@ PatchRecord patchTexel(PatchTexels texels, std::uint32_t index) {
 }
 
 PatchHeights patchHeights(PatchTexels texels, const PatchRecord& patch) {
-    PatchHeights heights;
-    heights.side = patch.side();
-    heights.base = static_cast<int>(patch.low >> 11U & 0xfffU) - kBaseZero;
-    heights.scale = static_cast<std::uint8_t>(patch.high >> 24U);
-    const std::uint32_t last = heights.side * heights.side - 1;
-    for (std::uint32_t i = 0; i < last; ++i) {
-        const PatchRecord texel = heights.side == 2 ? patch : patchTexel(texels, patch.first() + i / 8);
-        const std::uint32_t word = heights.side == 2 || (i & 4U) != 0 ? texel.high : texel.low;
-        heights.codes[i] = static_cast<std::uint8_t>(word >> 8U * (i & 3U));
+    PatchHeights heights = heightRange(patch);
+    for (std::uint32_t i = 0; i < heights.side * heights.side; ++i) {
+        heights.codes[i] = heightCode(texels, patch, i);
     }
-    heights.codes[last] = static_cast<std::uint8_t>(patch.low >> 23U);
     return heights;
 }
 

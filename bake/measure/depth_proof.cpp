@@ -41,7 +41,7 @@ Side sideOf(bool inside) {
 struct Cell {
     glm::dvec3 low{0.0};      ///< corner, map space
     double size = 1.0;        ///< map space
-    PatchRecord record;       ///< of a patch or pair
+    PatchRecord record;       ///< its own, or that of its split parent
     Side side = Side::kBoth;  ///< kBoth: of a patch or pair
 };
 
