@@ -27,7 +27,7 @@ while IFS= read -r file; do
 done < <(find CMakeLists.txt ./*.md .github bake formats runtime samples scripts shaders tests -type f |
     grep -E "$sources|\.md$|/hooks/" | sort)
 [ "$found" = 0 ] || {
-    echo "format.sh: rewrite the lines above: no comment opens with Of, What or Where; only, not alone; fix, not mend;" \
-        "no conflict marker" >&2
+    echo "format.sh: fix the lines above: a comment must not open with Of, What or Where; write 'only', not 'alone'," \
+        "and 'fix', not 'mend'; remove conflict markers" >&2
     exit 1
 }
