@@ -7,7 +7,6 @@
 #include <limits>
 #include <utility>
 
-#include "bake/height_map/raw_rows.h"
 #include "bake/import/image_rows.h"
 #include "bake/import/import_process.h"
 #include "formats/base/file_io.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/height_map/raw_rows.h"
+#include "bake/height_map/height_map.h"
 
 #include <algorithm>
 #include <array>

@@ -11,11 +11,9 @@
 #include <vector>
 
 #include "bake/import/animated_import.h"
-#include "bake/import/gltf_clips.h"
-#include "bake/import/gltf_meshes.h"
-#include "bake/import/gltf_nodes.h"
+#include "bake/import/gltf_scene.h"
 #include "bake/import/import_readers.h"
-#include "bake/import/scene_polygons.h"
+#include "bake/import/import_scene.h"
 #include "formats/base/finite.h"
 #include "formats/base/text.h"
 

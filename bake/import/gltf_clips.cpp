@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/import/gltf_clips.h"
+#include "bake/import/gltf_scene.h"
 
 #include <algorithm>
 #include <array>

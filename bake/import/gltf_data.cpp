@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 #include <type_traits>
 
-#include "bake/import/gltf_meshopt.h"
 #include "formats/base/text.h"
 
 namespace relief {

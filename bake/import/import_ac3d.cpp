@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "bake/import/import_readers.h"
-#include "bake/import/scene_polygons.h"
+#include "bake/import/import_scene.h"
 #include "formats/base/text.h"
 #include "formats/base/text_scanner.h"
 #include "formats/polygons/decimal.h"

@@ -18,7 +18,7 @@
 #include <string_view>
 
 #include "bake/import/import_readers.h"
-#include "bake/import/scene_polygons.h"
+#include "bake/import/import_scene.h"
 #include "bake/import/source_marks.h"
 #include "formats/base/text.h"
 

@@ -6,8 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "bake/import/gltf_meshes.h"
-#include "bake/import/gltf_nodes.h"
+#include "bake/import/gltf_scene.h"
 #include "bake/import/import_readers.h"
 
 namespace relief {

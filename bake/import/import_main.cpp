@@ -17,8 +17,7 @@
 #include <vector>
 
 #include "bake/import/image_rows.h"
-#include "bake/import/import_fields.h"
-#include "bake/import/import_message.h"
+#include "bake/import/import_job.h"
 #include "bake/import/import_protocol.h"
 #include "bake/import/import_sandbox.h"
 #include "bake/import/import_source.h"
@@ -26,6 +25,7 @@
 #include "formats/base/file_io.h"
 #include "formats/base/heap.h"
 #include "formats/base/text.h"
+#include "formats/fields/text.h"
 
 namespace relief {
 namespace {

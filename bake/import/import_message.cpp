@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/import/import_message.h"
+#include "bake/import/import_protocol.h"
 
 #include <algorithm>
 #include <cstring>

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "bake/import/import_job.h"
-#include "bake/import/import_units.h"
 #include "bake/mesh/mesh.h"
 #include "formats/base/result.h"
 #include "formats/polygons/polygon_mesh.h"

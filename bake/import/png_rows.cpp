@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/import/png_rows.h"
+#include "bake/import/image_rows.h"
 
 #include <png.h>
 
@@ -146,6 +146,10 @@ Result<std::unique_ptr<SampleRows>> openPngRows(std::span<const std::byte> bytes
     auto rows = std::make_unique<PngRows>(bytes);
     RELIEF_TRY(rows->open());
     return std::unique_ptr<SampleRows>(std::move(rows));
+}
+
+Result<std::unique_ptr<SampleRows>> openImageRows(std::span<const std::byte> bytes) {
+    return isPng(bytes) ? openPngRows(bytes) : openExrRows(bytes);
 }
 
 }  // namespace relief

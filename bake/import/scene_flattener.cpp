@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/import/scene_flattener.h"
 
 #include <algorithm>
 #include <array>
@@ -12,8 +11,8 @@
 #include <tuple>
 #include <utility>
 
+#include "bake/import/import_scene.h"
 #include "bake/import/level.h"
-#include "bake/import/scene_polygons.h"
 #include "formats/base/text.h"
 
 namespace relief {

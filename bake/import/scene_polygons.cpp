@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/import/scene_polygons.h"
+#include "bake/import/import_scene.h"
 
 #include <algorithm>
 #include <map>

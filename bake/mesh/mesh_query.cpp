@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "bake/mesh/embree_mesh.h"
-#include "bake/mesh/inside.h"
 #include "bake/mesh/triangle_plane.h"
 
 namespace relief {

@@ -2,6 +2,7 @@
 // Answers point and ray queries on a mesh with Embree: the truth that colliders are measured against.
 #pragma once
 
+#include <array>
 #include <compare>
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -56,6 +57,15 @@ struct BodyCounter {
     void cross(std::uint32_t body, int side);
 };
 
+/// Directions of the rays that classify points as inside or outside. About unit length. Modelled edges and faces are unlikely to be parallel to them.
+inline constexpr std::array<glm::dvec3, 7> kParityDirections = {{{0.5773, 0.6137, 0.5386},
+                                                                 {-0.7351, 0.3119, 0.6019},
+                                                                 {0.2677, -0.8713, 0.4111},
+                                                                 {0.4637, 0.3511, -0.8135},
+                                                                 {-0.1933, -0.5557, -0.8087},
+                                                                 {0.8819, -0.2749, -0.3829},
+                                                                 {-0.6131, 0.7717, -0.1693}}};
+
 /// Queries are thread-safe and deterministic. Directions may have any length above 0.
 class MeshQuery {
   public:
@@ -65,7 +75,7 @@ class MeshQuery {
     [[nodiscard]] const PreparedMesh& prepared() const { return mesh_; }
     [[nodiscard]] const TriangleMesh& mesh() const { return *mesh_; }
 
-    /// Classifies a point by the majority of seven rays, kParityDirections (inside.h). This is independent of the
+    /// Classifies a point by the majority of seven rays, kParityDirections . This is independent of the
     /// winding and tolerates holes for most points. For PreparedMesh::woundShells the winding number decides, so that
     /// the overlap of two solids is inside. In a union (PreparedMesh::unionOf) each body is tested separately, by two
     /// of three rays. Voids (PreparedMesh::voids) are inside.

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "bake/mesh/inside.h"
 #include "bake/mesh/mesh_edges.h"
+#include "bake/mesh/mesh_query.h"
 #include "bake/mesh/surface_sampler.h"
 #include "bake/mesh/triangle_plane.h"
 

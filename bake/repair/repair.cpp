@@ -4,7 +4,6 @@
 #include <string_view>
 #include <utility>
 
-#include "bake/repair/mesh_repair.h"
 #include "bake/repair/winding.h"
 #include "formats/base/text.h"
 

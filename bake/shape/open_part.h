@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The open parts of a mesh, and which of them are solids with holes, sheets and terrains.
+// Classifies the open parts of a mesh (solids with holes, sheets, terrains), and closes parts with holes.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "bake/mesh/prepared_mesh.h"
@@ -35,5 +36,17 @@ struct OpenPart {
 /// Errors: those of MeshQuery::build.
 [[nodiscard]] Result<void> sortSheets(std::span<OpenPart> open, const PreparedMesh& mesh,
                                       std::span<const ShapeAs> kinds, std::size_t parts);
+
+/// A part with holes, after closing.
+struct ClosedPart {
+    std::optional<PreparedMesh> mesh;
+    bool balanced = true;
+    bool is_body = true;  ///< cut off at its foot; not a vessel
+};
+
+/// Closes a part. Returns no mesh if the holes cannot be closed, or if the result encloses nothing.
+/// \param is_body  already known to be a body.
+/// \param z_is_up  +z may be up, too.
+[[nodiscard]] Result<ClosedPart> closePart(const TriangleMesh& open, bool is_body, bool z_is_up);
 
 }  // namespace relief

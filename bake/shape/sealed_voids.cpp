@@ -12,8 +12,8 @@
 #include <numeric>
 #include <utility>
 
-#include "bake/mesh/inside.h"
 #include "bake/mesh/mersenne.h"
+#include "bake/mesh/mesh_query.h"
 #include "bake/mesh/surface_parts.h"
 #include "bake/mesh/surface_sampler.h"
 #include "bake/mesh/triangle_plane.h"

@@ -15,14 +15,10 @@
 #include "bake/mesh/mesh_query.h"
 #include "bake/repair/hole_caps.h"
 #include "bake/repair/winding.h"
-#include "bake/shape/closed_part.h"
-#include "bake/shape/near_copies.h"
 #include "bake/shape/open_part.h"
 #include "bake/shape/parts.h"
 #include "bake/shape/sealed_voids.h"
-#include "bake/shape/shell.h"
-#include "bake/shape/solid_union.h"
-#include "bake/shape/terrain.h"
+#include "bake/shape/solids.h"
 #include "bake/shape/walls.h"
 
 namespace relief {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces without thickness. shell.h and terrain.h build solids from them.
+// Surfaces without thickness. solids.h builds solids from them.
 #pragma once
 
 #include <cstdint>

@@ -1,14 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds pairs of open parts that are the two shells of a wall.
+// Finds pairs of open parts that are the two shells of a wall, such as a double-walled vessel, and joins them at their rims.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
-#include "bake/shape/rims.h"
+#include "bake/mesh/mesh.h"
 #include "bake/shape/sheet.h"
 
 namespace relief {
+
+struct OpenShell {
+    TriangleMesh mesh;      ///< after finishMesh
+    bool is_solid = false;  ///< may be a solid with holes; true for at least one shell of a wall
+};
+
+/// Two shells, joined by a ring between each pair of facing rims.
+struct ShellWall {
+    std::size_t outer = 0;  ///< index of the shell
+    std::size_t inner = 0;
+    bool alike = false;  ///< both have the same winding: towards the outside, or towards the enclosed space
+    TriangleMesh mesh;   ///< before finishMesh; may still have small holes
+};
+
+struct ShellWalls {
+    std::vector<ShellWall> walls;
+    /// Pairs of outer and inner shells with nearly facing mouths, one per inner shell that is in no wall. Either may be
+    /// a solid.
+    std::vector<std::array<std::size_t, 2>> unjoined;
+};
+
+/// Joins each outer shell to an inner one. Holes of the inner shell that face no hole of the outer shell must be small.
+/// A shell belongs to at most one wall.
+[[nodiscard]] ShellWalls joinRims(const std::vector<OpenShell>& shells);
 
 /// An open part of a mesh.
 struct WallCandidate {

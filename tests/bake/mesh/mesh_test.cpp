@@ -7,11 +7,11 @@
 #include <random>
 #include <vector>
 
-#include "bake/mesh/area_table.h"
 #include "bake/mesh/mersenne.h"
+#include "bake/mesh/mesh.h"
 #include "bake/mesh/mesh_query.h"
-#include "bake/mesh/ray_cost.h"
 #include "bake/mesh/surface_parts.h"
+#include "bake/mesh/surface_sampler.h"
 #include "bake/mesh/triangle_plane.h"
 #include "tests/bake/meshes.h"
 #include "tests/seeds.h"
