@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// assimp 5.2 is not used: it reads `0,5` as 0 and rejects comments and `\` after a face (import_text_test.cpp, Obj), and
-// the runtime does not link it.
+// assimp 5.2 is not used: it reads `0,5` as 0 and rejects comments and `\` after a face (import_text_test.cpp, Obj),
+// and the runtime does not link it.
 #include "formats/polygons/polygon_mesh.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The polygons of a file, as read from OBJ, OFF, PLY and STL, and the readers of OBJ and PLY, which the runtime also needs.
+// The polygons of a file, as read from OBJ, OFF, PLY and STL, and the readers of OBJ and PLY, which the runtime also
+// needs.
 #pragma once
 
 #include <array>
@@ -82,12 +83,12 @@ struct ObjMesh {
 };
 
 /// Reads Wavefront OBJ: the statements v, f, l, p, g, o, usemtl and mtllib. Free-form surfaces are counted; all other
-/// statements are skipped. Statements may be indented, continued by a backslash, and followed by a comment. A vertex has three
-/// coordinates, optionally followed by a weight that divides them or by a colour in 0…1. Corners are "7", "7/1", "7//3"
-/// or "7/1/3"; negative indices count back from the last vertex so far. Faces may precede their vertices. A face has
-/// the name of its material, and the names of the current group or object, whichever started last. The names of a group
-/// are its whole line and each of its words. A new material does not end the group. Errors, with the line but not the
-/// file: kInvalidInput.
+/// statements are skipped. Statements may be indented, continued by a backslash, and followed by a comment. A vertex
+/// has three coordinates, optionally followed by a weight that divides them or by a colour in 0…1. Corners are "7",
+/// "7/1", "7//3" or "7/1/3"; negative indices count back from the last vertex so far. Faces may precede their vertices.
+/// A face has the name of its material, and the names of the current group or object, whichever started last. The names
+/// of a group are its whole line and each of its words. A new material does not end the group.
+/// Errors, with the line but not the file: kInvalidInput.
 [[nodiscard]] Result<ObjMesh> readObj(std::span<const std::byte> bytes,
                                       PolygonColors colors = PolygonColors::kSkip);
 
