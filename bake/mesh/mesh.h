@@ -107,10 +107,8 @@ struct TriangleMesh {
 void keepTriangles(TriangleMesh& mesh, std::size_t count);
 /// Clears the labels if there is only one surface, and clears its name if the material is unnamed.
 void dropSingleLabel(TriangleMesh& mesh);
-/// Copies a triangle with its mark and label.
 void moveTriangle(TriangleMesh& mesh, std::size_t from, std::size_t to);
 
-/// Extends a box by another box.
 inline void addBounds(Bounds& bounds, const Bounds& other) {
     bounds.add(other.min);
     bounds.add(other.max);
@@ -123,7 +121,6 @@ inline void addBounds(Bounds& bounds, const Bounds& other) {
     return {mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]};
 }
 
-/// Extends a box by a triangle.
 inline void addTriangle(Bounds& bounds, const TriangleMesh& mesh, std::uint32_t triangle) {
     for (const glm::vec3& corner : cornersOf(mesh, triangle)) {
         bounds.add(corner);

@@ -7,6 +7,7 @@
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "bake/mesh/mesh.h"
@@ -67,7 +68,7 @@ class PreparedMesh {
     /// Implicit, so that a plain mesh can be passed for a single query. Move large meshes.
     PreparedMesh(TriangleMesh mesh);
 
-    [[nodiscard]] const TriangleMesh& operator*() const;
+    [[nodiscard]] const TriangleMesh& operator*() const { return state_->mesh; }
     [[nodiscard]] const TriangleMesh* operator->() const { return &**this; }
 
     [[nodiscard]] const MeshEdges& edges() const;
@@ -91,23 +92,38 @@ class PreparedMesh {
     /// \param turn  per triangle: swap its second and third corners.
     [[nodiscard]] PreparedMesh woundOutwards(const std::vector<bool>& turn) &&;
     /// The last argument of woundOutwards; empty if no triangle was flipped.
-    [[nodiscard]] const std::vector<bool>& turned() const;
+    [[nodiscard]] const std::vector<bool>& turned() const { return state_->turned; }
     /// Builds a mesh of parts that each enclose a volume; the inside is their union.
     /// \param bodies  per triangle: 0 if the winding number decides (wound outwards), else the number of a body that
     /// uses the parity of ray crossings.
     [[nodiscard]] static PreparedMesh unionOf(TriangleMesh mesh, std::vector<std::uint32_t> bodies);
     /// The argument of unionOf; empty for other meshes.
-    [[nodiscard]] const std::vector<std::uint32_t>& bodies() const;
+    [[nodiscard]] const std::vector<std::uint32_t>& bodies() const { return state_->bodies; }
 
     /// Returns the same mesh; points in `voids` are inside.
     [[nodiscard]] PreparedMesh withVoids(Voids voids) &&;
-    [[nodiscard]] const Voids& voids() const;
+    [[nodiscard]] const Voids& voids() const { return state_->voids; }
 
     /// Returns another mesh, with caps, that inherits the state of this one's winding.
     [[nodiscard]] PreparedMesh capped(TriangleMesh mesh) const;
 
   private:
-    struct State;
+    struct State {
+        TriangleMesh mesh;
+        bool wound_outwards = false;
+        std::vector<bool> turned;
+        std::optional<MeshEdges> edges;
+        std::optional<std::vector<OddEdge>> odd_edges;
+        std::optional<bool> several_shells;
+        std::optional<double> orientation;
+        std::optional<AreaTable> areas;
+        std::shared_ptr<EmbreeMesh> tree;
+        std::vector<std::uint32_t> bodies;
+        Voids voids;
+
+        /// Computes everything that depends on the edges. If the edges are not stored, computes them temporarily.
+        void computeFromEdges();
+    };
     std::shared_ptr<State> state_;
 };
 

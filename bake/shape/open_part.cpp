@@ -109,7 +109,6 @@ std::optional<int> terrainAxis(const Sheet& sheet, const TriangleMesh& mesh, std
     return std::nullopt;
 }
 
-/// Returns the axis of the largest projection.
 int flattestAxis(const Sheet& sheet) {
     const glm::dvec3 area = glm::abs(shadowOf(sheet).signed_area);
     return area.y >= std::max(area.x, area.z) ? 1 : area.z >= area.x ? 2 : 0;

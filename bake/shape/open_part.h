@@ -27,7 +27,6 @@ struct OpenPart {
     bool full = false;  ///< closed separately, and a solid
 };
 
-/// Returns the longest side of a sheet's bounds.
 [[nodiscard]] double sizeOf(const Sheet& sheet);
 
 /// Finds the solids with holes and the terrains among the open parts of a mesh.

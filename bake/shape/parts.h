@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Splits a mesh into parts that are connected by edges and of one kind, and finds copies among them. Equal positions count as
-// one vertex.
+// Splits a mesh into parts that are connected by edges and of one kind, and finds copies among them. Equal positions
+// count as one vertex.
 #pragma once
 
 #include <cstdint>
@@ -59,8 +59,7 @@ struct NearCopies {
 
 /// Finds closed parts that almost coincide with another part, as in an export of two copies, one enlarged by a
 /// millionth. The gap between them is thinner than any wall of a collider and would make the solid hollow. In near
-/// copies, every corner has a corner of the other part within kCopyReach of their longest
-/// side.
+/// copies, every corner has a corner of the other part within kCopyReach of their longest side.
 /// \param solids  closed, not flat; borrowed.
 [[nodiscard]] NearCopies nearCopies(const TriangleMesh& mesh, std::span<const Part* const> solids);
 

@@ -15,8 +15,7 @@ constexpr const auto& kAsNames = kWordsOf<ShapeAs>;
 constexpr std::string_view kByPart = "auto=";
 
 bool isNamed(const ShapeOptions& options, std::string_view name) {
-    return std::any_of(options.named.begin(), options.named.end(),
-                       [&](const NamedShape& named) { return named.name == name; });
+    return std::ranges::any_of(options.named, [&](const NamedShape& named) { return named.name == name; });
 }
 
 constexpr double kShellLeast = 0.004;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Builds the solids that represent sheets (shells, and the ground below terrains), and the union of all closed surfaces.
+// Builds the solids that represent sheets (shells, and the ground below terrains), and the union of all closed
+// surfaces.
 #pragma once
 
 #include <array>
@@ -55,17 +56,17 @@ class PartBuilder {
     SolidPart part_;
 };
 
-/// Builds the shell within half the thickness along the sheet's normals.
+/// Builds the shell within half the thickness along the sheet's normals. Edges have mitres, the border has flat ends,
+/// and corners have bevels if a common mitre would leave a side thin. Each patch of joined triangles becomes one closed
+/// surface. A region that is thinner than the shell, such as a rod, is filled; its offset surface would turn inside out
+/// and is omitted.
 ///
 ///            top: + thickness/2
 ///      ┌──────────────────────────┐
 ///      │· · · · · sheet · · · · · │
 ///      └──────────────────────────┘
 ///            bottom: − thickness/2
-/// Edges have mitres, the border has flat ends,
-/// and corners have bevels if a common mitre would leave a side thin. Each patch of joined triangles becomes one closed
-/// surface. A region that is thinner than the shell, such as a rod, is filled; its offset surface would turn inside out
-/// and is omitted.
+///
 /// \param query      for the sheet's triangles.
 /// \param thickness  object units, above 0.
 [[nodiscard]] SolidPart thickened(Sheet sheet, const MeshQuery& query, double thickness);
@@ -84,7 +85,6 @@ class PartBuilder {
 /// Collects the closed surfaces that replace a mesh.
 class SolidUnion {
   public:
-    /// Borrows the source.
     explicit SolidUnion(const TriangleMesh& source);
 
     /// Adds triangles of the source.

@@ -34,7 +34,6 @@ constexpr double kWallVolume = 0.95;
 /// A spike's base is shorter than this fraction of its sides, and at most one in so many corners is a spike.
 constexpr double kSpike = 0.5;
 constexpr std::size_t kSpikesOfCorners = 8;
-/// Maximum number of corner pairs that are compared.
 constexpr std::size_t kRimPairs = 100'000'000;
 
 /// A border of an open shell, in the direction of a cap's triangles.
@@ -48,13 +47,12 @@ struct Rim {
 };
 
 struct RimmedShell {
-    std::size_t index = 0;
-    const OpenShell* shell = nullptr;
+    std::size_t index = 0;  ///< of the candidate
+    bool may_be_solid = false;
+    TriangleMesh mesh;      ///< after finishMesh
     int axis = 0;           ///< the longest axis
     std::vector<Rim> rims;  ///< sorted by the lower bound along the axis
     double volume = 0.0;    ///< enclosed volume with closed rims
-
-    [[nodiscard]] const TriangleMesh& mesh() const { return shell->mesh; }
 };
 
 /// Returns the volume enclosed by a mesh whose rims are closed by fans.
@@ -69,14 +67,6 @@ double volumeWithin(const TriangleMesh& mesh, const std::vector<const Rim*>& rim
         }
     }
     return std::abs(enclosedVolume(mesh.positions, triangles, mesh.bounds.center()).value_or(0.0));
-}
-
-std::vector<const Rim*> pointersTo(const std::vector<Rim>& rims) {
-    std::vector<const Rim*> pointers;
-    for (const Rim& rim : rims) {
-        pointers.push_back(&rim);
-    }
-    return pointers;
 }
 
 bool hasFace(const TriangleMesh& mesh, const glm::uvec3& corners) {
@@ -118,13 +108,12 @@ void cutSpikes(const TriangleMesh& mesh, Rim& rim) {
     rim.places.resize(kept);
 }
 
-RimmedShell rimmedShell(const OpenShell& shell, std::size_t index) {
-    RimmedShell rimmed{index, &shell, 0, {}, 0.0};
+void findRims(RimmedShell& shell) {
     const glm::dvec3 size = shell.mesh.bounds.size();
-    rimmed.axis = size.x >= std::max(size.y, size.z) ? 0 : size.y >= size.z ? 1 : 2;
+    shell.axis = size.x >= std::max(size.y, size.z) ? 0 : size.y >= size.z ? 1 : 2;
     const PreparedMesh open(shell.mesh);
     for (const BorderLoop& loop : borderLoops(open.oddEdges())) {
-        Rim& rim = rimmed.rims.emplace_back();
+        Rim& rim = shell.rims.emplace_back();
         for (const BorderStep& step : loop) {
             rim.vertices.push_back(step.from);
             rim.places.emplace_back(open->positions[step.from]);
@@ -137,9 +126,12 @@ RimmedShell rimmedShell(const OpenShell& shell, std::size_t index) {
             rim.normal += cross(rim.places[i] - rim.places[0], rim.places[i + 1] - rim.places[0]);
         }
     }
-    std::ranges::stable_sort(rimmed.rims, {}, [&](const Rim& rim) { return rim.bounds.min[rimmed.axis]; });
-    rimmed.volume = volumeWithin(shell.mesh, pointersTo(rimmed.rims));
-    return rimmed;
+    std::ranges::stable_sort(shell.rims, {}, [&](const Rim& rim) { return rim.bounds.min[shell.axis]; });
+    std::vector<const Rim*> all;
+    for (const Rim& rim : shell.rims) {
+        all.push_back(&rim);
+    }
+    shell.volume = volumeWithin(shell.mesh, all);
 }
 
 /// Whether every corner of one rim is within a gap of the other rim.
@@ -216,7 +208,7 @@ void addRing(TriangleMesh& mesh, const std::vector<std::uint32_t>& a, std::vecto
 
 /// Returns nullopt if too few rims of the inner shell face rims of the outer one, or if it is not inside the outer one.
 std::optional<ShellWall> wallBetween(const RimmedShell& outer, const RimmedShell& inner) {
-    if (!outer.mesh().bounds.meets(inner.mesh().bounds)) {
+    if (!outer.mesh.bounds.meets(inner.mesh.bounds)) {
         return std::nullopt;
     }
     std::vector<bool> taken(outer.rims.size(), false);
@@ -244,8 +236,8 @@ std::optional<ShellWall> wallBetween(const RimmedShell& outer, const RimmedShell
     if (pairs.empty() || area < 0.0) {
         return std::nullopt;
     }
-    TriangleMesh wall = outer.mesh();
-    const TriangleMesh& within = inner.mesh();
+    TriangleMesh wall = outer.mesh;
+    const TriangleMesh& within = inner.mesh;
     const auto first = static_cast<std::uint32_t>(wall.positions.size());
     wall.positions.insert(wall.positions.end(), within.positions.begin(), within.positions.end());
     for (const glm::uvec3& t : within.triangles) {
@@ -283,7 +275,7 @@ bool nearlyFace(const RimmedShell& outer, const RimmedShell& inner) {
         return false;
     }
     const Bounds mouth = largest(inner)->bounds;
-    return outer.mesh().bounds.contains(inner.mesh().bounds.center()) &&
+    return outer.mesh.bounds.contains(inner.mesh.bounds.center()) &&
            boxGap(mouth, largest(outer)->bounds) <= kNearRimGap * double{mouth.longestSide()};
 }
 
@@ -295,10 +287,7 @@ std::optional<bool> turnedSinceImport(const Sheet& sheet, const TriangleMesh& me
                                       const std::vector<bool>& turned) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < sheet.triangles.size(); ++i) {
-        const glm::uvec3& t = sheet.triangles[i];
-        const glm::dvec3 a = sheet.positions[t.x];
-        const glm::dvec3 normal =
-            cross(glm::dvec3(sheet.positions[t.y]) - a, glm::dvec3(sheet.positions[t.z]) - a);
+        const glm::dvec3 normal = planeOf(sheet.positions, sheet.triangles[i]).normal;
         const bool against = dot(normal, planeOf(mesh, sheet.sources[i]).normal) < 0.0;
         count += against != turned[sheet.sources[i]] ? 1 : 0;
     }
@@ -332,64 +321,55 @@ std::vector<bool> mayBeWalls(const std::vector<WallCandidate>& candidates) {
     return may_be_wall;
 }
 
-}  // namespace
-
-ShellWalls joinRims(const std::vector<OpenShell>& shells) {
-    std::vector<RimmedShell> rimmed(shells.size());
-    tbb::parallel_for(std::size_t{0}, shells.size(),
-                      [&](std::size_t i) { rimmed[i] = rimmedShell(shells[i], i); });
-    std::ranges::stable_sort(rimmed, std::greater(), [](const RimmedShell& shell) {
-        const glm::dvec3 size = shell.mesh().bounds.size();
+/// Joins each outer shell to an inner one.
+ShellWalls joinRims(std::vector<RimmedShell>& shells) {
+    tbb::parallel_for(std::size_t{0}, shells.size(), [&](std::size_t i) { findRims(shells[i]); });
+    std::ranges::stable_sort(shells, std::greater(), [](const RimmedShell& shell) {
+        const glm::dvec3 size = shell.mesh.bounds.size();
         return size.x * size.y * size.z;
     });
+    const auto mayBeWall = [&](std::size_t i, std::size_t k) {
+        return shells[i].may_be_solid || shells[k].may_be_solid;
+    };
     ShellWalls joined;
-    std::vector<bool> done(rimmed.size(), false);
-    for (std::size_t i = 0; i < rimmed.size(); ++i) {
-        for (std::size_t k = i + 1; k < rimmed.size() && !done[i]; ++k) {
-            if (done[k] || !(rimmed[i].shell->is_solid || rimmed[k].shell->is_solid)) {
+    std::vector<bool> done(shells.size(), false);
+    for (std::size_t i = 0; i < shells.size(); ++i) {
+        for (std::size_t k = i + 1; k < shells.size() && !done[i]; ++k) {
+            if (done[k] || !mayBeWall(i, k)) {
                 continue;
             }
-            if (std::optional<ShellWall> wall = wallBetween(rimmed[i], rimmed[k])) {
+            if (std::optional<ShellWall> wall = wallBetween(shells[i], shells[k])) {
                 joined.walls.push_back(std::move(*wall));
                 done[i] = done[k] = true;
             }
         }
     }
-    for (std::size_t k = 0; k < rimmed.size(); ++k) {
+    for (std::size_t k = 0; k < shells.size(); ++k) {
         for (std::size_t i = 0; i < k && !done[k]; ++i) {
-            if ((rimmed[i].shell->is_solid || rimmed[k].shell->is_solid) &&
-                nearlyFace(rimmed[i], rimmed[k])) {
-                joined.unjoined.push_back({rimmed[i].index, rimmed[k].index});
+            if (mayBeWall(i, k) && nearlyFace(shells[i], shells[k])) {
+                joined.unjoined.push_back({shells[i].index, shells[k].index});
             }
         }
     }
     return joined;
 }
 
+}  // namespace
+
 ShellWalls wallsAmong(const std::vector<WallCandidate>& candidates, const std::string& name) {
     const std::vector<bool> may_be_wall = mayBeWalls(candidates);
-    std::vector<std::size_t> indices;
-    std::vector<OpenShell> shells;
+    std::vector<RimmedShell> shells;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
         if (!candidates[i].may_join || !may_be_wall[i]) {
             continue;
         }
-        Result<TriangleMesh> mesh = finishMesh(meshOf(*candidates[i].sheet, name));
-        if (mesh) {  // else too small for a mesh
-            indices.push_back(i);
-            shells.push_back({std::move(*mesh), candidates[i].may_be_solid});
+        if (Result<TriangleMesh> mesh =
+                finishMesh(meshOf(*candidates[i].sheet, name))) {  // else too small for a mesh
+            shells.push_back(
+                {.index = i, .may_be_solid = candidates[i].may_be_solid, .mesh = std::move(*mesh)});
         }
     }
-    ShellWalls walls = joinRims(shells);
-    for (auto& [outer, inner] : walls.unjoined) {
-        outer = indices[outer];
-        inner = indices[inner];
-    }
-    for (ShellWall& wall : walls.walls) {
-        wall.outer = indices[wall.outer];
-        wall.inner = indices[wall.inner];
-    }
-    return walls;
+    return joinRims(shells);
 }
 
 bool isAmbiguous(const ShellWall& wall, const std::vector<WallCandidate>& candidates,

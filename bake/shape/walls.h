@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds pairs of open parts that are the two shells of a wall, such as a double-walled vessel, and joins them at their rims.
+// Finds pairs of open parts that are the two shells of a wall, such as a double-walled vessel, and joins them at their
+// rims.
 #pragma once
 
 #include <array>
@@ -12,14 +13,9 @@
 
 namespace relief {
 
-struct OpenShell {
-    TriangleMesh mesh;      ///< after finishMesh
-    bool is_solid = false;  ///< may be a solid with holes; true for at least one shell of a wall
-};
-
 /// Two shells, joined by a ring between each pair of facing rims.
 struct ShellWall {
-    std::size_t outer = 0;  ///< index of the shell
+    std::size_t outer = 0;  ///< index of the candidate
     std::size_t inner = 0;
     bool alike = false;  ///< both have the same winding: towards the outside, or towards the enclosed space
     TriangleMesh mesh;   ///< before finishMesh; may still have small holes
@@ -27,26 +23,21 @@ struct ShellWall {
 
 struct ShellWalls {
     std::vector<ShellWall> walls;
-    /// Pairs of outer and inner shells with nearly facing mouths, one per inner shell that is in no wall. Either may be
-    /// a solid.
+    /// Pairs of outer and inner candidates with nearly facing mouths, one per inner one that is in no wall. Either may
+    /// be a solid.
     std::vector<std::array<std::size_t, 2>> unjoined;
 };
 
-/// Joins each outer shell to an inner one. Holes of the inner shell that face no hole of the outer shell must be small.
-/// A shell belongs to at most one wall.
-[[nodiscard]] ShellWalls joinRims(const std::vector<OpenShell>& shells);
-
-/// An open part of a mesh.
 struct WallCandidate {
     const Sheet* sheet = nullptr;
     bool may_join = false;      ///< it may be a shell of a wall
-    bool may_be_solid = false;  ///< OpenShell::is_solid
+    bool may_be_solid = false;  ///< it may be a solid with holes; true for at least one shell of a wall
 };
 
-/// Joins the rims of candidates of similar size whose bounds contain each other's centre. Tests only pairs that overlap
-/// along x, because a file may have thousands of open parts.
+/// Joins the rims of an outer and an inner candidate of similar size whose bounds contain each other's centre. Holes of
+/// the inner one that face no hole of the outer one must be small. A candidate belongs to at most one wall. Tests only
+/// pairs that overlap along x, because a file may have thousands of open parts.
 /// \param name  of the mesh.
-/// \return shells as indices of candidates.
 [[nodiscard]] ShellWalls wallsAmong(const std::vector<WallCandidate>& candidates, const std::string& name);
 
 /// Whether the two shells of a wall have the same winding in the file, or one of them has an inconsistent winding.
