@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -242,7 +241,6 @@ class Winder {
             double facing =
                 0.0;  ///< for an open patch: samples with the inside in front, minus samples with it behind
         };
-        /// A crossing of a line with a patch.
         struct Place {
             std::uint32_t patch;
             bool outside;
