@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the JSON and the binary data of a glTF file. JSON is parsed strictly, into values that track their position. Binary
-// data are GLB chunks, buffers (embedded, as data URIs, or in separate files), and accessors, including sparse, quantized
-// and compressed ones. Errors name the place in the document, such as "meshes[0].primitives[2].mode", not the file.
+// Reads the JSON and the binary data of a glTF file. JSON is parsed strictly, into values that track their position.
+// Binary data are GLB chunks, buffers (embedded, as data URIs, or in separate files), and accessors, including sparse,
+// quantized and compressed ones. Errors name the place in the document, such as "meshes[0].primitives[2].mode", not the
+// file.
 #pragma once
 
 #include <cstddef>
@@ -36,7 +37,6 @@ class GltfValue {
                                               ErrorCode code = ErrorCode::kInvalidInput) const;
 
     [[nodiscard]] bool has(const char* name) const;
-    /// Index in its parent list.
     [[nodiscard]] std::uint64_t index() const { return index_; }
 
     /// Reads a member; nullopt if it is missing. T is bool, std::uint64_t, std::string, or a vector of one of these or
@@ -48,7 +48,6 @@ class GltfValue {
     [[nodiscard]] Result<T> get(const char* name, T otherwise) const {
         return RELIEF_TRY(get<T>(name)).value_or(std::move(otherwise));
     }
-    /// Reads a whole number. Also fails if it is missing.
     [[nodiscard]] Result<std::uint64_t> number(const char* name) const;
     /// Reads a list of exactly `count` numbers; empty if it is missing.
     [[nodiscard]] Result<std::vector<float>> numbers(const char* name, std::size_t count) const;
@@ -81,15 +80,12 @@ struct GltfChunks {
     std::vector<std::string> warnings;                 ///< without the file name
 };
 
-/// Splits a GLB into its chunks; any other file is JSON. Errors: kInvalidInput, kUnsupported (another GLB version).
-[[nodiscard]] Result<GltfChunks> gltfChunks(std::span<const std::byte> bytes);
-
 /// A parsed file; borrows its bytes.
 struct GltfDocument {
     GltfChunks chunks;
     std::shared_ptr<const nlohmann::json> json;  ///< always an object
 };
-/// Splits and parses a file. Errors: those of gltfChunks and parseGltfJson.
+/// Splits and parses a file. Errors: those of parseGltfJson; kInvalidInput, kUnsupported (another GLB version).
 [[nodiscard]] Result<GltfDocument> openGltf(std::span<const std::byte> bytes);
 
 /// Decodes a data URI.
@@ -97,7 +93,6 @@ struct GltfDocument {
 /// Errors, without a place: kInvalidInput.
 [[nodiscard]] Result<std::vector<std::byte>> dataUriBytes(std::string_view uri);
 
-/// The bytes of a bufferView.
 struct GltfView {
     std::span<const std::byte> bytes;
     std::optional<std::uint64_t> stride;  ///< bytes between elements, above 0

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the contents of a glTF file: nodes (hierarchy, transforms, visibility), meshes (triangles, positions, joint weights,
-// morph targets), skins and animations. Errors name the place in the document, not the file.
+// Reads the contents of a glTF file: nodes (hierarchy, transforms, visibility), meshes (triangles, positions, joint
+// weights, morph targets), skins and animations. Errors name the place in the document, not the file.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,6 @@
 
 namespace relief {
 
-/// Limit of EXT_mesh_gpu_instancing instances in a file.
 inline constexpr std::uint64_t kGltfInstancesMax = 1'000'000;
 
 /// A transform to the parent: scale, then rotation, then translation; or a matrix.
@@ -64,11 +63,13 @@ struct GltfNode {
 [[nodiscard]] Result<std::vector<std::uint32_t>> gltfRoots(const GltfValue& document,
                                                            const std::vector<GltfNode>& nodes);
 
+/// Returns the nodes without a parent.
+[[nodiscard]] std::vector<std::uint32_t> rootsOf(const std::vector<GltfNode>& nodes);
+
 /// Returns the roots and all their descendants in depth-first order, parents first.
 [[nodiscard]] std::vector<std::uint32_t> nodesBelow(const std::vector<std::uint32_t>& roots,
                                                     const std::vector<GltfNode>& nodes);
 
-/// The node's transform to scene space.
 [[nodiscard]] Transform transformInScene(const std::vector<GltfNode>& nodes, std::uint32_t index);
 
 /// Converts a matrix.
@@ -89,7 +90,6 @@ struct GltfInfluence {
     float weight;         ///< not negative
 };
 
-/// The joint influences of a primitive's vertices.
 struct GltfInfluences {
     std::size_t per_vertex = 0;
     std::vector<GltfInfluence> all;  ///< per_vertex entries for each vertex; their weights sum to more than 0
@@ -118,19 +118,17 @@ struct GltfSkin {
 [[nodiscard]] Result<void> checkJoints(const GltfInfluences& influences, const GltfSkin& joints,
                                        const GltfValue& mesh, const GltfValue& skin);
 
-/// Reads each mesh once.
 class GltfMeshes {
   public:
     /// Borrows `buffers` and `warnings`. \param triangle_max  limit for all meshes together.
     GltfMeshes(std::uint64_t triangle_max, GltfBuffers& buffers, std::vector<std::string>& warnings)
         : triangle_max_(triangle_max), buffers_(buffers), warnings_(warnings) {}
 
-    struct Needs {
-        bool joints = false;
-        bool targets = false;
-    };
-    /// Reads a mesh. \return borrowed; repeated calls return the first result and ignore `needs`.
-    [[nodiscard]] Result<const GltfMesh*> read(const GltfValue& mesh, Needs needs);
+    /// Reads the meshes of nodes, in this order, with the joints of skinned ones.
+    [[nodiscard]] Result<void> read(const std::vector<std::uint32_t>& shown,
+                                    const std::vector<GltfNode>& nodes, bool targets);
+    /// Returns a mesh that was read.
+    [[nodiscard]] const GltfMesh& at(const GltfValue& mesh) const { return meshes_.at(mesh.index()); }
 
     /// Counts the contents read so far. \param meshes  number of meshes in the file.
     [[nodiscard]] MeshParts counts(std::size_t meshes) const;
@@ -143,13 +141,17 @@ class GltfMeshes {
         std::vector<std::uint8_t> uses;
     };
 
+    struct Needs {
+        bool joints = false;
+        bool targets = false;
+    };
+    [[nodiscard]] Result<void> readMesh(const GltfValue& mesh, Needs needs);
     [[nodiscard]] Result<GltfPrimitive> readPrimitive(const GltfValue& place, Needs needs);
     [[nodiscard]] Result<Vertices*> vertices(const GltfValue& accessor);
     [[nodiscard]] Result<void> readTriangles(const GltfValue& place, std::uint64_t mode, Vertices& vertices,
                                              ScenePart& part);
     [[nodiscard]] Result<void> readTargets(const std::vector<GltfValue>& places, std::size_t vertices,
                                            const std::vector<std::uint32_t>& kept, GltfPrimitive& out);
-    void warn(const std::string& text);
 
     std::uint64_t triangle_max_;
     GltfBuffers& buffers_;

@@ -23,7 +23,6 @@ enum class UpAxis : std::uint8_t { kPlusX, kMinusX, kPlusY, kMinusY, kPlusZ, kMi
 template <>
 inline constexpr std::array<std::string_view, 6> kWordsOf<UpAxis>{"+x", "-x", "+y", "-y", "+z", "-z"};
 
-/// The values of --unit.
 inline constexpr std::array<std::string_view, 8> kLengthUnits{"m", "cm", "mm", "um", "km", "in", "ft", "yd"};
 
 /// Returns the length of a unit in metres; nullopt if the unit is unknown.
@@ -33,7 +32,6 @@ inline constexpr std::array<std::string_view, 8> kLengthUnits{"m", "cm", "mm", "
 /// quarter turn about x for ±z, and a half turn about x for −y.
 [[nodiscard]] glm::dmat3 turnUpwards(UpAxis up);
 
-/// Units and axes as a file states them.
 struct SourceFrame {
     std::optional<double> metres;  ///< per unit of the file
     std::optional<UpAxis> up;
@@ -49,7 +47,6 @@ struct SourceFrame {
 [[nodiscard]] Result<void> checkFrame(const SourceFrame& source, std::string_view unit,
                                       std::optional<UpAxis> up);
 
-/// The conversion from a frame to metres and +Y up.
 struct FrameChange {
     double scale = 1.0;
     glm::dmat3 turn{1.0};
@@ -63,17 +60,6 @@ struct FrameChange {
 /// \param up    nullopt for the file's axis.
 [[nodiscard]] FrameChange changeOf(const SourceFrame& source, std::string_view unit,
                                    std::optional<UpAxis> up);
-
-/// The UnitScaleFactor of an FBX file, binary or text, of any numeric type.
-struct FbxUnit {
-    std::string text;             ///< as stored in the file
-    std::optional<double> value;  ///< nullopt if it is not a finite number
-};
-/// Reads the unit. \return nullopt if there is none.
-[[nodiscard]] std::optional<FbxUnit> fbxUnit(std::span<const std::byte> document);
-
-/// Reads the <asset> element of a COLLADA document in any encoding. Defaults: metres and +Y.
-[[nodiscard]] SourceFrame colladaFrame(std::span<const std::byte> document);
 
 /// Treatment of geometry that the file hides: hidden objects and lower levels of detail.
 enum class HiddenAs : std::uint8_t { kSkip, kKeep };
@@ -107,7 +93,6 @@ struct ImportLimits {
 void fields(FieldVisitor& visit, ImportOptions& options);
 void fields(FieldVisitor& visit, ImportLimits& limits);
 
-/// The kind of result.
 enum class ImportKind : std::uint8_t {
     kMesh,
     kLevel,     ///< each distinct mesh once, with its bodies (level.h)
@@ -117,7 +102,6 @@ enum class ImportKind : std::uint8_t {
 template <>
 inline constexpr std::array<std::string_view, 4> kWordsOf<ImportKind>{"mesh", "level", "animated", "clips"};
 
-/// The input of an importer.
 struct ImportJob {
     std::string shown;      ///< the path for messages (quotedPath)
     std::string file_name;  ///< without its folder

@@ -12,9 +12,9 @@
 // pipe carries an ImageSize and then each row as floats; a u32 of 0 precedes each of these. Any other u32 is an
 // ErrorCode; the length of the error text (u32) and the text follow and end the stream. Byte order is native.
 //
-// A mesh or an error is serialized to a message, which the parent validates like any file. Layout: a u32 that is 0 or an
-// ErrorCode, then the members of a TriangleMesh (exchange() in import_message.cpp) or the error text. A u64 length precedes
-// each text, list and array.
+// A mesh or an error is serialized to a message, which the parent validates like any file. Layout: a u32 that is 0 or
+// an ErrorCode, then the members of a TriangleMesh (exchange() in import_message.cpp) or the error text. A u64 length
+// precedes each text, list and array.
 #pragma once
 
 #include <fcntl.h>

@@ -41,39 +41,21 @@ std::uint64_t largestFile(std::uint64_t wanted) {
                : wanted;
 }
 
-class Import {
+/// The worker of a mesh file, and its answer.
+class MeshWorker {
   public:
-    Import(const fs::path& path, const ImportOptions& options, const ImportLimits& limits)
+    MeshWorker(const fs::path& path, const ImportOptions& options, const ImportLimits& limits)
         : path_(path), options_(options), worker_("mesh", "simplify the mesh", limits) {}
 
-    Result<TriangleMesh> mesh() {
-        ImportSource source = RELIEF_TRY(ImportSource::open(path_));
-        Result<TriangleMesh> raw = named(workOn(source, ImportKind::kMesh));
-        return raw ? source.finish(std::move(*raw), options_.names.size()) : raw;
-    }
-
-    Result<Level> level() {
-        ImportSource source = RELIEF_TRY(ImportSource::open(path_));
-        TriangleMesh raw = RELIEF_TRY(named(workOn(source, ImportKind::kLevel)));
-        return source.finishLevel(std::move(raw), options_.names.size(), options_.materials);
-    }
-
-    /// \param kind  kAnimated or kClips.
-    Result<AnimatedImport> animated(ImportKind kind) {
-        ImportSource source = RELIEF_TRY(ImportSource::open(path_));
-        TriangleMesh raw = RELIEF_TRY(named(workOn(source, kind)));
-        return source.finishAnimated(std::move(raw), kind);
+    /// Reads a file, and frees its bytes. Errors name the file.
+    Result<TriangleMesh> read(ImportSource& source, ImportKind kind) {
+        Result<TriangleMesh> raw = workOn(source, kind);
+        return raw || raw.error().message.find(quotedPath(path_)) != std::string::npos
+                   ? std::move(raw)
+                   : withPrefix("cannot read the mesh " + quotedPath(path_), std::move(raw));
     }
 
   private:
-    /// Adds the file name to an error, unless the worker already did.
-    [[nodiscard]] Result<TriangleMesh> named(Result<TriangleMesh> raw) const {
-        const std::string name = quotedPath(path_);
-        return raw || raw.error().message.find(name) != std::string::npos
-                   ? std::move(raw)
-                   : withPrefix("cannot read the mesh " + name, std::move(raw));
-    }
-
     Result<TriangleMesh> workOn(ImportSource& source, ImportKind kind) {
         RELIEF_TRY(worker_.checkLimits());
         Descriptor mesh = sharedBytes(source.bytes());
@@ -143,7 +125,6 @@ class Import {
 
 // --- folders ---
 
-/// Returns the mesh files of a folder, sorted by name.
 Result<std::vector<fs::path>> meshFilesOf(const fs::path& folder) {
     std::vector<fs::path> files;
     std::error_code error;
@@ -168,7 +149,7 @@ Result<std::vector<fs::path>> meshFilesOf(const fs::path& folder) {
                                            " mesh files, more than " + std::to_string(kLevelMeshesMax) +
                                            "; bake it in parts");
     }
-    std::sort(files.begin(), files.end());
+    std::ranges::sort(files);
     return files;
 }
 
@@ -209,17 +190,23 @@ Result<Level> importFolder(const fs::path& folder, const ImportOptions& options,
 
 Result<TriangleMesh> importMeshInWorker(const fs::path& path, const ImportOptions& options,
                                         const ImportLimits& limits) {
-    return Import(path, options, limits).mesh();
+    ImportSource source = RELIEF_TRY(ImportSource::open(path));
+    TriangleMesh raw = RELIEF_TRY(MeshWorker(path, options, limits).read(source, ImportKind::kMesh));
+    return source.finish(std::move(raw), options.names.size());
 }
 
 Result<Level> importLevelInWorker(const fs::path& path, const ImportOptions& options,
                                   const ImportLimits& limits) {
-    return Import(path, options, limits).level();
+    ImportSource source = RELIEF_TRY(ImportSource::open(path));
+    TriangleMesh raw = RELIEF_TRY(MeshWorker(path, options, limits).read(source, ImportKind::kLevel));
+    return source.finishLevel(std::move(raw), options.names.size(), options.materials);
 }
 
 Result<AnimatedImport> importAnimatedFileInWorker(const fs::path& path, ImportKind kind,
                                                   const ImportOptions& options, const ImportLimits& limits) {
-    return Import(path, options, limits).animated(kind);
+    ImportSource source = RELIEF_TRY(ImportSource::open(path));
+    TriangleMesh raw = RELIEF_TRY(MeshWorker(path, options, limits).read(source, kind));
+    return source.finishAnimated(std::move(raw), kind);
 }
 
 Result<Level> importLevel(const fs::path& path, const ImportOptions& options, const ImportLimits& limits) {

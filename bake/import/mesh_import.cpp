@@ -5,7 +5,6 @@
 
 #include <cstring>
 #include <optional>
-#include <vector>
 
 #include "bake/import/import_files.h"
 #include "bake/import/import_format.h"

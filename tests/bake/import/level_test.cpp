@@ -9,6 +9,7 @@
 #include "bake/import/import_source.h"
 #include "bake/import/level.h"
 #include "bake/import/mesh_import.h"
+#include "bake/import/source_marks.h"
 #include "tests/bake/import/import_meshes.h"
 #include "tests/temporary_folder.h"
 
