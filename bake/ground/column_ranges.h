@@ -31,6 +31,8 @@ struct ColumnRange {
     bool hole = false;    ///< at least one square has none, or lies outside the grid
 };
 
+void add(ColumnRange& to, const ColumnRange& from);
+
 class ColumnRanges {
   public:
     /// Computes the ranges of all levels.
