@@ -55,7 +55,6 @@ struct LoneSample {
     double gap = 0.0;  ///< to the next value, metres
 };
 
-/// Tracks the lowest and the highest values.
 class SampleRange {
   public:
     void add(float sample) {
@@ -108,7 +107,7 @@ class HeightMap {
     /// Always empty for images.
     [[nodiscard]] LikelierFormat likelierFormat() const;
     /// Whether the file does not state the format of its samples.
-    [[nodiscard]] bool isRaw() const;
+    [[nodiscard]] bool isRaw() const { return !image_; }
     /// Whether samples map to heights from `low` to `high`.
     [[nodiscard]] bool hasLow() const { return rows_->most() > 0; }
 

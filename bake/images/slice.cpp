@@ -87,7 +87,6 @@ class Figure {
         return sample.distance < kFarOutside ? distanceColor(sample.distance / range_) : kFarColor;
     }
 
-    /// One image pixel per sample.
     void drawSamples() {
         canvas_->image(
             left_, top_, slice_.width, slice_.height, zoom_,

@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string>
@@ -61,7 +60,6 @@ struct SliceFigureOptions {
 
 enum class SideVerdict : std::uint8_t { kInside, kOutside, kFalseInside, kFalseOutside };
 
-/// A square of samples perpendicular to an axis.
 /// A square of samples perpendicular to an axis, coloured by whether a collider classifies each point correctly.
 struct VerdictSlice {
     int axis = 2;

@@ -10,10 +10,6 @@
 namespace relief {
 namespace {
 
-double areaOf(const TriangleMesh& mesh, std::uint32_t triangle) {
-    return 0.5 * length(planeOf(mesh, triangle).normal);
-}
-
 /// Returns the index of a material by name; the name is new or has the same response as before.
 Result<std::size_t> idOf(const SurfaceName& name, const TriangleMesh& mesh,
                          std::map<std::string, std::size_t>& known, std::vector<Material>& list) {
@@ -44,7 +40,7 @@ Result<MaterialSource> materialSource(const TriangleMesh& mesh, bool single) {
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
         const std::uint32_t label = one_surface ? 0 : mesh.labels[i];
         if (label < area.size()) {
-            const double its = areaOf(mesh, i);
+            const double its = 0.5 * length(planeOf(mesh, i).normal);
             area[label] += its;
             whole += its;
         }
