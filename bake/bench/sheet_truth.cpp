@@ -40,17 +40,17 @@ Result<SheetTruth> SheetTruth::build(const PreparedMesh& source, const ShapedMes
     const ShapeReport& report = shaped.report;
     truth.others_ = report.solids + report.solids_with_holes + report.terrains + report.voids > 0;
     const std::vector<Part> parts = partsOf(*source, source.edges());
-    SurfacePartsBuilder builder(*source);
+    SurfaceParts found;
     for (const Part& part : parts) {
-        builder.add(part.triangles, PartKind::kSurface);
+        found.add(*source, part.triangles, PartKind::kSurface);
     }
     const std::vector<SurfacePart>& known = shaped.parts.parts;
-    if (!report.named.empty() || builder.parts().size() != known.size()) {
+    if (!report.named.empty() || found.parts.size() != known.size()) {
         return truth;
     }
     double area = 0.0;
     for (const Part& part : parts) {
-        const SurfacePart& first = known[builder.partOf()[part.triangles.front()]];
+        const SurfacePart& first = known[found.part_of[part.triangles.front()]];
         if (first.kind == PartKind::kSheet) {
             TriangleMesh sheet = RELIEF_TRY(finishMesh(subset(*source, part.triangles)));
             for (const glm::uvec3& t : sheet.triangles) {

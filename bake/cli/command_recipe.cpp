@@ -11,7 +11,7 @@
 
 #include "bake/import/animated_import.h"
 #include "bake/import/import_format.h"
-#include "bake/import/level_folder.h"
+#include "bake/import/level.h"
 #include "bake/import/mesh_import.h"
 #include "bake/pipeline/bake_request.h"
 #include "bake/recipe/bake_cache.h"

@@ -9,15 +9,6 @@
 namespace relief {
 namespace {
 
-void add(ColumnRange& to, const ColumnRange& from) {
-    if (from.ground) {
-        to.low = to.ground ? std::min(to.low, from.low) : from.low;
-        to.high = to.ground ? std::max(to.high, from.high) : from.high;
-    }
-    to.ground = to.ground || from.ground;
-    to.hole = to.hole || from.hole;
-}
-
 ColumnRange ofSquare(const HeightGrid& grid, std::size_t x, std::size_t z) {
     if (x + 1 >= grid.columns || z + 1 >= grid.rows) {
         return {.hole = true};
@@ -37,6 +28,15 @@ std::uint32_t columnsFor(std::uint32_t samples, std::uint32_t squares) {
 }
 
 }  // namespace
+
+void add(ColumnRange& to, const ColumnRange& from) {
+    if (from.ground) {
+        to.low = to.ground ? std::min(to.low, from.low) : from.low;
+        to.high = to.ground ? std::max(to.high, from.high) : from.high;
+    }
+    to.ground = to.ground || from.ground;
+    to.hole = to.hole || from.hole;
+}
 
 ColumnRanges::ColumnRanges(const HeightGrid& grid, unsigned levels) : grid_(grid), levels_(levels) {
     for (unsigned i = 0; i < levels; ++i) {

@@ -1,14 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-// Computes the range of heights in each cell of a quadtree over the squares of a height map.
+// Stores the samples from which a ground tree is built, and the range of heights in each cell of a quadtree over their
+// squares.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "bake/ground/height_grid.h"
-
 namespace relief {
+
+/// Equally spaced rows of samples in ascending z, each in ascending x.
+struct HeightGrid {
+    std::uint32_t columns = 0;   ///< 2 or more
+    std::uint32_t rows = 0;      ///< 2 or more
+    std::vector<float> heights;  ///< columns · rows heights, object units; NaN is a hole
+
+    [[nodiscard]] float at(std::size_t column, std::size_t row) const {
+        return heights[row * columns + column];
+    }
+};
+
+/// Squares along the side of a leaf.
+inline constexpr std::uint32_t kLeafSquares = 4;
 
 /// The height range of the squares with ground in a column.
 struct ColumnRange {
@@ -17,6 +30,8 @@ struct ColumnRange {
     bool ground = false;  ///< at least one square has ground
     bool hole = false;    ///< at least one square has none, or lies outside the grid
 };
+
+void add(ColumnRange& to, const ColumnRange& from);
 
 class ColumnRanges {
   public:

@@ -5,14 +5,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <span>
 #include <utility>
 
 #include "bake/ground/ground_tree.h"
 #include "bake/height_map/height_map.h"
 #include "bake/measure/percent.h"
 #include "bake/mesh/loops.h"
-#include "bake/mesh/surface_sampler.h"
 #include "bake/pipeline/bake_request.h"
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
@@ -28,47 +26,6 @@ constexpr double kApart = 4.0 * kLeafSquares;
 constexpr double kDeep = 0.05;
 constexpr std::uint32_t kRowsBetweenChecks = 256;
 
-enum class Kind : std::uint8_t { kNear, kSeam, kAnywhere };
-
-/// Draws squares in ascending order, stratified: equally many from each equal part.
-class Strata {
-  public:
-    Strata(std::uint64_t squares, std::uint64_t samples, std::uint64_t seed, Kind kind)
-        : squares_(squares), samples_(squares > 0 ? samples : 0), seed_(seed), kind_(kind) {
-        draw();
-    }
-    /// Whether a square before this one remains to be drawn.
-    [[nodiscard]] bool before(std::uint64_t square) const { return next_ < samples_ && square_ < square; }
-    [[nodiscard]] std::uint64_t square() const { return square_; }
-    /// Position in the square and height of the current draw, each in [0, 1).
-    [[nodiscard]] const std::array<double, 3>& place() const { return place_; }
-    void advance() {
-        ++next_;
-        draw();
-    }
-
-  private:
-    void draw() {
-        MersenneRandom random(seed_, 3 * next_ + static_cast<std::uint64_t>(kind_));
-        const double at =
-            (static_cast<double>(next_) + random.uniform()) *
-            (static_cast<double>(squares_) / static_cast<double>(std::max<std::uint64_t>(samples_, 1)));
-        square_ = std::min(static_cast<std::uint64_t>(at), std::max<std::uint64_t>(squares_, 1) - 1);
-        for (double& share : place_) {
-            share = random.uniform();
-        }
-    }
-
-    std::uint64_t squares_;
-    std::uint64_t samples_;
-    std::uint64_t seed_;
-    Kind kind_;
-    std::uint64_t next_ = 0;
-    std::uint64_t square_ = 0;
-    std::array<double, 3> place_{};
-};
-
-/// The four heights of a square.
 struct Square {
     double near_left, near_right, far_left, far_right;
 
@@ -87,17 +44,11 @@ struct Square {
 
 /// A column in which a point is measured.
 struct Probe {
-    Kind kind;
+    GroundSample kind;
     float x, z;     // world space
     double height;  // of the surface there, world space; NaN: no ground
     double rise;    // of the square, metres
     double share;   // relative height of the point in the range of its kind, in [0, 1)
-};
-
-struct Outcome {
-    bool truth = false;
-    bool inside = false;
-    std::optional<double> error;
 };
 
 /// The part of the plane that a body covers.
@@ -112,44 +63,6 @@ struct Footprint {
     [[nodiscard]] bool mayHold(double x, double z) const {
         return x >= solid_low.x && z >= solid_low.y && x <= solid_high.x && z <= solid_high.y;
     }
-};
-
-/// Sums over the points near the surface.
-class NearSums {
-  public:
-    void add(const Outcome& outcome) {
-        ++near_.points;
-        false_inside_ += outcome.inside && !outcome.truth ? 1 : 0;
-        false_outside_ += !outcome.inside && outcome.truth ? 1 : 0;
-        if (!outcome.error) {
-            ++near_.missing;
-            return;
-        }
-        sum_ += *outcome.error;
-        sum_abs_ += std::abs(*outcome.error);
-        distances_.push_back(static_cast<float>(std::abs(*outcome.error)));
-    }
-    [[nodiscard]] GroundNear result() {
-        near_.wrong = {percent(false_inside_, near_.points), percent(false_outside_, near_.points)};
-        if (!distances_.empty()) {
-            const auto count = static_cast<double>(distances_.size());
-            near_.mean = sum_ / count;
-            near_.mean_abs = sum_abs_ / count;
-            const auto at = distances_.begin() + static_cast<std::ptrdiff_t>(0.99 * (count - 1.0));
-            std::nth_element(distances_.begin(), at, distances_.end());
-            near_.p99 = double{*at};
-            near_.most = double{*std::max_element(at, distances_.end())};
-        }
-        return near_;
-    }
-
-  private:
-    GroundNear near_;
-    std::uint64_t false_inside_ = 0;
-    std::uint64_t false_outside_ = 0;
-    double sum_ = 0.0;
-    double sum_abs_ = 0.0;
-    std::vector<float> distances_;
 };
 
 class GroundChecker {
@@ -246,12 +159,10 @@ class GroundChecker {
         return (number >= tile && at < kLeafSquares) ||
                (at + kLeafSquares >= tile && number - at + tile < squares);
     }
-    [[nodiscard]] bool atSeam(std::uint32_t column, std::uint32_t row, bool tiles) const {
-        return tiles && (atSeam(column, map_.columns() - 1) || atSeam(row, map_.rows() - 1));
+    [[nodiscard]] bool isSeam(std::uint32_t column, std::uint32_t row) const {
+        return bodies_.size() > 1 && (atSeam(column, map_.columns() - 1) || atSeam(row, map_.rows() - 1));
     }
-    [[nodiscard]] bool hasTiles() const { return bodies_.size() > 1; }
 
-    /// Counts the squares to draw from.
     Result<void> survey() {
         RELIEF_TRY(forEachRow(0.0, [this](std::uint32_t row) {
             std::uint32_t ground = 0;
@@ -261,7 +172,7 @@ class GroundChecker {
                     continue;
                 }
                 ++ground;
-                seam_squares_ += atSeam(column, row, hasTiles()) ? 1 : 0;
+                seam_squares_ += isSeam(column, row) ? 1 : 0;
                 result_.steep += one.rise() > kSteepest * spacing() ? 1 : 0;
                 first_ = {std::min(first_.x, column), std::min(first_.y, row)};
                 last_ = {std::max(last_.x, column), std::max(last_.y, row)};
@@ -317,9 +228,9 @@ class GroundChecker {
 
     Result<void> measure() {
         const std::uint64_t all = (std::uint64_t{map_.columns()} + 1) * (std::uint64_t{map_.rows()} + 1);
-        Strata near(result_.squares, request_.samples, request_.seed, Kind::kNear);
-        Strata seams(seam_squares_, request_.samples, request_.seed, Kind::kSeam);
-        Strata anywhere(all, request_.samples, request_.seed, Kind::kAnywhere);
+        GroundStrata near(result_.squares, request_.samples, request_.seed, GroundSample::kNear);
+        GroundStrata seams(seam_squares_, request_.samples, request_.seed, GroundSample::kSeam);
+        GroundStrata anywhere(all, request_.samples, request_.seed, GroundSample::kAnywhere);
         std::uint64_t ground = 0;
         std::uint64_t ground_at_seams = 0;
         drawAnywhere(anywhere, 0);
@@ -330,11 +241,11 @@ class GroundChecker {
                 }
                 ++ground;
                 for (; near.before(ground); near.advance()) {
-                    add(Kind::kNear, column, row, near.place());
+                    add(GroundSample::kNear, column, row, near.place());
                 }
-                ground_at_seams += atSeam(column, row, hasTiles()) ? 1 : 0;
+                ground_at_seams += isSeam(column, row) ? 1 : 0;
                 for (; seams.before(ground_at_seams); seams.advance()) {
-                    add(Kind::kSeam, column, row, seams.place());
+                    add(GroundSample::kSeam, column, row, seams.place());
                 }
             }
             drawAnywhere(anywhere, row + 1);
@@ -346,16 +257,16 @@ class GroundChecker {
 
     /// Draws points in a row of squares, which may be outside the map. \param row  0 is the row before the map's first
     /// row.
-    void drawAnywhere(Strata& strata, std::uint32_t row) {
+    void drawAnywhere(GroundStrata& strata, std::uint32_t row) {
         const std::uint64_t squares = std::uint64_t{map_.columns()} + 1;
         for (; strata.before((row + std::uint64_t{1}) * squares); strata.advance()) {
-            add(Kind::kAnywhere, static_cast<std::int64_t>(strata.square() % squares) - 1,
+            add(GroundSample::kAnywhere, static_cast<std::int64_t>(strata.square() % squares) - 1,
                 std::int64_t{row} - 1, strata.place());
         }
     }
 
     /// \param column, row  of the point's square, which may be outside the map.
-    void add(Kind kind, std::int64_t column, std::int64_t row, const std::array<double, 3>& place) {
+    void add(GroundSample kind, std::int64_t column, std::int64_t row, const std::array<double, 3>& place) {
         const double across = static_cast<double>(column);
         const double along = static_cast<double>(row);
         Probe probe{kind,
@@ -394,7 +305,7 @@ class GroundChecker {
                 bodies.push_back(i);
             }
         }
-        std::vector<Outcome> outcomes(probes_.size());
+        std::vector<GroundOutcome> outcomes(probes_.size());
         forEachIndex(0, probes_.size(), 64,
                      [&](std::size_t i) { outcomes[i] = outcomeOf(probes_[i], bodies); });
         for (std::size_t i = 0; i < probes_.size(); ++i) {
@@ -403,7 +314,8 @@ class GroundChecker {
         probes_.clear();
     }
 
-    [[nodiscard]] Outcome outcomeOf(const Probe& probe, const std::vector<std::uint32_t>& candidates) const {
+    [[nodiscard]] GroundOutcome outcomeOf(const Probe& probe,
+                                          const std::vector<std::uint32_t>& candidates) const {
         std::vector<std::uint32_t> bodies;
         std::optional<double> floor;
         for (const std::uint32_t i : candidates) {
@@ -420,8 +332,8 @@ class GroundChecker {
         const auto [from, to] = rangeOf(probe, floor);
         const auto y = static_cast<float>(from + probe.share * (to - from));
         // Comparison with NaN is false.
-        Outcome outcome{double{y} < probe.height, insideAt(y), {}};
-        if (probe.kind != Kind::kAnywhere) {
+        GroundOutcome outcome{double{y} < probe.height, insideAt(y), {}};
+        if (probe.kind != GroundSample::kAnywhere) {
             outcome.error = errorAlong(insideAt, from, to, probe.height);
         }
         return outcome;
@@ -431,7 +343,7 @@ class GroundChecker {
     [[nodiscard]] std::pair<double, double> rangeOf(const Probe& probe, std::optional<double> floor) const {
         // With a wrong map, the surface may be below the ground's floor.
         const double reach = probe.height - within_;
-        if (probe.kind != Kind::kAnywhere) {
+        if (probe.kind != GroundSample::kAnywhere) {
             return {floor && *floor < probe.height ? std::max(*floor, reach) : reach, probe.height + within_};
         }
         const double deep = kDeep * std::max({high_.x - low_.x, high_.y - low_.y, high_.z - low_.z});
@@ -458,14 +370,14 @@ class GroundChecker {
         }
     }
 
-    void count(const Probe& probe, const Outcome& outcome) {
-        if (probe.kind == Kind::kAnywhere) {
+    void count(const Probe& probe, const GroundOutcome& outcome) {
+        if (probe.kind == GroundSample::kAnywhere) {
             ++result_.uniform_points;
             false_inside_ += outcome.inside && !outcome.truth ? 1 : 0;
             false_outside_ += !outcome.inside && outcome.truth ? 1 : 0;
             return;
         }
-        (probe.kind == Kind::kNear ? near_ : seams_).add(outcome);
+        (probe.kind == GroundSample::kNear ? near_ : seams_).add(outcome);
         addWorst(probe, outcome);
     }
 
@@ -473,7 +385,7 @@ class GroundChecker {
         return place.error ? std::abs(*place.error) : std::numeric_limits<double>::max();
     }
 
-    void addWorst(const Probe& probe, const Outcome& outcome) {
+    void addWorst(const Probe& probe, const GroundOutcome& outcome) {
         std::vector<GroundWorstPlace>& worst = result_.worst;
         GroundWorstPlace place{
             {probe.x, static_cast<float>(probe.height), probe.z}, {}, outcome.error, probe.rise / spacing()};
@@ -529,8 +441,8 @@ class GroundChecker {
     double highest_ = std::numeric_limits<double>::lowest();
     std::uint64_t seam_squares_ = 0;
     std::vector<Probe> probes_;
-    NearSums near_;
-    NearSums seams_;
+    GroundNearSums near_;
+    GroundNearSums seams_;
     std::uint64_t false_inside_ = 0;  // points anywhere
     std::uint64_t false_outside_ = 0;
     GroundAccuracy result_;

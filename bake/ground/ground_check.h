@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "bake/ground/ground_samples.h"
 #include "bake/height_map/heights_spec.h"
 #include "bake/import/import_job.h"
 #include "bake/measure/accuracy.h"
@@ -36,17 +37,6 @@ struct GroundCheckRequest {
     ImportLimits limits{};  ///< for an image
     std::function<void(double)>
         progress{};  ///< called occasionally with the completed fraction; may be empty
-};
-
-/// Points near the surface. Distances are along y, in metres, from the height map's surface to the collider's.
-struct GroundNear {
-    std::uint64_t points = 0;
-    WrongShare wrong;
-    double mean = 0.0;  ///< positive upwards
-    double mean_abs = 0.0;
-    double p99 = 0.0;  ///< 99 % of the points have a smaller absolute distance
-    double most = 0.0;
-    std::uint64_t missing = 0;  ///< points without a surface within range; excluded from distances
 };
 
 struct GroundWorstPlace {

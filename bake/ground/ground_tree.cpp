@@ -94,8 +94,8 @@ class GroundTree {
         if (half.ground) {
             const std::array<double, 4> corners = {heightAt(level, x, z), heightAt(level, x + 1, z),
                                                    heightAt(level, x, z + 1), heightAt(level, x + 1, z + 1)};
-            half.low = static_cast<float>(*std::min_element(corners.begin(), corners.end()));
-            half.high = static_cast<float>(*std::max_element(corners.begin(), corners.end()));
+            half.low = static_cast<float>(*std::ranges::min_element(corners));
+            half.high = static_cast<float>(*std::ranges::max_element(corners));
         }
         return half;
     }
@@ -105,12 +105,7 @@ class GroundTree {
         ColumnRange all;
         for (std::uint32_t z = 0; z < ranges_.depth(leaf_level_); ++z) {
             for (std::uint32_t x = 0; x < ranges_.width(leaf_level_); ++x) {
-                const ColumnRange column = ranges_.at(leaf_level_, x, z);
-                if (column.ground) {
-                    all.low = all.ground ? std::min(all.low, column.low) : column.low;
-                    all.high = all.ground ? std::max(all.high, column.high) : column.high;
-                    all.ground = true;
-                }
+                add(all, ranges_.at(leaf_level_, x, z));
             }
         }
         if (!all.ground) {
@@ -174,7 +169,6 @@ class GroundTree {
         return patch ? PatchRecord::Kind::kPatch : PatchRecord::Kind::kSplit;
     }
 
-    /// Creates records level by level, and reserves their heights.
     Result<void> splitCells() {
         for (std::uint32_t z = 0; z < roots_.z; ++z) {
             for (std::uint32_t y = 0; y < roots_.y; ++y) {
@@ -325,7 +319,6 @@ class GroundTree {
         return {{-by_x * per_length, per_length, -by_z * per_length}, middle};
     }
 
-    /// Returns the record of a cell without a patch.
     [[nodiscard]] PatchRecord flatOf(const Cell& cell) const {
         const bool inside = cell.kind == PatchRecord::Kind::kInside;
         if (!columnOf(cell.level, cell.x, cell.z).ground) {
@@ -364,7 +357,7 @@ class GroundTree {
             }
             steps[i] = steep ? 0.0F : static_cast<float>(double{heights.step()} * cellSize(cell.level));
         });
-        ground_.error_max = 0.5 * double{*std::max_element(steps.begin(), steps.end())};
+        ground_.error_max = 0.5 * double{*std::ranges::max_element(steps)};
         countSquares();
         fillMap(texels);
     }

@@ -27,7 +27,7 @@
 #include <limits>
 #include <optional>
 
-#include "bake/ground/height_grid.h"
+#include "bake/ground/column_ranges.h"
 #include "formats/base/result.h"
 #include "formats/collider.h"
 

@@ -7,7 +7,6 @@
 #include <limits>
 #include <utility>
 
-#include "bake/height_map/raw_rows.h"
 #include "bake/import/image_rows.h"
 #include "bake/import/import_process.h"
 #include "formats/base/file_io.h"
@@ -21,7 +20,6 @@ namespace {
 /// Floats, plus a margin for headers of images that do not compress.
 constexpr std::uint64_t kFileMax = 4 * kHeightSamplesMax + (std::uint64_t{64} << 20);
 
-/// Checks that the settings apply to this kind of file.
 Result<void> checkKind(const std::filesystem::path& path, bool image, const HeightsSpec& spec) {
     const char* const raw = spec.width ? "width" : spec.type ? "type" : spec.order ? "order" : nullptr;
     if (image && raw != nullptr) {
@@ -145,10 +143,6 @@ std::optional<LoneSample> HeightMap::lone() const {
 
 LikelierFormat HeightMap::likelierFormat() const {
     return isRaw() ? likelierRawFormat(bytes_, spec_) : LikelierFormat();
-}
-
-bool HeightMap::isRaw() const {
-    return !image_;
 }
 
 Result<std::unique_ptr<SampleRows>> HeightMap::openRows() const {

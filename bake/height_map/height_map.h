@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "bake/height_map/heights_spec.h"
-#include "bake/height_map/raw_rows.h"
 #include "bake/import/import_job.h"
 #include "bake/import/sample_rows.h"
 #include "formats/base/descriptor.h"
@@ -24,6 +23,30 @@ namespace relief {
 
 inline constexpr std::uint64_t kHeightSamplesMax = std::uint64_t{1} << 28;
 
+/// Opens raw samples without a header. Type, byte order and width are settings, because the file does not state them.
+/// \param bytes  untrusted; must outlive the rows.
+/// Errors, without the file name: kInvalidInput (not a whole number of rows or, without a width, not a square).
+[[nodiscard]] Result<std::unique_ptr<SampleRows>> openRawRows(std::span<const std::byte> bytes,
+                                                              const HeightsSpec& spec);
+
+/// Settings that fit raw samples better than the given ones.
+struct LikelierFormat {
+    std::optional<SampleType> type = {};  ///< nullopt: as given
+    std::optional<ByteOrder> order = {};  ///< nullopt: as given
+    bool eight_bits = false;              ///< the given settings may also be correct: 8-bit samples times 256
+    /// No better setting was found, but the samples look like noise, or neighbours differ less with the other
+    /// signedness.
+    bool doubtful = false;
+
+    [[nodiscard]] bool found() const { return type || order; }
+    friend bool operator==(const LikelierFormat&, const LikelierFormat&) = default;
+};
+/// "type=int16,order=big"; empty if no better setting was found.
+[[nodiscard]] std::string toString(const LikelierFormat& format);
+
+/// Searches for better settings, by the differences between neighbours in at most 64 rows and the values of all bytes.
+[[nodiscard]] LikelierFormat likelierRawFormat(std::span<const std::byte> bytes, const HeightsSpec& spec);
+
 /// Up to three extreme values, lowest or highest, far from all others: the gap is more than half the range.
 struct LoneSample {
     float sample = 0.0F;  ///< the extreme, as stored in the file
@@ -32,7 +55,6 @@ struct LoneSample {
     double gap = 0.0;  ///< to the next value, metres
 };
 
-/// Tracks the lowest and the highest values.
 class SampleRange {
   public:
     void add(float sample) {
@@ -85,7 +107,7 @@ class HeightMap {
     /// Always empty for images.
     [[nodiscard]] LikelierFormat likelierFormat() const;
     /// Whether the file does not state the format of its samples.
-    [[nodiscard]] bool isRaw() const;
+    [[nodiscard]] bool isRaw() const { return !image_; }
     /// Whether samples map to heights from `low` to `high`.
     [[nodiscard]] bool hasLow() const { return rows_->most() > 0; }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bake/height_map/heights_spec.h"
 
-#include <cmath>
 #include <set>
 #include <vector>
 
@@ -27,7 +26,6 @@ class KeySetter : public FieldVisitor {
         }
     }
     [[nodiscard]] bool fills() const override { return true; }
-    /// Returns the fault; empty if the value was accepted.
     [[nodiscard]] std::string fault() const {
         if (known_) {
             return fault_;

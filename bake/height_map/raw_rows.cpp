@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/height_map/raw_rows.h"
+#include "bake/height_map/height_map.h"
 
 #include <algorithm>
 #include <array>
@@ -15,7 +15,6 @@
 namespace relief {
 namespace {
 
-/// The format of raw samples.
 struct RawFormat {
     SampleType type = SampleType::kUint16;
     ByteOrder order = ByteOrder::kLittle;
@@ -41,7 +40,6 @@ double holeOf(const HeightsSpec& spec, const RawFormat& format) {
     return format == formatOf(spec) ? spec.hole.value_or(kNone) : kNone;
 }
 
-/// Reads samples without a header.
 class RawRows : public SampleRows {
   public:
     RawRows(std::span<const std::byte> bytes, std::uint64_t columns, const RawFormat& format)
@@ -123,8 +121,8 @@ std::optional<Variation> variationOf(std::span<const std::byte> bytes, const Hei
             RawRows(row, columns, format).next(std::span(samples).subspan(i * columns, columns)));
     }
     const double hole = holeOf(spec, format);
-    const auto usual = std::count_if(samples.begin(), samples.end(),
-                                     [&](float sample) { return isUsualHole(sample, format.type); });
+    const auto usual =
+        std::ranges::count_if(samples, [&](float sample) { return isUsualHole(sample, format.type); });
     const bool ignored = 2 * static_cast<std::size_t>(usual) <= samples.size();
     constexpr float kLeast = 1e-20F;  // small integers read as floats are smaller
     const auto isHeight = [&](float sample) {

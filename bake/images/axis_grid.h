@@ -36,7 +36,6 @@ struct AxisGrid {
     double spacing = 1.0;  ///< object units between samples
 
     [[nodiscard]] int axis() const { return view / 2; }
-    /// The direction of the view along its axis.
     [[nodiscard]] double sign() const { return view % 2 == 0 ? 1.0 : -1.0; }
     /// \param x, y  sample from the left and from the bottom.
     /// \param at  coordinate along the axis, object units.

@@ -19,7 +19,6 @@ namespace relief {
 /// sRGB, each in [0, 1].
 using Color = glm::dvec3;
 
-/// Colour of text and contours.
 inline constexpr Color kInk{0.13, 0.14, 0.16};
 
 class Canvas {

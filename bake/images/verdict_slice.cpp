@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/images/verdict_slice.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -28,7 +28,6 @@ struct Hit {
     glm::vec3 normal{0.0F};
 };
 
-/// Traces rays along an axis, in one direction.
 class Rays {
   public:
     Rays(const Collider& collider, const Bounds& box, int axis, double sign)

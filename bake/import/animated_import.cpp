@@ -22,13 +22,11 @@ constexpr std::size_t kNamesListed = 5;
 /// Whether a program can pose the mesh without clips: it has a skin or morph targets.
 bool canBePosed(const AnimatedMesh& mesh) {
     return !mesh.weights.empty() || mesh.influences.size() > mesh.positions.size() ||
-           std::any_of(mesh.joints.begin(), mesh.joints.end(),
-                       [](const MeshJoint& joint) { return joint.bind != Affine{}; });
+           std::ranges::any_of(mesh.joints, [](const MeshJoint& joint) { return joint.bind != Affine{}; });
 }
 
 bool hasName(const AnimatedMesh& mesh, const std::string& name) {
-    return std::any_of(mesh.clips.begin(), mesh.clips.end(),
-                       [&](const MeshClip& clip) { return clip.name == name; });
+    return std::ranges::any_of(mesh.clips, [&](const MeshClip& clip) { return clip.name == name; });
 }
 
 /// Maps the nodes of one mesh to the nodes of another mesh by name.
@@ -54,7 +52,7 @@ class NodeMatch {
                 return found->second;
             }
         }
-        if (std::find(unknown_.begin(), unknown_.end(), from.name) == unknown_.end()) {
+        if (std::ranges::find(unknown_, from.name) == unknown_.end()) {
             unknown_.push_back(from.name);
         }
         return std::nullopt;

@@ -11,11 +11,9 @@
 #include <vector>
 
 #include "bake/import/animated_import.h"
-#include "bake/import/gltf_clips.h"
-#include "bake/import/gltf_meshes.h"
-#include "bake/import/gltf_nodes.h"
+#include "bake/import/gltf_scene.h"
 #include "bake/import/import_readers.h"
-#include "bake/import/scene_polygons.h"
+#include "bake/import/import_scene.h"
 #include "formats/base/finite.h"
 #include "formats/base/text.h"
 
@@ -116,20 +114,14 @@ class AnimatedReader {
 
     /// Uses all nodes, because a file of clips need not show any of them.
     Result<void> readClips() {
-        std::vector<std::uint32_t> roots;
-        for (std::uint32_t i = 0; i < from_.size(); ++i) {
-            if (!from_[i].parent) {
-                roots.push_back(i);
-            }
-        }
-        RELIEF_TRY(addNodes(nodesBelow(roots, from_)));
+        RELIEF_TRY(addNodes(nodesBelow(rootsOf(from_), from_)));
         return readGltfClips(document_, buffers_, nodes_, mesh_, out_.warnings);
     }
 
     Result<void> readAll() {
         const std::vector<std::uint32_t> roots = RELIEF_TRY(gltfRoots(document_, from_));
         const std::vector<std::uint32_t> shown = nodesBelow(roots, from_);
-        RELIEF_TRY(readMeshes(shown));
+        RELIEF_TRY(meshes_.read(shown, from_, true));
         RELIEF_TRY(readSkins(shown));
         addFrame();
         RELIEF_TRY(addNodes(withJoints(shown)));
@@ -143,22 +135,6 @@ class AnimatedReader {
         mesh_.delta_begin.push_back(static_cast<std::uint32_t>(mesh_.deltas.size()));
         RELIEF_TRY(countParts());
         return readGltfClips(document_, buffers_, nodes_, mesh_, out_.warnings);
-    }
-
-    Result<void> readMeshes(const std::vector<std::uint32_t>& shown) {
-        std::set<std::uint64_t> skinned;
-        for (const std::uint32_t index : shown) {
-            if (from_[index].mesh && from_[index].skin) {
-                skinned.insert(from_[index].mesh->index());
-            }
-        }
-        for (const std::uint32_t index : shown) {
-            if (const std::optional<GltfValue>& mesh = from_[index].mesh) {
-                static_cast<void>(RELIEF_TRY(
-                    meshes_.read(*mesh, {.joints = skinned.contains(mesh->index()), .targets = true})));
-            }
-        }
-        return {};
     }
 
     Result<void> readSkins(const std::vector<std::uint32_t>& shown) {
@@ -230,7 +206,6 @@ class AnimatedReader {
         return {};
     }
 
-    /// Adds the morph target weights of a node's mesh.
     Result<void> addWeights(const GltfNode& from, MeshNode& node) {
         const GltfValue& mesh = *from.mesh;
         std::size_t count = 0;
@@ -257,10 +232,9 @@ class AnimatedReader {
         return {};
     }
 
-    /// Adds the mesh of a node, or of each of its instances.
     Result<void> place(std::uint32_t index) {
         const GltfNode& from = from_[index];
-        const GltfMesh& mesh = *RELIEF_TRY(meshes_.read(*from.mesh, {}));
+        const GltfMesh& mesh = meshes_.at(*from.mesh);
         const auto instances = RELIEF_TRY(gltfInstances(from, buffers_, instances_left_));
         if (instances && from.skin) {
             out_.warnings.emplace_back("instances of a skinned mesh are left out; export them as nodes");
@@ -310,8 +284,8 @@ class AnimatedReader {
         if (part.triangles.size() > job_.triangle_max - mesh_.triangles.size()) {
             return tooManyTriangles(job_);
         }
-        return std::all_of(part.positions.begin(), part.positions.end(),
-                           [](const glm::vec3& position) { return isFinite(position); })
+        return std::ranges::all_of(part.positions,
+                                   [](const glm::vec3& position) { return isFinite(position); })
                    ? Result<void>()
                    : mesh.wrong("has positions that are not numbers");
     }

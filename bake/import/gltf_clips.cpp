@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/import/gltf_clips.h"
+#include "bake/import/gltf_scene.h"
 
 #include <algorithm>
 #include <array>
@@ -11,26 +11,23 @@
 #include <utility>
 
 #include "bake/import/animated_import.h"
+#include "formats/base/enum_words.h"
 #include "formats/base/text.h"
 
 namespace relief {
+
+template <>
+inline constexpr std::array<std::string_view, 4> kWordsOf<NodeMember>{"translation", "rotation", "scale",
+                                                                      "weights"};
+template <>
+inline constexpr std::array<std::string_view, 3> kWordsOf<KeyCurve>{"STEP", "LINEAR", "CUBICSPLINE"};
+
 namespace {
 
 /// Limit per accessor.
 constexpr std::uint64_t kKeysMax = 10'000'000;
 /// Tolerance of a quaternion's length; beyond it, the quaternion is invalid.
 constexpr double kRotationTolerance = 0.1;
-
-constexpr std::array<std::string_view, 4> kPaths = {"translation", "rotation", "scale", "weights"};
-constexpr std::array<std::string_view, 3> kCurves = {"STEP", "LINEAR", "CUBICSPLINE"};
-
-template <std::size_t kCount>
-std::optional<std::uint8_t> indexOf(const std::array<std::string_view, kCount>& words,
-                                    std::string_view word) {
-    const auto found = std::find(words.begin(), words.end(), word);
-    return found == words.end() ? std::nullopt
-                                : std::optional(static_cast<std::uint8_t>(found - words.begin()));
-}
 
 class ClipReader {
   public:
@@ -80,7 +77,7 @@ class ClipReader {
         if (number >= samplers.size()) {
             return from.wrong("references samplers[" + std::to_string(number) + "], which does not exist");
         }
-        const std::optional<std::uint8_t> member = indexOf(kPaths, *path);
+        const std::optional<NodeMember> member = fromWord<NodeMember>(*path);
         if (!node || !member) {
             // Extensions animate other targets, such as lights and materials.
             return {};
@@ -90,7 +87,7 @@ class ClipReader {
                               "], which another channel also moves");
         }
         ClipChannel channel;
-        channel.member = static_cast<NodeMember>(*member);
+        channel.member = *member;
         const GltfValue& sampler = samplers[number];
         channel.times = RELIEF_TRY(readTimes(sampler));
         clip.seconds = std::max(clip.seconds, channel.times.back());
@@ -130,15 +127,14 @@ class ClipReader {
         return times;
     }
 
-    /// \param channel  receives curve and values.
     Result<void> readValues(const GltfValue& sampler, ClipChannel& channel) {
         const std::string word = RELIEF_TRY(sampler.get<std::string>("interpolation", "LINEAR"));
-        const std::optional<std::uint8_t> curve = indexOf(kCurves, word);
+        const std::optional<KeyCurve> curve = fromWord<KeyCurve>(word);
         if (!curve) {
             return sampler.wrong("has the interpolation '" + cleanUtf8(word, 20) +
                                  "', which is not STEP, LINEAR or CUBICSPLINE");
         }
-        channel.curve = static_cast<KeyCurve>(*curve);
+        channel.curve = *curve;
         const GltfValue output = RELIEF_TRY(sampler.needed("output", "accessors"));
         switch (channel.member) {
             case NodeMember::kRotation:
@@ -158,8 +154,7 @@ class ClipReader {
                                 std::to_string(a_key) + " for each of " +
                                 std::to_string(channel.times.size()) + " keys");
         }
-        if (!std::all_of(channel.values.begin(), channel.values.end(),
-                         [](float value) { return std::isfinite(value); })) {
+        if (!std::ranges::all_of(channel.values, [](float value) { return std::isfinite(value); })) {
             return output.wrong("has key values that are not numbers");
         }
         return channel.member == NodeMember::kRotation ? unitRotations(output, channel) : Result<void>();

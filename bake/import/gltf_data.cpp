@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstring>
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
@@ -10,7 +11,6 @@
 #include <nlohmann/json.hpp>
 #include <type_traits>
 
-#include "bake/import/gltf_meshopt.h"
 #include "formats/base/text.h"
 
 namespace relief {
@@ -33,21 +33,20 @@ T load(const std::byte* at) {
 }
 
 Result<std::string> percentDecoded(std::string_view text) {
-    constexpr std::string_view kDigits = "0123456789abcdef";
     std::string out;
     for (std::size_t i = 0; i < text.size(); ++i) {
         if (text[i] != '%') {
             out += text[i];
             continue;
         }
-        const std::string digits = lowerCase(text.substr(i + 1, 2));
-        const std::size_t high = digits.size() == 2 ? kDigits.find(digits[0]) : std::string_view::npos;
-        const std::size_t low = digits.size() == 2 ? kDigits.find(digits[1]) : std::string_view::npos;
-        if (high >= kDigits.size() || low >= kDigits.size()) {
+        const std::string_view digits = text.substr(i + 1, 2);
+        std::uint8_t byte = 0;
+        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), byte, 16);
+        if (digits.size() != 2 || end != digits.data() + 2 || error != std::errc()) {
             return invalidInput(
                 "has a % without two hexadecimal digits after it; write %25 for a percent sign");
         }
-        out += static_cast<char>(16 * high + low);
+        out += static_cast<char>(byte);
         i += 2;
     }
     return out;
@@ -97,7 +96,6 @@ constexpr std::uint64_t kUnsignedShort = 5123;
 constexpr std::uint64_t kUnsignedInt = 5125;
 constexpr std::uint64_t kFloat = 5126;
 
-/// The accessor types that a use allows.
 struct Rules {
     const char* type;
     std::array<std::uint64_t, 5> components;
@@ -199,8 +197,7 @@ Result<void> replaceSparse(const GltfValue& sparse, GltfBuffers& buffers, std::u
     return {};
 }
 
-}  // namespace
-
+/// Splits a GLB into its chunks; any other file is JSON.
 Result<GltfChunks> gltfChunks(std::span<const std::byte> bytes) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     GltfChunks chunks{text, std::nullopt, {}};
@@ -250,6 +247,8 @@ Result<GltfChunks> gltfChunks(std::span<const std::byte> bytes) {
     return number > 0 ? Result<GltfChunks>(std::move(chunks))
                       : invalidInput(std::string("it has no JSON, ") + kCutOff);
 }
+
+}  // namespace
 
 Result<GltfDocument> openGltf(std::span<const std::byte> bytes) {
     GltfDocument document{RELIEF_TRY(gltfChunks(bytes)), {}};
@@ -353,8 +352,7 @@ Result<std::vector<T>> readAccessor(const GltfValue& accessor, GltfUse use, Gltf
         return accessor.wrong(std::string("is not of type ") + rules.type);
     }
     const std::uint64_t type = RELIEF_TRY(accessor.number("componentType"));
-    if (type == 0 ||
-        std::find(rules.components.begin(), rules.components.end(), type) == rules.components.end()) {
+    if (type == 0 || std::ranges::find(rules.components, type) == rules.components.end()) {
         return accessor.wrong("has components of type " + std::to_string(type) +
                                   ", which is not supported here; export it as floats, with unsigned indices",
                               ErrorCode::kUnsupported);

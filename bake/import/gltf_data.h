@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the binary data of a glTF file: GLB chunks, buffers (embedded, as data URIs, or in separate files), and
-// accessors, including sparse and quantized ones. Errors name the place in the document, not the file.
+// Reads the JSON and the binary data of a glTF file. JSON is parsed strictly, into values that track their position.
+// Binary data are GLB chunks, buffers (embedded, as data URIs, or in separate files), and accessors, including sparse,
+// quantized and compressed ones. Errors name the place in the document, such as "meshes[0].primitives[2].mode", not the
+// file.
 #pragma once
 
 #include <cstddef>
@@ -8,17 +10,68 @@
 #include <glm/vec3.hpp>
 #include <map>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
-#include "bake/import/gltf_json.h"
 #include "bake/import/import_files.h"
 #include "formats/base/result.h"
 
 namespace relief {
+
+/// Parses like parseStrictJson(), but accepts trailing spaces and zero bytes.
+[[nodiscard]] Result<nlohmann::json> parseGltfJson(std::string_view text);
+
+/// An object of the document. A member of the wrong type, including null, is an error (kInvalidInput).
+class GltfValue {
+  public:
+    /// Borrows the document. \param document  an object.
+    explicit GltfValue(const nlohmann::json& document) : document_(&document), json_(&document) {}
+
+    /// Returns the error "PATH WHAT".
+    [[nodiscard]] tl::unexpected<Error> wrong(const std::string& what,
+                                              ErrorCode code = ErrorCode::kInvalidInput) const;
+
+    [[nodiscard]] bool has(const char* name) const;
+    [[nodiscard]] std::uint64_t index() const { return index_; }
+
+    /// Reads a member; nullopt if it is missing. T is bool, std::uint64_t, std::string, or a vector of one of these or
+    /// of float.
+    template <class T>
+    [[nodiscard]] Result<std::optional<T>> get(const char* name) const;
+    /// Reads a member, or returns `otherwise` if it is missing.
+    template <class T>
+    [[nodiscard]] Result<T> get(const char* name, T otherwise) const {
+        return RELIEF_TRY(get<T>(name)).value_or(std::move(otherwise));
+    }
+    [[nodiscard]] Result<std::uint64_t> number(const char* name) const;
+    /// Reads a list of exactly `count` numbers; empty if it is missing.
+    [[nodiscard]] Result<std::vector<float>> numbers(const char* name, std::size_t count) const;
+
+    [[nodiscard]] Result<std::optional<GltfValue>> object(const char* name) const;
+    /// Reads a list of objects; empty if it is missing.
+    [[nodiscard]] Result<std::vector<GltfValue>> objects(const char* name) const;
+    /// Resolves the index in `member` to an object of the document's `list`; nullopt if the member is missing.
+    [[nodiscard]] Result<std::optional<GltfValue>> named(const char* member, const char* list) const;
+    /// Resolves the index in `member`. Also fails if it is missing.
+    [[nodiscard]] Result<GltfValue> needed(const char* member, const char* list) const;
+    /// Returns entry `index` of the document's `list`. \param member  the member that holds the index, for messages.
+    [[nodiscard]] Result<GltfValue> at(std::uint64_t index, const char* list, const char* member) const;
+
+  private:
+    [[nodiscard]] std::string pathOf(const char* name) const;
+    [[nodiscard]] Result<GltfValue> child(const nlohmann::json& json, std::string path,
+                                          std::uint64_t index = 0) const;
+
+    const nlohmann::json* document_;
+    const nlohmann::json* json_;
+    std::string path_;  // "" for the document itself
+    std::uint64_t index_ = 0;
+};
 
 /// The chunks of a file, borrowed.
 struct GltfChunks {
@@ -27,15 +80,12 @@ struct GltfChunks {
     std::vector<std::string> warnings;                 ///< without the file name
 };
 
-/// Splits a GLB into its chunks; any other file is JSON. Errors: kInvalidInput, kUnsupported (another GLB version).
-[[nodiscard]] Result<GltfChunks> gltfChunks(std::span<const std::byte> bytes);
-
 /// A parsed file; borrows its bytes.
 struct GltfDocument {
     GltfChunks chunks;
     std::shared_ptr<const nlohmann::json> json;  ///< always an object
 };
-/// Splits and parses a file. Errors: those of gltfChunks and parseGltfJson.
+/// Splits and parses a file. Errors: those of parseGltfJson; kInvalidInput, kUnsupported (another GLB version).
 [[nodiscard]] Result<GltfDocument> openGltf(std::span<const std::byte> bytes);
 
 /// Decodes a data URI.
@@ -43,7 +93,6 @@ struct GltfDocument {
 /// Errors, without a place: kInvalidInput.
 [[nodiscard]] Result<std::vector<std::byte>> dataUriBytes(std::string_view uri);
 
-/// The bytes of a bufferView.
 struct GltfView {
     std::span<const std::byte> bytes;
     std::optional<std::uint64_t> stride;  ///< bytes between elements, above 0
@@ -89,5 +138,14 @@ enum class GltfUse : std::uint8_t {
 template <class T>
 [[nodiscard]] Result<std::vector<T>> readAccessor(const GltfValue& accessor, GltfUse use,
                                                   GltfBuffers& buffers, std::uint64_t count_max);
+
+/// Decompresses a buffer view.
+/// \param extension  the extension object of the buffer view.
+/// \param packed     the bytes that it references; untrusted.
+/// \param size       bytes of the unpacked view.
+/// Errors: kInvalidInput, kUnsupported (a mode or filter).
+[[nodiscard]] Result<std::vector<std::byte>> unpackMeshopt(const GltfValue& extension,
+                                                           std::span<const std::byte> packed,
+                                                           std::uint64_t size);
 
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/import/gltf_json.h"
+#include "bake/import/gltf_data.h"
 
 #include <nlohmann/json.hpp>
 #include <optional>

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/import/gltf_meshes.h"
+#include "bake/import/gltf_scene.h"
 
-#include <algorithm>
 #include <cmath>
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
+#include <set>
 #include <utility>
 
 #include "formats/base/finite.h"
 
 namespace relief {
 namespace {
-
-// --- primitives ---
 
 enum Mode : std::uint64_t { kPoints, kLines, kLineLoop, kLineStrip, kTriangles, kStrip, kFan };
 constexpr std::uint8_t kByTriangle = 1;
@@ -113,7 +111,6 @@ Result<GltfSkin> readGltfSkin(const GltfValue& skin, GltfBuffers& buffers) {
     if (joints.empty() || joints.size() > kJointsMax) {
         return skin.wrong("has no joints, or more than " + std::to_string(kJointsMax));
     }
-    // Identity by default.
     std::vector<glm::mat4> binds(joints.size(), glm::mat4(1.0F));
     if (const auto inverse = RELIEF_TRY(skin.named("inverseBindMatrices", "accessors"))) {
         binds = RELIEF_TRY(readAccessor<glm::mat4>(*inverse, GltfUse::kMatrices, buffers, kJointsMax));
@@ -145,10 +142,26 @@ Result<void> checkJoints(const GltfInfluences& influences, const GltfSkin& joint
     return {};
 }
 
-Result<const GltfMesh*> GltfMeshes::read(const GltfValue& mesh, Needs needs) {
+Result<void> GltfMeshes::read(const std::vector<std::uint32_t>& shown, const std::vector<GltfNode>& nodes,
+                              bool targets) {
+    std::set<std::uint64_t> skinned;
+    for (const std::uint32_t index : shown) {
+        if (nodes[index].mesh && nodes[index].skin) {
+            skinned.insert(nodes[index].mesh->index());
+        }
+    }
+    for (const std::uint32_t index : shown) {
+        if (const std::optional<GltfValue>& mesh = nodes[index].mesh) {
+            RELIEF_TRY(readMesh(*mesh, {skinned.contains(mesh->index()), targets}));
+        }
+    }
+    return {};
+}
+
+Result<void> GltfMeshes::readMesh(const GltfValue& mesh, Needs needs) {
     const auto [found, added] = meshes_.try_emplace(mesh.index());
     if (!added) {
-        return &found->second;
+        return {};
     }
     const std::string name = RELIEF_TRY(mesh.get<std::string>("name", ""));
     std::optional<std::size_t> targets;
@@ -166,7 +179,7 @@ Result<const GltfMesh*> GltfMeshes::read(const GltfValue& mesh, Needs needs) {
             found->second.primitives.push_back(std::move(primitive));
         }
     }
-    return &found->second;
+    return {};
 }
 
 MeshParts GltfMeshes::counts(std::size_t meshes) const {
@@ -183,12 +196,6 @@ MeshParts GltfMeshes::counts(std::size_t meshes) const {
     return counts;
 }
 
-void GltfMeshes::warn(const std::string& text) {
-    if (std::find(warnings_.begin(), warnings_.end(), text) == warnings_.end()) {
-        warnings_.push_back(text);
-    }
-}
-
 Result<GltfPrimitive> GltfMeshes::readPrimitive(const GltfValue& place, Needs needs) {
     const std::optional<GltfValue> attributes = RELIEF_TRY(place.object("attributes"));
     const std::uint64_t mode = RELIEF_TRY(place.get<std::uint64_t>("mode", kTriangles));
@@ -197,7 +204,7 @@ Result<GltfPrimitive> GltfMeshes::readPrimitive(const GltfValue& place, Needs ne
     }
     const std::vector<GltfValue> targets = RELIEF_TRY(place.objects("targets"));
     if (!targets.empty() && !needs.targets) {
-        warn("it has morph targets; baked as modelled, without them");
+        warnOnce(warnings_, "it has morph targets; baked as modelled, without them");
     }
     GltfPrimitive out;
     if (const auto material = RELIEF_TRY(place.named("material", "materials"))) {
@@ -205,7 +212,7 @@ Result<GltfPrimitive> GltfMeshes::readPrimitive(const GltfValue& place, Needs ne
     }
     const std::optional<GltfValue> accessor = RELIEF_TRY(attributes->named("POSITION", "accessors"));
     if (!accessor) {
-        warn("a primitive without positions is left out");
+        warnOnce(warnings_, "a primitive without positions is left out");
         return out;
     }
     Vertices& used = *RELIEF_TRY(vertices(*accessor));
@@ -273,7 +280,6 @@ Result<GltfMeshes::Vertices*> GltfMeshes::vertices(const GltfValue& accessor) {
     return &found->second;
 }
 
-/// \param vertices  of the primitive.
 Result<void> GltfMeshes::readTriangles(const GltfValue& place, std::uint64_t mode, Vertices& vertices,
                                        ScenePart& part) {
     // Without indices, vertices are used in order.

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/import/gltf_nodes.h"
+#include "bake/import/gltf_scene.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/gtc/quaternion.hpp>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -46,15 +47,16 @@ Result<void> checkVersion(const GltfValue& document) {
     return {};
 }
 
-Result<std::optional<GltfValue>> inside(const std::optional<GltfValue>& of, const char* name) {
-    return of ? of->object(name) : std::optional<GltfValue>();
+Result<std::optional<GltfValue>> extensionOf(const std::optional<GltfValue>& of, const char* name) {
+    const auto extensions = of ? RELIEF_TRY(of->object("extensions")) : std::nullopt;
+    return extensions ? extensions->object(name) : std::optional<GltfValue>();
 }
 
 Result<void> checkExtensions(const GltfValue& document) {
     using Names = std::vector<std::string>;
     for (const std::string& name : RELIEF_TRY(document.get<Names>("extensionsRequired", {}))) {
         const bool known = name.starts_with("KHR_materials_") || name.starts_with("KHR_xmp") ||
-                           std::find(kKnown.begin(), kKnown.end(), name) != kKnown.end();
+                           std::ranges::find(kKnown, name) != kKnown.end();
         if (!known) {
             return fail(ErrorCode::kUnsupported,
                         "it requires the extension '" + cleanUtf8(name, 100) +
@@ -70,8 +72,7 @@ Result<bool> animatesVisibility(const GltfValue& document) {
     for (const GltfValue& animation : RELIEF_TRY(document.objects("animations"))) {
         for (const GltfValue& channel : RELIEF_TRY(animation.objects("channels"))) {
             const auto target = RELIEF_TRY(channel.object("target"));
-            const auto extensions = target ? RELIEF_TRY(target->object("extensions")) : std::nullopt;
-            const auto pointer = RELIEF_TRY(inside(extensions, "KHR_animation_pointer"));
+            const auto pointer = RELIEF_TRY(extensionOf(target, "KHR_animation_pointer"));
             const std::string path = pointer ? RELIEF_TRY(pointer->get<std::string>("pointer", "")) : "";
             if (path.ends_with("/KHR_node_visibility/visible")) {
                 return true;
@@ -88,15 +89,6 @@ constexpr double kUnitTolerance = 0.00674;
 /// Tolerance of a matrix's last row, 0 0 0 1.
 constexpr float kRowTolerance = 1e-5F;
 
-glm::dmat3 rotationOf(const glm::dvec3& v, double w) {
-    const double x = v.x;
-    const double y = v.y;
-    const double z = v.z;
-    return {{1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)},
-            {2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)},
-            {2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)}};
-}
-
 /// \param node  for messages.
 Result<Transform> placedBy(const GltfValue& node, const glm::vec3& t, const glm::vec4& q,
                            const glm::vec3& scale) {
@@ -106,7 +98,8 @@ Result<Transform> placedBy(const GltfValue& node, const glm::vec3& t, const glm:
         return node.wrong("has a rotation that is not a unit quaternion: its length is " +
                           shortest(static_cast<float>(length)));
     }
-    Transform transform{rotationOf(glm::dvec3(q.x, q.y, q.z) / length, q.w / length), t};
+    Transform transform{glm::mat3_cast(glm::dquat(q.w / length, q.x / length, q.y / length, q.z / length)),
+                        t};
     for (int i = 0; i < 3; ++i) {
         transform.linear[i] *= double{scale[i]};
     }
@@ -138,7 +131,6 @@ Result<GltfPlacement> placementOf(const GltfValue& node) {
     return at;
 }
 
-/// Links nodes to their children.
 Result<void> linkNodes(std::vector<GltfNode>& nodes) {
     for (std::uint32_t index = 0; index < nodes.size(); ++index) {
         const GltfValue place = nodes[index].place;
@@ -205,8 +197,7 @@ void hideBelow(const std::vector<std::uint32_t>& all, std::vector<GltfNode>& nod
 /// scene.
 Result<void> hideNodes(const std::vector<std::uint32_t>& all, HiddenAs hidden, std::vector<GltfNode>& nodes) {
     for (GltfNode& node : nodes) {
-        const auto extensions = RELIEF_TRY(node.place.object("extensions"));
-        const auto visibility = RELIEF_TRY(inside(extensions, "KHR_node_visibility"));
+        const auto visibility = RELIEF_TRY(extensionOf(node.place, "KHR_node_visibility"));
         if (visibility && !RELIEF_TRY(visibility->get<bool>("visible", true))) {
             node.shown = Shown::kHidden;
         }
@@ -214,8 +205,7 @@ Result<void> hideNodes(const std::vector<std::uint32_t>& all, HiddenAs hidden, s
     hideBelow(all, nodes);
     std::vector<std::vector<std::uint32_t>> lower_levels(nodes.size());
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-        const auto extensions = RELIEF_TRY(nodes[i].place.object("extensions"));
-        const auto levels = RELIEF_TRY(inside(extensions, "MSFT_lod"));
+        const auto levels = RELIEF_TRY(extensionOf(nodes[i].place, "MSFT_lod"));
         using Indices = std::vector<std::uint64_t>;
         bool met = nodes[i].shown != Shown::kHidden;  // a more detailed level is shown
         for (const std::uint64_t level : levels ? RELIEF_TRY(levels->get<Indices>("ids", {})) : Indices()) {
@@ -253,9 +243,8 @@ Result<void> checkCombineModes(const GltfValue& material, std::vector<std::strin
         "effect: their values multiply those of a particle";
     for (const char* name : {"frictionCombine", "restitutionCombine"}) {
         const auto mode = RELIEF_TRY(material.get<std::string>(name, "average"));
-        if (mode != "average" && mode != "multiply" &&
-            std::find(warnings.begin(), warnings.end(), kWarning) == warnings.end()) {
-            warnings.emplace_back(kWarning);
+        if (mode != "average" && mode != "multiply") {
+            warnOnce(warnings, kWarning);
         }
     }
     return {};
@@ -282,13 +271,7 @@ Result<std::vector<GltfNode>> readGltfNodes(const GltfValue& document, HiddenAs 
     }
     RELIEF_TRY(linkNodes(nodes));
     // A node has at most one parent, so a node that no root reaches is part of a cycle.
-    std::vector<std::uint32_t> roots;
-    for (std::uint32_t i = 0; i < nodes.size(); ++i) {
-        if (!nodes[i].parent) {
-            roots.push_back(i);
-        }
-    }
-    const std::vector<std::uint32_t> all = nodesBelow(roots, nodes);
+    const std::vector<std::uint32_t> all = nodesBelow(rootsOf(nodes), nodes);
     if (all.size() != nodes.size()) {
         return invalidInput("its nodes are their own parents; nodes must form trees");
     }
@@ -311,6 +294,16 @@ Result<std::vector<std::uint32_t>> gltfRoots(const GltfValue& document, const st
                                "], which does not exist, has a parent, or is listed twice");
         }
         roots.push_back(static_cast<std::uint32_t>(root));
+    }
+    return roots;
+}
+
+std::vector<std::uint32_t> rootsOf(const std::vector<GltfNode>& nodes) {
+    std::vector<std::uint32_t> roots;
+    for (std::uint32_t i = 0; i < nodes.size(); ++i) {
+        if (!nodes[i].parent) {
+            roots.push_back(i);
+        }
     }
     return roots;
 }
@@ -349,15 +342,13 @@ std::optional<Transform> affineOf(const float* m) {
 Result<std::optional<NodeResponse>> gltfResponse(const GltfValue& document, const GltfNode& node,
                                                  std::vector<std::string>& warnings) {
     constexpr const char* kPhysics = "KHR_physics_rigid_bodies";
-    const auto own = RELIEF_TRY(node.place.object("extensions"));
-    const auto physics = RELIEF_TRY(inside(own, kPhysics));
-    const auto collider = RELIEF_TRY(inside(physics, "collider"));
+    const auto physics = RELIEF_TRY(extensionOf(node.place, kPhysics));
+    const auto collider = physics ? RELIEF_TRY(physics->object("collider")) : std::nullopt;
     const auto index = collider ? RELIEF_TRY(collider->get<std::uint64_t>("physicsMaterial")) : std::nullopt;
     if (!index) {
         return std::nullopt;
     }
-    const auto shared = RELIEF_TRY(document.object("extensions"));
-    const auto lists = RELIEF_TRY(inside(shared, kPhysics));
+    const auto lists = RELIEF_TRY(extensionOf(document, kPhysics));
     const std::vector<GltfValue> all =
         lists ? RELIEF_TRY(lists->objects("physicsMaterials")) : std::vector<GltfValue>();
     if (*index >= all.size()) {
@@ -382,9 +373,7 @@ Result<std::optional<NodeResponse>> gltfResponse(const GltfValue& document, cons
 
 Result<std::optional<std::vector<Transform>>> gltfInstances(const GltfNode& node, GltfBuffers& buffers,
                                                             std::uint64_t& left) {
-    const std::optional<GltfValue> extensions = RELIEF_TRY(node.place.object("extensions"));
-    const std::optional<GltfValue> instancing =
-        extensions ? RELIEF_TRY(extensions->object("EXT_mesh_gpu_instancing")) : std::nullopt;
+    const auto instancing = RELIEF_TRY(extensionOf(node.place, "EXT_mesh_gpu_instancing"));
     if (!instancing) {
         return std::nullopt;
     }

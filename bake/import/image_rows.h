@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads height map images (PNG and EXR) row by row, decoded in a worker process like meshes.
+// Reads height map images (PNG and EXR) row by row, decoded in a worker process like meshes. Besides png_rows.cpp, only
+// runtime/files/png.cpp uses libpng.
 #pragma once
 
 #include <cstddef>
@@ -29,5 +30,16 @@ namespace relief {
 /// \param bytes  isImage(); must outlive the rows.
 /// Errors, without the file name: those of openPngRows and openExrRows.
 [[nodiscard]] Result<std::unique_ptr<SampleRows>> openImageRows(std::span<const std::byte> bytes);
+
+/// Opens a PNG image. A colour that the tRNS chunk makes transparent is a hole.
+/// \param bytes  untrusted; must outlive the rows.
+/// Errors, without the file name: kInvalidInput (libpng's message), kUnsupported (a palette, fewer than 8 bits,
+/// interlacing); reading a row also kUnsupported (red, green and blue that differ, alpha that is not opaque).
+[[nodiscard]] Result<std::unique_ptr<SampleRows>> openPngRows(std::span<const std::byte> bytes);
+
+/// Opens an EXR image.
+/// \param bytes  untrusted; must outlive the rows.
+/// Errors, without the file name: kInvalidInput (OpenEXR's message), kUnsupported (several channels or parts).
+[[nodiscard]] Result<std::unique_ptr<SampleRows>> openExrRows(std::span<const std::byte> bytes);
 
 }  // namespace relief

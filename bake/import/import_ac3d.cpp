@@ -2,7 +2,7 @@
 // assimp 5.2 is not used: it accepts truncated files, replaces out-of-range indices, rotates objects the wrong way, and
 // does not move the kids of a translated object (mesh_import_test.cpp).
 #include <algorithm>
-#include <array>
+#include <charconv>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "bake/import/import_readers.h"
-#include "bake/import/scene_polygons.h"
+#include "bake/import/import_scene.h"
 #include "formats/base/text.h"
 #include "formats/base/text_scanner.h"
 #include "formats/polygons/decimal.h"
@@ -26,12 +26,10 @@ constexpr std::size_t kDepthMax = 1000;
 /// Low digit of a surface's flags.
 enum SurfaceKind : std::uint64_t { kPolygon = 0, kClosedLine = 1, kLine = 2, kStripSurface = 4 };
 
-/// The surfaces of an object by material.
 using ByMaterial = std::map<std::uint64_t, PolygonMesh>;
 
 class Ac3dReader {
   public:
-    /// Borrows the job.
     explicit Ac3dReader(const ImportJob& job)
         : job_(job),
           text_(std::string_view(reinterpret_cast<const char*>(job.bytes.data()), job.bytes.size())) {}
@@ -79,7 +77,6 @@ class Ac3dReader {
                          "it ends too early: " + what + "; it was probably cut off; copy or export it again");
     }
 
-    /// Removes quotes, if any.
     static std::string nameOf(std::string_view words) {
         if (words.empty() || words.front() != '"') {
             return std::string(words.substr(0, words.find_first_of(" \t")));
@@ -217,20 +214,13 @@ class Ac3dReader {
 
     Result<std::uint64_t> flags() {
         const std::string_view word = text_.word();
-        std::uint64_t value = 0;
         const std::string_view digits =
             word.starts_with("0x") || word.starts_with("0X") ? word.substr(2) : std::string_view();
-        if (digits.empty() || digits.size() > 8) {
-            return wrongLine(line(), quotedWord(word) + " is not a number such as 0x20; repair the file");
-        }
-        for (const char c : digits) {
-            const std::size_t digit = std::string_view("0123456789abcdef").find(lowerCase({&c, 1}));
-            if (digit == std::string_view::npos) {
-                return wrongLine(line(), quotedWord(word) + " is not a number such as 0x20; repair the file");
-            }
-            value = 16 * value + digit;
-        }
-        return value;
+        std::uint32_t value = 0;
+        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
+        return error == std::errc() && end == digits.data() + digits.size() && digits.size() <= 8
+                   ? Result<std::uint64_t>(value)
+                   : wrongLine(line(), quotedWord(word) + " is not a number such as 0x20; repair the file");
     }
 
     Result<void> readSurface(ByMaterial& surfaces) {

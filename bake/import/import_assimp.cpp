@@ -11,6 +11,7 @@
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <optional>
 #include <set>
@@ -18,14 +19,12 @@
 #include <string_view>
 
 #include "bake/import/import_readers.h"
-#include "bake/import/scene_polygons.h"
+#include "bake/import/import_scene.h"
 #include "bake/import/source_marks.h"
 #include "formats/base/text.h"
 
 namespace relief {
 namespace {
-
-// --- files and log ---
 
 /// Serves the mesh from memory, and the files that it references (material libraries) through ImportFiles. Read-only.
 class ReadOnlyFiles final : public Assimp::IOSystem {
@@ -48,8 +47,7 @@ class ReadOnlyFiles final : public Assimp::IOSystem {
             return nullptr;
         }
         auto* const copy = new std::uint8_t[bytes->size()];
-        std::transform(bytes->begin(), bytes->end(), copy,
-                       [](std::byte b) { return std::to_integer<std::uint8_t>(b); });
+        std::memcpy(copy, bytes->data(), bytes->size());
         return new Assimp::MemoryIOStream(copy, bytes->size(), true);
     }
     void Close(Assimp::IOStream* stream) override { delete stream; }
@@ -68,8 +66,8 @@ class ReadOnlyFiles final : public Assimp::IOSystem {
 thread_local std::vector<std::string> logged;
 
 bool hasAny(std::string_view text, std::span<const std::string_view> words) {
-    return std::any_of(words.begin(), words.end(),
-                       [text](std::string_view word) { return text.find(word) != std::string_view::npos; });
+    return std::ranges::any_of(
+        words, [text](std::string_view word) { return text.find(word) != std::string_view::npos; });
 }
 
 /// Phrases in assimp's warnings (BLEND, LWO, FBX) about omitted parts of the surface.
@@ -97,35 +95,29 @@ class Listener final : public Assimp::Logger {
         constexpr std::size_t kErrorsMax = 4;
         const std::string line = oneCleanLine(message);
         if (logged.size() < kErrorsMax && !hasAny(line, kNoSurface) &&
-            std::find(logged.begin(), logged.end(), line) == logged.end()) {
+            std::ranges::find(logged, line) == logged.end()) {
             logged.push_back(line);
         }
     }
 };
 
 void beginLogging() {
-    static const bool kInstalled = [] {
+    [[maybe_unused]] static const bool kInstalled = [] {
         Assimp::DefaultLogger::set(new Listener);  // owned by assimp for the life of the process
         return true;
     }();
-    static_cast<void>(kInstalled);
     logged.clear();
 }
 
 bool hasLogged(std::string_view words) {
-    return std::any_of(logged.begin(), logged.end(),
-                       [words](const std::string& error) { return error.find(words) != std::string::npos; });
+    return std::ranges::any_of(
+        logged, [words](const std::string& error) { return error.find(words) != std::string::npos; });
 }
-
-// --- units and axes ---
 
 template <class T>
 std::optional<T> metadata(const aiMetadata* data, const char* key) {
     T value{};
-    if (data == nullptr || !data->Get(key, value)) {
-        return std::nullopt;
-    }
-    return value;
+    return data != nullptr && data->Get(key, value) ? std::optional(value) : std::nullopt;
 }
 
 /// Reads the frame of an FBX file: unit in centimetres, axes as index and sign. assimp applies neither, reads 10,5 as
@@ -175,7 +167,6 @@ SourceFrame frameOf3ds(aiMatrix4x4& root) {
 
 /// Reads the frame of a file. \param scene  assimp's conversion is removed from its root.
 SourceFrame frameOf(AssimpFrame format, const ImportJob& job, aiScene& scene) {
-    SourceFrame frame;
     switch (format) {
         case AssimpFrame::k3ds:
             return frameOf3ds(scene.mRootNode->mTransformation);
@@ -184,12 +175,9 @@ SourceFrame frameOf(AssimpFrame format, const ImportJob& job, aiScene& scene) {
         case AssimpFrame::kFbx:
             return fbxFrame(job, scene);
         default:
-            frame.mirrored = format == AssimpFrame::kMirrored;
-            return frame;
+            return {std::nullopt, std::nullopt, format == AssimpFrame::kMirrored};
     }
 }
-
-// --- the scene ---
 
 std::string nameOf(const aiString& text) {
     const std::string_view name(text.data, std::min<std::size_t>(text.length, sizeof(text.data)));
@@ -277,7 +265,6 @@ struct HiddenNodes {
     std::vector<std::string> unmet;               ///< hidden objects without a node
 };
 
-/// Finds the nodes with these names.
 HiddenNodes nodesOf(const aiNode& root, const std::set<std::string>& names) {
     HiddenNodes hidden;
     std::set<std::string> unmet = names;
@@ -303,7 +290,7 @@ HiddenNodes nodesOf(const aiNode& root, const std::set<std::string>& names) {
 /// ambiguous. assimp keeps the order, and drops instances that it cannot resolve.
 HiddenNodes nodesOf(const aiNode& root, const std::vector<ColladaNode>& document) {
     HiddenNodes hidden;
-    if (std::none_of(document.begin(), document.end(), [](const ColladaNode& node) { return node.hidden; })) {
+    if (std::ranges::none_of(document, &ColladaNode::hidden)) {
         return hidden;
     }
     std::vector<bool> met(document.size());
@@ -350,8 +337,7 @@ bool isHidden(const aiNode& node, const HiddenNodes& hidden) {
 }
 
 bool hasMeshes(const aiNode& node) {
-    const std::span children = childrenOf(node);
-    return node.mNumMeshes > 0 || std::any_of(children.begin(), children.end(), [](const aiNode* child) {
+    return node.mNumMeshes > 0 || std::ranges::any_of(childrenOf(node), [](const aiNode* child) {
                return child != nullptr && hasMeshes(*child);
            });
 }
@@ -431,7 +417,7 @@ void keepReadersOf(const std::string& extension, Assimp::Importer& importer) {
     for (std::size_t i = 0; i < importer.GetImporterCount(); ++i) {
         const std::string_view claimed = importer.GetImporterInfo(i)->mFileExtensions;
         const std::vector<std::string_view> extensions = split(claimed, ' ');
-        if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end()) {
+        if (std::ranges::find(extensions, extension) == extensions.end()) {
             others.push_back(importer.GetImporter(i));
         }
     }
@@ -446,12 +432,10 @@ tl::unexpected<Error> readError(const Assimp::Importer& importer, const ImportFi
     if (const std::exception_ptr& thrown = importer.GetException(); thrown != nullptr) {
         try {
             std::rethrow_exception(thrown);
-        } catch (const std::bad_array_new_length&) {
-            // An invalid size in the file.
+        } catch (const std::bad_array_new_length&) {  // an invalid size in the file
         } catch (const std::bad_alloc&) {
             throw;
-        } catch (...) {
-            // The message follows below.
+        } catch (...) {  // the message follows below
         }
     }
     const std::string words = oneCleanLine(importer.GetErrorString());
@@ -472,7 +456,6 @@ Result<ImportScene> readWithAssimp(AssimpFrame format, const ImportJob& job, Imp
     keepReadersOf(job.extension, importer);
     const std::optional<std::vector<std::byte>> marked =
         format == AssimpFrame::kFbx ? markedFbx(job.bytes) : std::nullopt;
-    // Owned by the importer.
     importer.SetIOHandler(new ReadOnlyFiles(files, marked ? *marked : files.meshBytes()));
     // Otherwise assimp creates a placeholder mesh for files that contain only bones.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
@@ -501,11 +484,10 @@ Result<ImportScene> readWithAssimp(AssimpFrame format, const ImportJob& job, Imp
         scene.warnings.emplace_back(kAnimatedVisibility);
     }
     const std::span meshes(source->mMeshes, source->mNumMeshes);
-    if (std::any_of(meshes.begin(), meshes.end(), [](const aiMesh* mesh) { return mesh->HasBones(); })) {
+    if (std::ranges::any_of(meshes, &aiMesh::HasBones)) {
         scene.warnings.emplace_back("it is skinned; baked as modelled, without its skeleton");
     }
-    if (std::any_of(meshes.begin(), meshes.end(),
-                    [](const aiMesh* mesh) { return mesh->mNumAnimMeshes > 0; })) {
+    if (std::ranges::any_of(meshes, [](const aiMesh* mesh) { return mesh->mNumAnimMeshes > 0; })) {
         scene.warnings.emplace_back("it has morph targets; baked as modelled, without them");
     }
     for (const std::string& error : logged) {

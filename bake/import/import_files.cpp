@@ -30,11 +30,6 @@ std::string relativePath(std::string_view path) {
     return text;
 }
 
-bool hasParent(std::string_view path) {
-    const std::vector<std::string_view> parts = split(path, '/');
-    return std::find(parts.begin(), parts.end(), "..") != parts.end();
-}
-
 }  // namespace
 
 bool ImportFiles::isMesh(std::string_view path) const {
@@ -42,7 +37,9 @@ bool ImportFiles::isMesh(std::string_view path) const {
 }
 
 Descriptor ImportFiles::openBeneath(const std::string& path, std::string& why) const {
-    if (path.empty() || path.starts_with('/') || hasParent(path) || path.find('\0') != std::string::npos) {
+    const std::vector<std::string_view> folders = split(path, '/');
+    if (path.empty() || path.starts_with('/') || path.find('\0') != std::string::npos ||
+        std::ranges::find(folders, "..") != folders.end()) {
         why = "not below the mesh's folder";
         return Descriptor();
     }
@@ -69,8 +66,7 @@ Descriptor ImportFiles::openBeneath(const std::string& path, std::string& why) c
 
 void ImportFiles::refuse(std::string_view path, const std::string& why) {
     const std::string line = "'" + cleanUtf8(path, kRefusedPathMax) + "' (" + why + ")";
-    if (refused_.size() < kRefusedMax &&
-        std::find(refused_.begin(), refused_.end(), line) == refused_.end()) {
+    if (refused_.size() < kRefusedMax && std::ranges::find(refused_, line) == refused_.end()) {
         refused_.push_back(line);
     }
 }

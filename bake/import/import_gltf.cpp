@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <map>
-#include <set>
 #include <tuple>
 #include <utility>
 #include <vector>
 
-#include "bake/import/gltf_meshes.h"
-#include "bake/import/gltf_nodes.h"
+#include "bake/import/gltf_scene.h"
 #include "bake/import/import_readers.h"
 
 namespace relief {
@@ -66,9 +63,10 @@ class GltfReader {
         RELIEF_TRY(readShown());
         scene_.counts = meshes_.counts(RELIEF_TRY(document_.objects("meshes")).size());
         if (!skins_.empty()) {
-            warn(all_jointed_ ? "it is skinned; baked in the pose of its nodes"
-                              : "it is skinned; parts without joints are baked as modelled, without "
-                                "their skeleton");
+            warnOnce(scene_.warnings,
+                     all_jointed_ ? "it is skinned; baked in the pose of its nodes"
+                                  : "it is skinned; parts without joints are baked as modelled, without "
+                                    "their skeleton");
         }
         return std::move(scene_);
     }
@@ -81,32 +79,14 @@ class GltfReader {
     /// Mesh, primitive, and skin + 1, or 0 without a skin.
     using PlacedKey = std::tuple<std::uint64_t, std::size_t, std::uint64_t>;
 
-    void warn(const std::string& text) {
-        if (std::find(scene_.warnings.begin(), scene_.warnings.end(), text) == scene_.warnings.end()) {
-            scene_.warnings.push_back(text);
-        }
-    }
-
-    /// Reads the meshes of the nodes below the roots, in scene order.
     Result<void> readShown() {
-        std::vector<std::uint32_t> shown;
-        std::set<std::uint64_t> skinned;
-        for (const std::uint32_t index : nodesBelow(scene_.roots, nodes_)) {
+        const std::vector<std::uint32_t> shown = nodesBelow(scene_.roots, nodes_);
+        RELIEF_TRY(meshes_.read(shown, nodes_, false));
+        for (const std::uint32_t index : shown) {
             if (nodes_[index].mesh) {
-                shown.push_back(index);
-                if (nodes_[index].skin) {
-                    skinned.insert(nodes_[index].mesh->index());
-                }
+                RELIEF_TRY(placeMesh(nodes_[index], scene_.nodes[index]));
+                RELIEF_TRY(placeInstances(nodes_[index], index));
             }
-        }
-        for (const std::uint32_t index : shown) {
-            const GltfValue& mesh = *nodes_[index].mesh;
-            static_cast<void>(
-                RELIEF_TRY(meshes_.read(mesh, {.joints = skinned.contains(mesh.index()), .targets = false})));
-        }
-        for (const std::uint32_t index : shown) {
-            RELIEF_TRY(placeMesh(nodes_[index], scene_.nodes[index]));
-            RELIEF_TRY(placeInstances(nodes_[index], index));
         }
         return {};
     }
@@ -117,7 +97,7 @@ class GltfReader {
         if (from.skin && !skins_.contains(key)) {
             skins_[key] = RELIEF_TRY(readSkin(*from.skin));
         }
-        const GltfMesh& mesh = *RELIEF_TRY(meshes_.read(*from.mesh, {}));
+        const GltfMesh& mesh = meshes_.at(*from.mesh);
         for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
             const GltfPrimitive& primitive = mesh.primitives[i];
             all_jointed_ = all_jointed_ && (!from.skin || primitive.influences);
@@ -142,7 +122,7 @@ class GltfReader {
     Result<void> placeInstances(const GltfNode& from, std::uint32_t index) {
         const auto instances = RELIEF_TRY(gltfInstances(from, buffers_, instances_left_));
         if (instances && from.skin) {
-            warn("instances of a skinned mesh are left out; export them as nodes");
+            warnOnce(scene_.warnings, "instances of a skinned mesh are left out; export them as nodes");
         }
         if (!instances || from.skin) {
             return {};

@@ -1,22 +1,65 @@
 // SPDX-License-Identifier: Apache-2.0
-// Defines an import request, and declares the importer's entry point.
+// Defines an import request: units of length, axes, options and limits; and declares the importer's entry point.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <glm/mat3x3.hpp>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "bake/import/import_units.h"
 #include "bake/mesh/mesh.h"
 #include "formats/base/field.h"
 #include "formats/base/result.h"
 
 namespace relief {
+
+enum class UpAxis : std::uint8_t { kPlusX, kMinusX, kPlusY, kMinusY, kPlusZ, kMinusZ };
+
+template <>
+inline constexpr std::array<std::string_view, 6> kWordsOf<UpAxis>{"+x", "-x", "+y", "-y", "+z", "-z"};
+
+inline constexpr std::array<std::string_view, 8> kLengthUnits{"m", "cm", "mm", "um", "km", "in", "ft", "yd"};
+
+/// Returns the length of a unit in metres; nullopt if the unit is unknown.
+[[nodiscard]] std::optional<double> metresPer(std::string_view unit);
+
+/// Returns the rotation that maps `up` to +Y, exactly (its entries are 0, 1 and −1): a quarter turn about z for ±x, a
+/// quarter turn about x for ±z, and a half turn about x for −y.
+[[nodiscard]] glm::dmat3 turnUpwards(UpAxis up);
+
+struct SourceFrame {
+    std::optional<double> metres;  ///< per unit of the file
+    std::optional<UpAxis> up;
+    /// The file's coordinates are left-handed: its z is negated.
+    bool mirrored = false;
+    /// An invalid unit or axis in the file, as a clause: "its unit is -1 m". "": none.
+    std::string unit_fault{};
+    std::string up_fault{};
+};
+
+/// Fails if the frame is invalid in a part that the caller does not override.
+/// Errors, without the file name: kInvalidInput, naming the option to use.
+[[nodiscard]] Result<void> checkFrame(const SourceFrame& source, std::string_view unit,
+                                      std::optional<UpAxis> up);
+
+struct FrameChange {
+    double scale = 1.0;
+    glm::dmat3 turn{1.0};
+    std::string unit;  ///< "m", or "" if unknown
+    /// About overrides by the caller; without the file name.
+    std::vector<std::string> warnings;
+};
+
+/// Computes the conversion.
+/// \param unit  one of kLengthUnits, or "" for the file's unit.
+/// \param up    nullopt for the file's axis.
+[[nodiscard]] FrameChange changeOf(const SourceFrame& source, std::string_view unit,
+                                   std::optional<UpAxis> up);
 
 /// Treatment of geometry that the file hides: hidden objects and lower levels of detail.
 enum class HiddenAs : std::uint8_t { kSkip, kKeep };
@@ -46,7 +89,10 @@ struct ImportLimits {
     std::uint64_t triangles = 20'000'000;
 };
 
-/// The kind of result.
+/// Excludes `names`, which have options of their own.
+void fields(FieldVisitor& visit, ImportOptions& options);
+void fields(FieldVisitor& visit, ImportLimits& limits);
+
 enum class ImportKind : std::uint8_t {
     kMesh,
     kLevel,     ///< each distinct mesh once, with its bodies (level.h)
@@ -56,7 +102,6 @@ enum class ImportKind : std::uint8_t {
 template <>
 inline constexpr std::array<std::string_view, 4> kWordsOf<ImportKind>{"mesh", "level", "animated", "clips"};
 
-/// The input of an importer.
 struct ImportJob {
     std::string shown;      ///< the path for messages (quotedPath)
     std::string file_name;  ///< without its folder

@@ -17,8 +17,7 @@
 #include <vector>
 
 #include "bake/import/image_rows.h"
-#include "bake/import/import_fields.h"
-#include "bake/import/import_message.h"
+#include "bake/import/import_job.h"
 #include "bake/import/import_protocol.h"
 #include "bake/import/import_sandbox.h"
 #include "bake/import/import_source.h"
@@ -26,6 +25,7 @@
 #include "formats/base/file_io.h"
 #include "formats/base/heap.h"
 #include "formats/base/text.h"
+#include "formats/fields/text.h"
 
 namespace relief {
 namespace {
@@ -35,14 +35,10 @@ constexpr std::uint64_t kMemoryBeside = (std::uint64_t{1} << 30) + (std::uint64_
 /// Initial heap, which may use large pages.
 constexpr std::uint64_t kHeapBytes = std::uint64_t{64} << 20;
 
-std::uint64_t fileSize(int file) {
+/// Returns zeros on failure.
+struct stat statusOf(int file) {
     struct stat status {};
-    return ::fstat(file, &status) == 0 ? static_cast<std::uint64_t>(status.st_size) : 0;
-}
-
-bool isFolder(int file) {
-    struct stat status {};
-    return ::fstat(file, &status) == 0 && S_ISDIR(status.st_mode);
+    return ::fstat(file, &status) == 0 ? status : decltype(status){};
 }
 
 /// Whether the parent ended before PR_SET_PDEATHSIG took effect.
@@ -58,7 +54,7 @@ int exitOf(int number) {
 /// \return an exit code.
 int sendMessage(const Result<TriangleMesh>& raw) {
     const std::uint64_t size = importMessageSize(raw);
-    if (size > fileSize(kImportResultFd)) {
+    if (size > static_cast<std::uint64_t>(statusOf(kImportResultFd).st_size)) {
         return kImportExitTooLarge;
     }
     // Allocates all of it now: a page that cannot be allocated later raises SIGBUS.
@@ -130,9 +126,9 @@ int work(std::span<char*> arguments) {
         }
     }
     options.names.assign(arguments.begin() + static_cast<std::ptrdiff_t>(next) + 1, arguments.end());
-    const std::uint64_t size = fileSize(kImportMeshFd);
+    const auto size = static_cast<std::uint64_t>(statusOf(kImportMeshFd).st_size);
     void* const pages = ::mmap(nullptr, size, PROT_READ, MAP_SHARED | MAP_POPULATE, kImportMeshFd, 0);
-    const int folder = isFolder(kImportFolderFd) ? kImportFolderFd : -1;
+    const int folder = S_ISDIR(statusOf(kImportFolderFd).st_mode) ? kImportFolderFd : -1;
     if (pages == MAP_FAILED) {
         return exitOf(errno);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/import/import_message.h"
+#include "bake/import/import_protocol.h"
 
 #include <algorithm>
 #include <cstring>
@@ -172,8 +172,8 @@ Result<TriangleMesh> readImportMessage(std::span<const std::byte> bytes, std::ui
     }
     TriangleMesh raw;
     exchange(reader, raw, triangle_max);
-    const bool named = std::all_of(raw.labels.begin(), raw.labels.end(),
-                                   [&raw](std::uint32_t label) { return label < raw.surface_names.size(); });
+    const bool named = std::ranges::all_of(
+        raw.labels, [&raw](std::uint32_t label) { return label < raw.surface_names.size(); });
     if (!reader.done() || !named ||
         raw.unused_vertices > kImportBytesMax ||  // a vertex takes more than a byte
         (!raw.marks.empty() && raw.marks.size() != raw.triangles.size()) ||

@@ -43,7 +43,6 @@ class OffReader {
         return std::move(mesh_);
     }
 
-    /// Whether a vertex or face spans several lines.
     [[nodiscard]] bool spansLines() const { return spans_lines_; }
 
   private:
@@ -92,7 +91,6 @@ class OffReader {
         return std::to_string(vertices_) + " vertices and " + std::to_string(faces_) + " faces";
     }
 
-    /// Returns the error for a truncated file.
     [[nodiscard]] tl::unexpected<Error> cutOff(const std::string& where) const {
         return wrongLine(text_.line(), "it ends " + where + ", but its header declares " + counts() +
                                            " and was probably cut off; copy or export it again");

@@ -32,7 +32,6 @@ class ImportProcess {
     ImportProcess(const char* noun, const char* smaller, const ImportLimits& limits)
         : noun_(noun), smaller_(smaller), limits_(limits), left_(std::chrono::seconds(limits.seconds)) {}
 
-    /// Validates the limits. Errors: kUsage.
     [[nodiscard]] Result<void> checkLimits() const;
     /// Starts the worker.
     /// \param kind   a name of ImportKind, or kImportImage.

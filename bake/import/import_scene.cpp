@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <utility>
 
 #include "formats/base/text.h"
@@ -16,21 +17,15 @@ constexpr double kFlat = 1e-9;
 /// Relative deviation from uniform scale and right angles that counts as rounding: 0.1 mm per metre.
 constexpr double kRigid = 1e-4;
 
-double determinant(const glm::dmat3& m) {
-    return m[0][0] * (m[1][1] * m[2][2] - m[2][1] * m[1][2]) -
-           m[1][0] * (m[0][1] * m[2][2] - m[2][1] * m[0][2]) +
-           m[2][0] * (m[0][1] * m[1][2] - m[1][1] * m[0][2]);
-}
-
 }  // namespace
 
 bool Transform::mirrors() const {
-    return determinant(linear) < 0.0;
+    return glm::determinant(linear) < 0.0;
 }
 
 bool Transform::flattens() const {
     const double lengths = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
-    return std::abs(determinant(linear)) <= kFlat * lengths;
+    return std::abs(glm::determinant(linear)) <= kFlat * lengths;
 }
 
 std::optional<RigidPose> rigidPose(const glm::dmat3& m) {
@@ -42,7 +37,7 @@ std::optional<RigidPose> rigidPose(const glm::dmat3& m) {
             return std::nullopt;
         }
     }
-    if (!(scale > 0.0) || determinant(m) < 0.0) {
+    if (!(scale > 0.0) || glm::determinant(m) < 0.0) {
         return std::nullopt;
     }
     // Starts from the largest of the four components, to keep precision: Shepperd (1978).
@@ -98,6 +93,12 @@ std::vector<std::uint32_t> compact(const std::vector<glm::vec3>& positions, Scen
         t = {place[t.x - low], place[t.y - low], place[t.z - low]};
     }
     return used;
+}
+
+void warnOnce(std::vector<std::string>& warnings, const std::string& warning) {
+    if (std::ranges::find(warnings, warning) == warnings.end()) {
+        warnings.push_back(warning);
+    }
 }
 
 std::string firstName(const std::string& name, std::uint64_t count) {

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "bake/import/import_job.h"
-#include "bake/import/import_units.h"
 #include "bake/mesh/mesh.h"
 #include "formats/base/result.h"
 #include "formats/polygons/polygon_mesh.h"
@@ -41,7 +40,6 @@ struct RigidPose {
 /// Applies `inner` first.
 [[nodiscard]] Transform operator*(const Transform& outer, const Transform& inner);
 
-/// Triangles of one material.
 struct ScenePart {
     std::vector<glm::vec3> positions;   ///< may be NaN
     std::vector<glm::uvec3> triangles;  ///< valid indices into positions
@@ -60,7 +58,6 @@ struct NodeResponse {
     friend auto operator<=>(const NodeResponse&, const NodeResponse&) = default;
 };
 
-/// Whether the file shows a node's parts.
 enum class Shown : std::uint8_t {
     kYes,
     kHidden,      ///< the node or an ancestor is hidden
@@ -120,6 +117,8 @@ void warnOfParts(const MeshParts& parts, std::vector<std::string>& warnings);
 /// Errors: also kLimit (more meshes or bodies than a world may have).
 [[nodiscard]] Result<TriangleMesh> flattenLevel(ImportScene scene, const ImportJob& job);
 
+void warnOnce(std::vector<std::string>& warnings, const std::string& warning);
+
 /// A warning, without the file name.
 inline constexpr const char* kAnimatedVisibility =
     "its animations show and hide objects; baked with the visibility of its nodes";
@@ -132,7 +131,6 @@ class LeftOutObjects {
   public:
     /// Counts the object if it is skipped. \param name  as stored in the file. \return whether it is skipped.
     bool leaveOut(Shown shown, const std::string& name, HiddenAs hidden);
-    /// Adds one line for each kind to `warnings`.
     void warn(std::vector<std::string>& warnings) const;
     [[nodiscard]] bool any() const { return counts_ != std::array<std::uint64_t, 2>{}; }
 

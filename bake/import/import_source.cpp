@@ -41,7 +41,7 @@ Result<ImportSource> ImportSource::open(const fs::path& path) {
     const std::string extension = lowerCase(path.extension().string());
     if (extension.empty() || meshFormat(extension.substr(1)) == nullptr) {
         constexpr std::array<std::string_view, 5> kHeightMaps = {".png", ".exr", ".raw", ".r16", ".hgt"};
-        const bool image = std::find(kHeightMaps.begin(), kHeightMaps.end(), extension) != kHeightMaps.end();
+        const bool image = std::ranges::find(kHeightMaps, extension) != kHeightMaps.end();
         return fail(ErrorCode::kUnsupported,
                     quotedPath(path) + ": no mesh format has the extension '" + cleanUtf8(extension) + "'; " +
                         (image ? "if it is a height map, bake it with relief bake --heights"
@@ -107,7 +107,7 @@ Result<TriangleMesh> ImportSource::named(TriangleMesh raw, std::size_t names) co
         return badAnswer("an invalid unit or list of files");
     }
     if (raw.marks.size() != (names > 0 ? raw.triangles.size() : 0) ||
-        std::any_of(raw.marks.begin(), raw.marks.end(), [&](std::uint8_t mark) { return mark > names; })) {
+        std::ranges::any_of(raw.marks, [&](std::uint8_t mark) { return mark > names; })) {
         return badAnswer("names that were not requested");
     }
     const std::string name = cleanUtf8(path_.filename().string(), kMeshNameMax);
@@ -123,7 +123,7 @@ Result<TriangleMesh> ImportSource::named(TriangleMesh raw, std::size_t names) co
         }
         files.emplace_back((path_.parent_path() / relative).string(), raw.dependency_hashes[i]);
     }
-    std::sort(files.begin(), files.end());
+    std::ranges::sort(files);
     raw.dependencies = {path_.string()};
     raw.dependency_hashes = {hash_};
     for (auto& [file, hash] : files) {

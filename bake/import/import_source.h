@@ -22,13 +22,11 @@ class ImportSource {
     /// Reads the file. Errors: kUnsupported (extension), kInvalidInput (empty), and those of readFile.
     [[nodiscard]] static Result<ImportSource> open(const std::filesystem::path& path);
 
-    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
     /// Lower case, without the dot.
     [[nodiscard]] const std::string& extension() const { return extension_; }
     [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
     /// Descriptor of the folder, O_PATH; -1 if it cannot be opened.
     [[nodiscard]] int folder() const { return folder_.get(); }
-    /// Frees bytes().
     void dropBytes() { bytes_ = {}; }
 
     /// Completes an importer's result: sets name, hash and full paths, and establishes the invariants of TriangleMesh.
@@ -37,7 +35,6 @@ class ImportSource {
     /// \param names  number of ImportOptions::names; if it is 0, there must be no marks.
     /// Errors: those of finishMesh; kInvalidInput.
     [[nodiscard]] Result<TriangleMesh> finish(TriangleMesh raw, std::size_t names = 0) const;
-    /// Completes a level, and splits it into its meshes.
     [[nodiscard]] Result<Level> finishLevel(TriangleMesh raw, std::size_t names = 0,
                                             bool materials = true) const;
     /// Completes an animated mesh. \param kind  kAnimated, or kClips (no vertices).
@@ -45,7 +42,6 @@ class ImportSource {
 
   private:
     [[nodiscard]] tl::unexpected<Error> badAnswer(const char* what) const;
-    /// Sets name, hash and full paths.
     [[nodiscard]] Result<TriangleMesh> named(TriangleMesh raw, std::size_t names) const;
 
     ImportSource(std::filesystem::path path, std::string extension, std::vector<std::byte> bytes);

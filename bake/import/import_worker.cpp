@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Implements importMeshInWorker: starts relief-import, waits for it, and validates its answer.
+// Implements importMeshInWorker and similar functions: starts relief-import, waits for it, and validates its answer.
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -11,10 +11,12 @@
 #include <cstring>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <utility>
+#include <vector>
 
-#include "bake/import/import_fields.h"
-#include "bake/import/import_message.h"
+#include "bake/import/import_format.h"
+#include "bake/import/import_job.h"
 #include "bake/import/import_process.h"
 #include "bake/import/import_protocol.h"
 #include "bake/import/import_source.h"
@@ -22,6 +24,9 @@
 #include "bake/import/mesh_import.h"
 #include "formats/base/descriptor.h"
 #include "formats/base/file_io.h"
+#include "formats/base/text.h"
+#include "formats/fields/text.h"
+#include "formats/validate.h"
 
 namespace relief {
 namespace {
@@ -36,39 +41,21 @@ std::uint64_t largestFile(std::uint64_t wanted) {
                : wanted;
 }
 
-class Import {
+/// The worker of a mesh file, and its answer.
+class MeshWorker {
   public:
-    Import(const fs::path& path, const ImportOptions& options, const ImportLimits& limits)
+    MeshWorker(const fs::path& path, const ImportOptions& options, const ImportLimits& limits)
         : path_(path), options_(options), worker_("mesh", "simplify the mesh", limits) {}
 
-    Result<TriangleMesh> mesh() {
-        ImportSource source = RELIEF_TRY(ImportSource::open(path_));
-        Result<TriangleMesh> raw = named(workOn(source, ImportKind::kMesh));
-        return raw ? source.finish(std::move(*raw), options_.names.size()) : raw;
-    }
-
-    Result<Level> level() {
-        ImportSource source = RELIEF_TRY(ImportSource::open(path_));
-        TriangleMesh raw = RELIEF_TRY(named(workOn(source, ImportKind::kLevel)));
-        return source.finishLevel(std::move(raw), options_.names.size(), options_.materials);
-    }
-
-    /// \param kind  kAnimated or kClips.
-    Result<AnimatedImport> animated(ImportKind kind) {
-        ImportSource source = RELIEF_TRY(ImportSource::open(path_));
-        TriangleMesh raw = RELIEF_TRY(named(workOn(source, kind)));
-        return source.finishAnimated(std::move(raw), kind);
+    /// Reads a file, and frees its bytes. Errors name the file.
+    Result<TriangleMesh> read(ImportSource& source, ImportKind kind) {
+        Result<TriangleMesh> raw = workOn(source, kind);
+        return raw || raw.error().message.find(quotedPath(path_)) != std::string::npos
+                   ? std::move(raw)
+                   : withPrefix("cannot read the mesh " + quotedPath(path_), std::move(raw));
     }
 
   private:
-    /// Adds the file name to an error, unless the worker already did.
-    [[nodiscard]] Result<TriangleMesh> named(Result<TriangleMesh> raw) const {
-        const std::string name = quotedPath(path_);
-        return raw || raw.error().message.find(name) != std::string::npos
-                   ? std::move(raw)
-                   : withPrefix("cannot read the mesh " + name, std::move(raw));
-    }
-
     Result<TriangleMesh> workOn(ImportSource& source, ImportKind kind) {
         RELIEF_TRY(worker_.checkLimits());
         Descriptor mesh = sharedBytes(source.bytes());
@@ -136,21 +123,96 @@ class Import {
     ImportProcess worker_;
 };
 
+// --- folders ---
+
+Result<std::vector<fs::path>> meshFilesOf(const fs::path& folder) {
+    std::vector<fs::path> files;
+    std::error_code error;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+        const std::string extension = entry->path().extension().string();
+        std::error_code unknown;
+        if (!extension.empty() && meshFormat(extension.substr(1)) != nullptr &&
+            entry->is_regular_file(unknown)) {
+            files.push_back(entry->path());
+        }
+    }
+    if (error) {
+        return fail(ErrorCode::kIo, "cannot read the folder " + quotedPath(folder) + ": " + error.message() +
+                                        "; check its permissions");
+    }
+    if (files.empty()) {
+        return invalidInput(quotedPath(folder) +
+                            " contains no mesh files; give a folder of OBJ, PLY or glTF files");
+    }
+    if (files.size() > kLevelMeshesMax) {
+        return fail(ErrorCode::kLimit, quotedPath(folder) + " has " + std::to_string(files.size()) +
+                                           " mesh files, more than " + std::to_string(kLevelMeshesMax) +
+                                           "; bake it in parts");
+    }
+    std::ranges::sort(files);
+    return files;
+}
+
+void append(std::vector<std::string>& to, std::vector<std::string> more) {
+    to.insert(to.end(), more.begin(), more.end());
+}
+
+Result<Level> importFolder(const fs::path& folder, const ImportOptions& options, ImportLimits limits) {
+    if (!options.names.empty()) {
+        return fail(ErrorCode::kUsage, "--as NAME=KIND applies to names in one file, but " +
+                                           quotedPath(folder) + " is a folder; leave out NAME=");
+    }
+    Level level;
+    level.name = cleanUtf8(fs::path(folder / ".").parent_path().filename().string(), kMeshNameMax);
+    LevelMeshes meshes;
+    for (const fs::path& file : RELIEF_TRY(meshFilesOf(folder))) {
+        TriangleMesh mesh = RELIEF_TRY(importMeshInWorker(file, options, limits));
+        limits.triangles -= std::min(limits.triangles - 1, std::uint64_t{mesh.triangles.size()});
+        if (!level.bodies.empty() && mesh.unit != level.unit) {
+            return invalidInput(quotedPath(file) + (mesh.unit.empty() ? " has no unit" : " has a unit") +
+                                ", unlike earlier files; give --unit");
+        }
+        level.unit = mesh.unit;
+        append(level.dependencies, std::exchange(mesh.dependencies, {}));
+        append(level.dependency_hashes, std::exchange(mesh.dependency_hashes, {}));
+        append(level.warnings, std::exchange(mesh.warnings, {}));
+        LevelBody body;
+        body.node = mesh.name;
+        mesh.name = cleanUtf8(file.stem().string(), kMeshNameMax);
+        body.mesh = meshes.add(std::move(mesh), options.materials);
+        level.bodies.push_back(std::move(body));
+    }
+    level.meshes = meshes.take();
+    return level;
+}
+
 }  // namespace
 
 Result<TriangleMesh> importMeshInWorker(const fs::path& path, const ImportOptions& options,
                                         const ImportLimits& limits) {
-    return Import(path, options, limits).mesh();
+    ImportSource source = RELIEF_TRY(ImportSource::open(path));
+    TriangleMesh raw = RELIEF_TRY(MeshWorker(path, options, limits).read(source, ImportKind::kMesh));
+    return source.finish(std::move(raw), options.names.size());
 }
 
 Result<Level> importLevelInWorker(const fs::path& path, const ImportOptions& options,
                                   const ImportLimits& limits) {
-    return Import(path, options, limits).level();
+    ImportSource source = RELIEF_TRY(ImportSource::open(path));
+    TriangleMesh raw = RELIEF_TRY(MeshWorker(path, options, limits).read(source, ImportKind::kLevel));
+    return source.finishLevel(std::move(raw), options.names.size(), options.materials);
 }
 
 Result<AnimatedImport> importAnimatedFileInWorker(const fs::path& path, ImportKind kind,
                                                   const ImportOptions& options, const ImportLimits& limits) {
-    return Import(path, options, limits).animated(kind);
+    ImportSource source = RELIEF_TRY(ImportSource::open(path));
+    TriangleMesh raw = RELIEF_TRY(MeshWorker(path, options, limits).read(source, kind));
+    return source.finishAnimated(std::move(raw), kind);
+}
+
+Result<Level> importLevel(const fs::path& path, const ImportOptions& options, const ImportLimits& limits) {
+    std::error_code error;
+    return fs::is_directory(path, error) ? importFolder(path, options, limits)
+                                         : importLevelInWorker(path, options, limits);
 }
 
 }  // namespace relief

@@ -8,6 +8,8 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "formats/base/hash.h"
 #include "formats/base/text.h"
@@ -26,8 +28,7 @@ bool isPose(const LevelBody& body) {
     }
     // Written to reject NaN.
     return std::abs(square - 1.0) <= kUnitTolerance && body.scale > 0.0 && body.scale <= kPoseMax &&
-           std::all_of(body.position.begin(), body.position.end(),
-                       [](double x) { return std::abs(x) <= kPoseMax; });
+           std::ranges::all_of(body.position, [](double x) { return std::abs(x) <= kPoseMax; });
 }
 
 bool fits(const TriangleMesh& all) {
@@ -41,7 +42,7 @@ bool fits(const TriangleMesh& all) {
         triangles += mesh.triangles;
     }
     return positions == all.positions.size() && triangles == all.triangles.size() &&
-           std::all_of(all.level_bodies.begin(), all.level_bodies.end(), [&](const LevelBody& body) {
+           std::ranges::all_of(all.level_bodies, [&](const LevelBody& body) {
                return body.mesh < all.level_meshes.size() && isPose(body);
            });
 }
@@ -72,12 +73,11 @@ void takeLabels(const TriangleMesh& all, std::size_t first, TriangleMesh& mesh) 
 
 /// Whether finishMesh would find a triangle with area, or a fault.
 bool hasAreaOrFault(const TriangleMesh& mesh) {
-    return std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&mesh](const glm::uvec3& t) {
+    return std::ranges::any_of(mesh.triangles, [&mesh](const glm::uvec3& t) {
         return std::max({t.x, t.y, t.z}) >= mesh.positions.size() || hasArea(planeOf(mesh.positions, t));
     });
 }
 
-/// XXH3-128 of positions and triangles.
 std::string hashOf(const TriangleMesh& mesh) {
     std::vector<std::byte> bytes;
     const auto add = [&bytes](const auto& all) {
@@ -186,7 +186,7 @@ Result<Level> cutLevel(TriangleMesh all, bool materials) {
     if (level.bodies.empty()) {
         return invalidInput("it has no mesh with an area; export it again");
     }
-    if (std::find(placed.begin(), placed.end(), false) != placed.end()) {
+    if (std::ranges::find(placed, false) != placed.end()) {
         return invalidInput("the importer returned a mesh that nothing places; export it again");
     }
     return level;

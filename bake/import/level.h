@@ -60,6 +60,14 @@ class LevelMeshes {
                                                 const ImportOptions& options = {},
                                                 const ImportLimits& limits = {});
 
+/// Imports a file as importLevelInWorker() does. In a folder, imports each mesh file, sorted by name, as one mesh at
+/// its own coordinates; skips other files and subfolders.
+/// \param path  a file or a folder.
+/// Errors: those of importLevelInWorker; for a folder also kUsage (names), kInvalidInput (no mesh file, or only some
+/// with a unit), kLimit.
+[[nodiscard]] Result<Level> importLevel(const std::filesystem::path& path, const ImportOptions& options = {},
+                                        const ImportLimits& limits = {});
+
 /// Splits a level into its meshes, finishes them, and merges equal ones. Skips meshes without area and their bodies,
 /// with a warning.
 /// \param all        with name and hash; its lists of meshes and bodies are untrusted.

@@ -5,19 +5,15 @@
 
 #include <cstring>
 #include <optional>
-#include <vector>
 
 #include "bake/import/import_files.h"
 #include "bake/import/import_format.h"
 #include "bake/import/import_readers.h"
 #include "bake/import/import_scene.h"
 #include "bake/import/import_source.h"
-#include "bake/import/scene_flattener.h"
-#include "bake/import/scene_polygons.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
-#include "formats/polygons/obj_mesh.h"
-#include "formats/polygons/ply_mesh.h"
+#include "formats/polygons/polygon_mesh.h"
 
 namespace relief {
 namespace {

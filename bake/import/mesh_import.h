@@ -6,7 +6,6 @@
 #include <filesystem>
 
 #include "bake/import/import_job.h"
-#include "bake/import/import_units.h"
 #include "bake/mesh/mesh.h"
 #include "formats/base/result.h"
 
@@ -24,7 +23,7 @@ namespace relief {
 /// Reads a mesh file in this process, which a hostile file may crash; defined in the library bake_assimp.
 ///
 /// Applies node transforms, repeats instances, triangulates polygons, skips points and lines with a warning
-/// (scene_polygons.h), and reverses the winding under mirrors. Ignores cameras, animation, and materials except their
+/// (import_scene.h), and reverses the winding under mirrors. Ignores cameras, animation, and materials except their
 /// names. Skinned glTF meshes get the pose of the file's nodes; skinned meshes of other formats and morphed meshes keep
 /// their modelled shape, with a warning. Reads only regular files below the mesh's folder (import_files.h).
 /// Errors, each naming the file: kIo (missing, a folder, not readable), kUnsupported (format or feature), kInvalidInput

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/import/png_rows.h"
+#include "bake/import/image_rows.h"
 
 #include <png.h>
 
-#include <algorithm>
 #include <array>
 #include <cstring>
 #include <limits>
@@ -146,6 +145,10 @@ Result<std::unique_ptr<SampleRows>> openPngRows(std::span<const std::byte> bytes
     auto rows = std::make_unique<PngRows>(bytes);
     RELIEF_TRY(rows->open());
     return std::unique_ptr<SampleRows>(std::move(rows));
+}
+
+Result<std::unique_ptr<SampleRows>> openImageRows(std::span<const std::byte> bytes) {
+    return isPng(bytes) ? openPngRows(bytes) : openExrRows(bytes);
 }
 
 }  // namespace relief

@@ -101,11 +101,10 @@ void PolygonCutter::cutQuad(std::span<const glm::vec3> corners) {
     start %= 4;
     const auto flat = [&](std::uint32_t s) {
         triangles_ = {{s, (s + 1) % 4, (s + 2) % 4}, {s, (s + 2) % 4, (s + 3) % 4}};
-        return std::count_if(triangles_.begin(), triangles_.end(), [&](const glm::uvec3& t) {
+        return std::ranges::count_if(triangles_, [&](const glm::uvec3& t) {
             return !hasArea(planeOf(corners[t.x], corners[t.y], corners[t.z]));
         });
     };
-    // Use the other diagonal only if it is better.
     if (const auto before = flat(start); before > 0 && flat((start + 1) % 4) >= before) {
         flat(start);
     }
@@ -129,8 +128,8 @@ void PolygonCutter::cutEars(Test test) {
             reflexes_.push_back(i);
         }
     }
-    std::sort(reflexes_.begin(), reflexes_.end(),
-              [&](std::uint32_t a, std::uint32_t b) { return points_[a].x < points_[b].x; });
+    std::ranges::sort(reflexes_,
+                      [&](std::uint32_t a, std::uint32_t b) { return points_[a].x < points_[b].x; });
     sorted_ = reflexes_.size();
     std::uint32_t corner = 0;
     std::uint32_t tried = 0;
@@ -201,7 +200,7 @@ bool PolygonCutter::isRoundedEar(std::uint32_t corner) const {
     const double rl = product(right, left);
     const double ll = product(left, left);
     const double scale = 1.0 / (rr * ll - rl * rl);
-    return std::none_of(points_.begin(), points_.end(), [&](const glm::dvec2& point) {
+    return std::ranges::none_of(points_, [&](const glm::dvec2& point) {
         if (point == a || point == b || point == c) {
             return false;
         }
@@ -256,10 +255,9 @@ std::uint32_t PolygonCutter::largestCorner(std::uint32_t start) const {
 }
 
 std::size_t PolygonCutter::wrongTriangles(std::span<const glm::vec3> corners) const {
-    return static_cast<std::size_t>(
-        std::count_if(triangles_.begin(), triangles_.end(), [&](const glm::uvec3& t) {
-            return area(t.x, t.y, t.z) < 0.0 || !hasArea(planeOf(corners[t.x], corners[t.y], corners[t.z]));
-        }));
+    return static_cast<std::size_t>(std::ranges::count_if(triangles_, [&](const glm::uvec3& t) {
+        return area(t.x, t.y, t.z) < 0.0 || !hasArea(planeOf(corners[t.x], corners[t.y], corners[t.z]));
+    }));
 }
 
 void TriangleStarts::turn(std::span<glm::uvec3> polygon) {

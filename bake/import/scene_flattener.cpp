@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/import/scene_flattener.h"
 
 #include <algorithm>
 #include <array>
@@ -7,13 +6,12 @@
 #include <glm/matrix.hpp>
 #include <map>
 #include <set>
-#include <span>
 #include <string_view>
 #include <tuple>
 #include <utility>
 
+#include "bake/import/import_scene.h"
 #include "bake/import/level.h"
-#include "bake/import/scene_polygons.h"
 #include "formats/base/text.h"
 
 namespace relief {
@@ -33,7 +31,6 @@ bool isPlaced(const glm::dvec3& offset, double scale) {
 /// Collects the names of a file's triangles, and marks triangles that --as selects.
 class NameMarks {
   public:
-    /// Borrows the job.
     explicit NameMarks(const ImportJob& job) : job_(job) {
         for (std::size_t i = 0; i < std::min(job.options.names.size(), kAskedNamesMax); ++i) {
             marks_[job.options.names[i]] = static_cast<std::uint8_t>(i + 1);
@@ -65,9 +62,8 @@ class NameMarks {
     /// Checks that every selected name was found. Errors: kUsage, with the existing names.
     [[nodiscard]] Result<void> checkAllFound() const {
         const std::vector<std::string>& asked = job_.options.names;
-        const auto unmet = std::find_if(asked.begin(), asked.end(), [&](const std::string& name) {
-            return !found_.contains(marks_.at(name));
-        });
+        const auto unmet = std::ranges::find_if(
+            asked, [&](const std::string& name) { return !found_.contains(marks_.at(name)); });
         if (unmet == asked.end()) {
             return {};
         }

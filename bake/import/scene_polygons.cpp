@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/import/scene_polygons.h"
+#include "bake/import/import_scene.h"
 
 #include <algorithm>
 #include <map>
@@ -39,8 +39,7 @@ class PolygonRuns {
     PolygonRuns(const PolygonMesh& polygons, bool apart)
         : polygons_(polygons),
           apart_(apart),
-          has_polygons_(std::any_of(polygons.sizes.begin(), polygons.sizes.end(),
-                                    [](std::uint32_t size) { return size > 3; })) {}
+          has_polygons_(std::ranges::any_of(polygons.sizes, [](std::uint32_t size) { return size > 3; })) {}
 
     /// Triangulates the next polygons. \param end  end index. \param other  they belong to another surface than the
     /// previous run.

@@ -2,6 +2,7 @@
 #include "bake/import/source_marks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <map>
@@ -14,6 +15,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
+constexpr std::size_t kQuotedMax = 40;  // limit for quotes from the file, in bytes
 constexpr std::string_view kLodGroup = "LodGroup";
 static_assert(kLodGroupMark.size() == kLodGroup.size());
 
@@ -133,7 +135,6 @@ bool markLodGroups(std::string& text) {
     return any;
 }
 
-/// Reads the nodes that the scene shows.
 class ColladaReader {
   public:
     explicit ColladaReader(std::span<const std::byte> document) : text_(textOf(document)) {
@@ -282,42 +283,60 @@ class ColladaReader {
     std::uint64_t missing_ = 0;
 };
 
-/// Reads the chunks of a 3DS file.
-class HiddenOf3ds {
-  public:
-    /// \param text    the chunks inside a chunk `parent`.
-    /// \param object  name of the object that they describe.
-    void read(std::string_view text, std::uint16_t parent = 0, const std::string& object = "") {
-        constexpr std::size_t kHeader = 6;
-        while (text.size() >= kHeader) {
-            std::uint16_t id = 0;
-            std::memcpy(&id, text.data(), sizeof(id));
-            const std::size_t size = lengthAt(text, sizeof(id));
-            if (size < kHeader || size > text.size()) {
-                return;
-            }
-            const std::string_view inside = text.substr(kHeader, size - kHeader);
-            text.remove_prefix(size);
-            if ((parent == 0 && id == kMain) || (parent == kMain && id == kEditor)) {
-                read(inside, id);
-            } else if (parent == kEditor && id == kObject) {
-                const std::string name(inside.substr(0, inside.find('\0')));
-                read(inside.substr(std::min(inside.size(), name.size() + 1)), id, name);
-            } else if (parent == kObject && id == kHidden) {
-                hidden_.insert(object);
-            }
+/// Collects the hidden objects of a 3DS file.
+/// \param text    the chunks inside a chunk `parent`.
+/// \param object  name of the object that they describe.
+void addHidden3ds(std::string_view text, std::uint16_t parent, const std::string& object,
+                  std::set<std::string>& hidden) {
+    constexpr std::size_t kHeader = 6;
+    constexpr std::uint16_t kMain = 0x4D4D;
+    constexpr std::uint16_t kEditor = 0x3D3D;
+    constexpr std::uint16_t kObject = 0x4000;
+    constexpr std::uint16_t kHidden = 0x4010;
+    while (text.size() >= kHeader) {
+        std::uint16_t id = 0;
+        std::memcpy(&id, text.data(), sizeof(id));
+        const std::size_t size = lengthAt(text, sizeof(id));
+        if (size < kHeader || size > text.size()) {
+            return;
+        }
+        const std::string_view inside = text.substr(kHeader, size - kHeader);
+        text.remove_prefix(size);
+        if ((parent == 0 && id == kMain) || (parent == kMain && id == kEditor)) {
+            addHidden3ds(inside, id, "", hidden);
+        } else if (parent == kEditor && id == kObject) {
+            const std::string name(inside.substr(0, inside.find('\0')));
+            addHidden3ds(inside.substr(std::min(inside.size(), name.size() + 1)), id, name, hidden);
+        } else if (parent == kObject && id == kHidden) {
+            hidden.insert(object);
         }
     }
-    [[nodiscard]] std::set<std::string> take() { return std::move(hidden_); }
+}
 
-  private:
-    static constexpr std::uint16_t kMain = 0x4D4D;
-    static constexpr std::uint16_t kEditor = 0x3D3D;
-    static constexpr std::uint16_t kObject = 0x4000;
-    static constexpr std::uint16_t kHidden = 0x4010;
+/// Parses the whole text, ignoring surrounding white space, as a finite number.
+std::optional<double> finiteNumber(std::string_view text) {
+    const std::string_view word = takeWord(text);
+    const std::optional<double> value = takeWord(text).empty() ? parseDouble(word) : std::nullopt;
+    return value && std::isfinite(*value) ? value : std::nullopt;
+}
 
-    std::set<std::string> hidden_;
-};
+/// Reads the type letter and the number of a property in a binary FBX document.
+FbxUnit binaryUnit(std::string_view text) {
+    const auto load = [&text](auto value) {
+        if (text.size() > sizeof(value)) {
+            std::memcpy(&value, text.data() + 1, sizeof(value));
+        }
+        return value;
+    };
+    const char type = text.empty() ? '\0' : text[0];
+    const double value = type == 'D'   ? load(std::nan(""))
+                         : type == 'F' ? static_cast<double>(load(0.0F))
+                         : type == 'I' ? static_cast<double>(load(std::int32_t{0}))
+                         : type == 'Y' ? static_cast<double>(load(std::int16_t{0}))
+                         : type == 'L' ? static_cast<double>(load(std::int64_t{0}))
+                                       : std::nan("");
+    return {shortest(static_cast<float>(value)), std::isfinite(value) ? std::optional(value) : std::nullopt};
+}
 
 }  // namespace
 
@@ -343,9 +362,58 @@ Result<ColladaNodes> readColladaNodes(std::span<const std::byte> document) {
 }
 
 std::set<std::string> hiddenObjectsOf3ds(std::span<const std::byte> document) {
-    HiddenOf3ds reader;
-    reader.read(textOf(document));
-    return reader.take();
+    std::set<std::string> hidden;
+    addHidden3ds(textOf(document), 0, "", hidden);
+    return hidden;
+}
+
+std::optional<FbxUnit> fbxUnit(std::span<const std::byte> document) {
+    const std::string_view text = textOf(document);
+    const std::string name = quoted(text, "UnitScaleFactor");
+    const std::size_t at = text.find(name);
+    if (at == std::string_view::npos) {
+        return std::nullopt;
+    }
+    // The value follows the strings type, label and flags; older text files have no label.
+    std::size_t value = at + name.size();
+    for (int i = 0; i < 3; ++i) {
+        const auto string = stringAfter(text, value);
+        value = string ? endOf(text, *string) : value;
+    }
+    std::string_view rest = text.substr(value);
+    if (isBinary(text)) {
+        return binaryUnit(rest);
+    }
+    rest = takeLine(rest);
+    rest.remove_prefix(std::min(rest.find_first_not_of(", \t"), rest.size()));
+    return FbxUnit{cleanUtf8(trimmed(rest).substr(0, kQuotedMax)), finiteNumber(rest)};
+}
+
+SourceFrame colladaFrame(std::span<const std::byte> document) {
+    SourceFrame frame{1.0, UpAxis::kPlusY};
+    pugi::xml_document xml;
+    xml.load_buffer(document.data(), document.size());
+    const pugi::xml_node asset = xml.child("COLLADA").child("asset");
+    const std::string meter = asset.child("unit").attribute("meter").as_string("1");
+    // Some locales write a comma; assimp reads it as a point.
+    std::string point = meter;
+    std::replace(point.begin(), point.end(), ',', '.');
+    frame.metres = finiteNumber(point);
+    if (!frame.metres || !(*frame.metres > 0.0)) {
+        frame.metres.reset();
+        frame.unit_fault = "its unit is '" + cleanUtf8(std::string_view(meter).substr(0, kQuotedMax)) +
+                           "' metres, which is not a length";
+    }
+    std::string_view rest = asset.child("up_axis").child_value();
+    const std::string_view axis = takeWord(rest);
+    if (axis == "X_UP" || axis == "Z_UP") {
+        frame.up = axis == "X_UP" ? UpAxis::kPlusX : UpAxis::kPlusZ;
+    } else if (!axis.empty() && axis != "Y_UP") {
+        frame.up.reset();
+        frame.up_fault =
+            "its up_axis '" + cleanUtf8(axis.substr(0, kQuotedMax)) + "' is not an axis of COLLADA";
+    }
+    return frame;
 }
 
 }  // namespace relief

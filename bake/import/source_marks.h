@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads properties that assimp drops: hidden nodes, levels of detail, and references to missing objects.
+// Reads properties that assimp drops or misreads: units, axes, hidden nodes, levels of detail, and references to
+// missing objects.
 #pragma once
 
 #include <cstddef>
@@ -11,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bake/import/import_job.h"
 #include "formats/base/result.h"
 
 namespace relief {
@@ -25,6 +27,17 @@ inline constexpr std::string_view kLodGroupMark = "\x02LodGrp\x02";
 
 /// Whether curves animate the visibility of nodes in an FBX document.
 [[nodiscard]] bool fbxAnimatesVisibility(std::span<const std::byte> document);
+
+/// The UnitScaleFactor of an FBX file, binary or text, of any numeric type.
+struct FbxUnit {
+    std::string text;             ///< as stored in the file
+    std::optional<double> value;  ///< nullopt if it is not a finite number
+};
+/// Reads the unit. \return nullopt if there is none.
+[[nodiscard]] std::optional<FbxUnit> fbxUnit(std::span<const std::byte> document);
+
+/// Reads the <asset> element of a COLLADA document in any encoding. Defaults: metres and +Y.
+[[nodiscard]] SourceFrame colladaFrame(std::span<const std::byte> document);
 
 struct ColladaNode {
     std::string name;     ///< the id, else the sid, as assimp names nodes; may be empty

@@ -16,21 +16,18 @@
 namespace relief {
 namespace {
 
-/// Number of samples on the source's surface.
 constexpr std::size_t kSamples = 400'000;
 /// Maximum distance between a contact and its mesh point, in local texels.
 constexpr double kReach = 1.5;
 /// Precision of a contact's position, relative to that distance.
 constexpr double kNear = 0.03;
 
-/// A point of the source.
 struct SurfacePoint {
     glm::dvec3 at;
     glm::dvec3 normal;  ///< unit length
     std::uint32_t triangle = 0;
 };
 
-/// Points spread evenly over the area.
 class SurfacePoints {
   public:
     explicit SurfacePoints(const MaterialSource& source) : source_(source) {

@@ -6,6 +6,8 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "bake/mesh/mesh.h"
+#include "formats/base/result.h"
 #include "formats/materials.h"
 
 namespace relief {
@@ -22,5 +24,11 @@ struct MaterialSource {
 
     [[nodiscard]] bool empty() const { return list.empty(); }
 };
+
+/// Returns the materials of an imported mesh, merged by name; none if all have the same name.
+/// \param mesh    its labels are still the source's.
+/// \param single  keeps a single material, too, if it has a name.
+/// Errors, naming the mesh: kLimit (more than kMaterialsMax), kInvalidInput (one name with two responses).
+[[nodiscard]] Result<MaterialSource> materialSource(const TriangleMesh& mesh, bool single);
 
 }  // namespace relief

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <limits>
-#include <map>
 #include <optional>
 #include <queue>
 #include <tuple>
@@ -91,7 +90,6 @@ struct Fit {
     std::size_t wrong = 0;    ///< weight of wrong samples
 };
 
-/// A cell, with the triangles and samples near it.
 struct Cell {
     glm::dvec3 center{0.0};
     int depth = 0;
@@ -113,7 +111,6 @@ class TreeBuilder {
     }
 
     Materials build() {
-        margin_ = kMargin * options_.texel;
         result_.size = static_cast<float>(double{options_.box.longestSide()} + 4.0 * options_.texel);
         const double size = double{result_.size};
         result_.origin = glm::vec3(glm::dvec3(options_.box.center()) - 0.5 * size);
@@ -124,8 +121,9 @@ class TreeBuilder {
         root.center = glm::dvec3(result_.origin) + 0.5 * size;
         prepare(root);
         if (const std::optional<std::uint8_t> only = singleOf(root.faces); only || root.faces.empty()) {
-            keepOnly(only.value_or(0));
-            return std::move(result_);
+            Materials single;  // a tile
+            single.list = {source_.list[only.value_or(0)]};
+            return single;
         }
         held_ = root.faces.size();
         cells_.push_back(std::move(root));
@@ -161,12 +159,12 @@ class TreeBuilder {
         for (std::size_t i = 0; i < source_.triangles.size(); ++i) {
             const glm::uvec3& t = source_.triangles[i];
             // A tile's tree needs only faces in the tile.
-            const glm::vec3 low =
-                glm::min(glm::min(source_.positions[t.x], source_.positions[t.y]), source_.positions[t.z]);
-            const glm::vec3 high =
-                glm::max(glm::max(source_.positions[t.x], source_.positions[t.y]), source_.positions[t.z]);
-            if (glm::any(glm::greaterThan(glm::dvec3(low), root.center + half)) ||
-                glm::any(glm::lessThan(glm::dvec3(high), root.center - half))) {
+            Bounds box;
+            for (int k = 0; k < 3; ++k) {
+                box.add(source_.positions[t[k]]);
+            }
+            if (glm::any(glm::greaterThan(glm::dvec3(box.min), root.center + half)) ||
+                glm::any(glm::lessThan(glm::dvec3(box.max), root.center - half))) {
                 continue;
             }
             const Face face{{glm::dvec3(source_.positions[t.x]), glm::dvec3(source_.positions[t.y]),
@@ -181,13 +179,6 @@ class TreeBuilder {
         for (std::size_t i = 0; i < samples_.size(); ++i) {
             root.samples.push_back(static_cast<std::uint32_t>(i));
         }
-    }
-
-    /// Handles a tile whose surface has a single material.
-    void keepOnly(std::uint8_t id) {
-        result_.list = {source_.list[id]};
-        result_.origin = glm::vec3(0.0F);
-        result_.size = 0.0F;
     }
 
     /// \param pairs  pairs of sides.
@@ -205,8 +196,7 @@ class TreeBuilder {
             return std::nullopt;
         }
         const std::uint8_t first = ids_[faces.front()];
-        return std::all_of(faces.begin(), faces.end(),
-                           [&](std::uint32_t face) { return ids_[face] == first; })
+        return std::ranges::all_of(faces, [&](std::uint32_t face) { return ids_[face] == first; })
                    ? std::optional(first)
                    : std::nullopt;
     }
@@ -219,7 +209,7 @@ class TreeBuilder {
     [[nodiscard]] std::optional<MaterialSides> sidesOf(const std::vector<std::uint32_t>& faces) const {
         for (int axis = 0; axis < kMaterialAxes && source_.sides; ++axis) {
             std::array<int, 2> ids{-1, -1};  // of faces along the axis, and against it
-            const bool apart = std::all_of(faces.begin(), faces.end(), [&](std::uint32_t face) {
+            const bool apart = std::ranges::all_of(faces, [&](std::uint32_t face) {
                 const double share = along(faces_[face].normal, axis);
                 int& id = ids[share < 0.0 ? 1 : 0];
                 id = id < 0 ? ids_[face] : id;
@@ -247,7 +237,7 @@ class TreeBuilder {
 
     /// Returns the most frequent index (the first of equals), and the total of all other counts.
     static std::pair<std::uint8_t, std::size_t> most(const std::vector<std::size_t>& counts) {
-        const auto found = std::max_element(counts.begin(), counts.end());
+        const auto found = std::ranges::max_element(counts);
         std::size_t all = 0;
         for (const std::size_t count : counts) {
             all += count;
@@ -358,7 +348,7 @@ class TreeBuilder {
         if (!fit.sides) {
             return fit.single;
         }
-        const auto found = std::find(result_.sides.begin(), result_.sides.end(), *fit.sides);
+        const auto found = std::ranges::find(result_.sides, *fit.sides);
         const auto index = static_cast<std::size_t>(found - result_.sides.begin());
         if (found == result_.sides.end()) {
             if (result_.list.size() + result_.sides.size() > kMaterialSidesMax) {
@@ -451,7 +441,7 @@ class TreeBuilder {
             for (const std::uint32_t octant : cells_[node].octants) {
                 const Cell& cell = cells_[octant];
                 if (!cell.kept && cell.fit.sides &&
-                    std::find(pairs.begin(), pairs.end(), *cell.fit.sides) == pairs.end()) {
+                    std::ranges::find(pairs, *cell.fit.sides) == pairs.end()) {
                     pairs.push_back(*cell.fit.sides);
                 }
             }
@@ -487,82 +477,11 @@ class TreeBuilder {
     std::size_t held_ = 0;           // faces in cells that may still be split
     std::vector<Cell> cells_;
     std::priority_queue<std::pair<std::size_t, std::uint32_t>> open_;  // wrong samples, and ~ the cell
-    double margin_ = 0.0;
+    double margin_ = kMargin * options_.texel;
     int levels_ = 1;
 };
 
-double areaOf(const TriangleMesh& mesh, std::uint32_t triangle) {
-    return 0.5 * length(planeOf(mesh, triangle).normal);
-}
-
-/// Returns the index of a material by name; the name is new or has the same response as before.
-Result<std::size_t> idOf(const SurfaceName& name, const TriangleMesh& mesh,
-                         std::map<std::string, std::size_t>& known, std::vector<Material>& list) {
-    const auto [found, added] = known.try_emplace(name.material, list.size());
-    if (added) {
-        list.push_back({name.material, name.restitution, name.friction});
-    }
-    const Material& one = list[found->second];
-    if (one.restitution != name.restitution || one.friction != name.friction) {
-        return invalidInput(mesh.name + ": its material '" + name.material + "' has restitution " +
-                            shortest(one.restitution) + " and friction " + shortest(one.friction) +
-                            " in one place, and " + shortest(name.restitution) + " and " +
-                            shortest(name.friction) + " at '" + name.node +
-                            "'; give them different names, or bake with --materials drop");
-    }
-    return found->second;
-}
-
 }  // namespace
-
-Result<MaterialSource> materialSource(const TriangleMesh& mesh, bool single) {
-    const bool one_surface = mesh.labels.empty();
-    if (one_surface && (!single || mesh.surface_names.empty())) {
-        return MaterialSource();
-    }
-    std::vector<double> area(mesh.surface_names.size(), 0.0);
-    double whole = 0.0;
-    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-        const std::uint32_t label = one_surface ? 0 : mesh.labels[i];
-        if (label < area.size()) {
-            const double its = areaOf(mesh, i);
-            area[label] += its;
-            whole += its;
-        }
-    }
-    MaterialSource source;
-    std::map<std::string, std::size_t> known;
-    std::vector<std::size_t> id_of_label(area.size(), 0);
-    std::vector<double> shares;
-    for (std::size_t label = 0; label < area.size(); ++label) {
-        if (area[label] > 0.0) {
-            id_of_label[label] = RELIEF_TRY(idOf(mesh.surface_names[label], mesh, known, source.list));
-            shares.resize(source.list.size(), 0.0);
-            shares[id_of_label[label]] += area[label] / whole;
-        }
-    }
-    if (source.list.size() < 2 && !(single && source.list.size() == 1 && !source.list[0].name.empty())) {
-        return MaterialSource();
-    }
-    if (source.list.size() > kMaterialsMax) {
-        return fail(ErrorCode::kLimit, mesh.name + ": it has " + std::to_string(source.list.size()) +
-                                           " materials, but a collider stores at most " +
-                                           std::to_string(kMaterialsMax) +
-                                           "; merge some, or bake with --materials drop");
-    }
-    for (std::size_t i = 0; i < shares.size(); ++i) {
-        source.list[i].area_fraction = static_cast<float>(std::min(shares[i], 1.0));
-    }
-    source.positions = mesh.positions;
-    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-        const std::uint32_t label = one_surface ? 0 : mesh.labels[i];
-        if (label < area.size()) {
-            source.triangles.push_back(mesh.triangles[i]);
-            source.ids.push_back(static_cast<std::uint8_t>(id_of_label[label]));
-        }
-    }
-    return source;
-}
 
 Materials materialsFor(const Collider& collider, const MaterialSource* source) {
     if (source == nullptr) {

@@ -6,8 +6,6 @@
 #include <cstddef>
 
 #include "bake/materials/material_source.h"
-#include "bake/mesh/mesh.h"
-#include "formats/base/result.h"
 #include "formats/collider.h"
 #include "formats/materials.h"
 
@@ -17,12 +15,6 @@ namespace relief {
 inline constexpr double kMaterialsShare = 0.06;
 /// Minimum allowance for a small collider: patches of flat surfaces use few bytes, regardless of their materials.
 inline constexpr std::size_t kMaterialsBytesMin = 4096;
-
-/// Returns the materials of an imported mesh, merged by name; none if all have the same name.
-/// \param mesh    its labels are still the source's.
-/// \param single  keeps a single material, too, if it has a name.
-/// Errors, naming the mesh: kLimit (more than kMaterialsMax), kInvalidInput (one name with two responses).
-[[nodiscard]] Result<MaterialSource> materialSource(const TriangleMesh& mesh, bool single);
 
 /// Builds the materials of a collider within kMaterialsShare of its maps' bytes or kMaterialsBytesMin; none if `source`
 /// is null. If the budget does not suffice, minimizes the area with a wrong material. The result does not depend on the

@@ -8,31 +8,17 @@
 namespace relief {
 namespace {
 
-const char* errorWords(RTCError error) {
-    switch (error) {
-        case RTC_ERROR_NONE:
-            return "no error";
-        case RTC_ERROR_INVALID_ARGUMENT:
-            return "invalid argument";
-        case RTC_ERROR_INVALID_OPERATION:
-            return "invalid operation";
-        case RTC_ERROR_OUT_OF_MEMORY:
-            return "out of memory";
-        case RTC_ERROR_UNSUPPORTED_CPU:
-            return "this processor is not supported";
-        case RTC_ERROR_CANCELLED:
-            return "cancelled";
-        default:
-            return "unknown error";
-    }
-}
-
 tl::unexpected<Error> embreeError(RTCError error, const std::string& what) {
-    if (error == RTC_ERROR_OUT_OF_MEMORY) {
-        return fail(ErrorCode::kLimit, what + ": the ray tracer is out of memory; simplify the mesh");
+    switch (error) {
+        case RTC_ERROR_OUT_OF_MEMORY:
+            return fail(ErrorCode::kLimit, what + ": the ray tracer is out of memory; simplify the mesh");
+        case RTC_ERROR_UNSUPPORTED_CPU:
+            return fail(ErrorCode::kUnsupported,
+                        what + ": the ray tracer reports: this processor is not supported");
+        default:
+            return fail(ErrorCode::kFailure,
+                        what + ": the ray tracer reports: error " + std::to_string(static_cast<int>(error)));
     }
-    const ErrorCode code = error == RTC_ERROR_UNSUPPORTED_CPU ? ErrorCode::kUnsupported : ErrorCode::kFailure;
-    return fail(code, what + ": the ray tracer reports: " + errorWords(error));
 }
 
 /// Returns the device that all live meshes share. A device uses one of a process's thousand thread-local keys, and a

@@ -107,10 +107,8 @@ struct TriangleMesh {
 void keepTriangles(TriangleMesh& mesh, std::size_t count);
 /// Clears the labels if there is only one surface, and clears its name if the material is unnamed.
 void dropSingleLabel(TriangleMesh& mesh);
-/// Copies a triangle with its mark and label.
 void moveTriangle(TriangleMesh& mesh, std::size_t from, std::size_t to);
 
-/// Extends a box by another box.
 inline void addBounds(Bounds& bounds, const Bounds& other) {
     bounds.add(other.min);
     bounds.add(other.max);
@@ -123,7 +121,6 @@ inline void addBounds(Bounds& bounds, const Bounds& other) {
     return {mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]};
 }
 
-/// Extends a box by a triangle.
 inline void addTriangle(Bounds& bounds, const TriangleMesh& mesh, std::uint32_t triangle) {
     for (const glm::vec3& corner : cornersOf(mesh, triangle)) {
         bounds.add(corner);
@@ -138,5 +135,14 @@ inline void addTriangle(Bounds& bounds, const TriangleMesh& mesh, std::uint32_t 
 [[nodiscard]] inline glm::dvec3 unitNormal(const TriangleMesh& mesh, std::uint32_t triangle) {
     return unit(planeOf(mesh, triangle).normal);
 }
+
+/// Mean number of triangle boxes on a line through the mesh's box: about the number of triangles tested per ray.
+/// Typical models have 2 to 15, forty layers of walls 70, and a fan of 20,000 long thin triangles 4,000, regardless of
+/// the BVH.
+[[nodiscard]] double boxesOnLine(const TriangleMesh& mesh);
+
+/// Returns the fraction of an ordinary mesh's ray count that is affordable: 1 up to 32 boxes per line, then inversely
+/// proportional, so that the total cost stays constant.
+[[nodiscard]] double affordableRays(const TriangleMesh& mesh);
 
 }  // namespace relief

@@ -104,7 +104,7 @@ struct SortedTriangle {
 
     SortedTriangle() = default;
     SortedTriangle(const glm::uvec3& t, std::uint32_t triangle) : corners{t.x, t.y, t.z}, index(triangle) {
-        std::sort(corners.begin(), corners.end());
+        std::ranges::sort(corners);
     }
     friend auto operator<=>(const SortedTriangle&, const SortedTriangle&) = default;
 };

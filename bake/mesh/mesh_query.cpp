@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "bake/mesh/embree_mesh.h"
-#include "bake/mesh/inside.h"
 #include "bake/mesh/triangle_plane.h"
 
 namespace relief {
@@ -79,6 +78,13 @@ LineSpan inBox(const Bounds& box, const glm::dvec3& p, const glm::dvec3& directi
     return span;
 }
 
+/// Returns the point on a triangle closest to p, in Embree's units.
+glm::dvec3 closestOn(const TriangleMesh& mesh, std::uint32_t triangle, const EmbreeMesh& tree,
+                     const glm::dvec3& p) {
+    const auto [a, b, c] = cornersOf(mesh, triangle);
+    return closestOnTriangle(p, tree.toLocal(a), tree.toLocal(b), tree.toLocal(c));
+}
+
 /// A search for the closest point, in Embree's units.
 struct Search {
     const TriangleMesh& mesh;
@@ -93,9 +99,7 @@ struct Search {
 
     /// Returns true if the triangle is closer than the best so far.
     bool add(std::uint32_t index) {
-        const auto corners = cornersOf(mesh, index);
-        const glm::dvec3 closest = closestOnTriangle(p, tree.toLocal(corners[0]), tree.toLocal(corners[1]),
-                                                     tree.toLocal(corners[2]));
+        const glm::dvec3 closest = closestOn(mesh, index, tree, p);
         const glm::dvec3 offset = closest - p;
         const double squared = dot(offset, offset);
         // Ties go to the lowest index, independent of the order of visits.
@@ -131,11 +135,7 @@ struct OtherSearch {
         if (self->found || self->labels[args->primID] == self->label) {
             return false;
         }
-        const auto corners = cornersOf(self->mesh, args->primID);
-        const glm::dvec3 offset =
-            closestOnTriangle(self->p, self->tree.toLocal(corners[0]), self->tree.toLocal(corners[1]),
-                              self->tree.toLocal(corners[2])) -
-            self->p;
+        const glm::dvec3 offset = closestOn(self->mesh, args->primID, self->tree, self->p) - self->p;
         self->found = dot(offset, offset) <= self->squared;
         args->query->radius = self->found ? 0.0F : args->query->radius;
         return self->found;
@@ -400,8 +400,8 @@ bool MeshQuery::spansInside(const glm::dvec3& p, const glm::dvec3& direction,
     bool inside = false;
     bool odd = false;
     for (const LineHit& hit : hits) {
-        const auto [body, side] = crossingOf(hit, direction);
-        counter.cross(body, side);
+        counter.cross(shells_ || bodies_.empty() ? 0 : bodies_[hit.triangle],
+                      dot(planeOf(mesh(), hit.triangle).normal, direction) < 0.0 ? -1 : 1);
         odd = !odd;
         const bool now = winds ? counter.inside() : odd;
         if (now && !inside) {
@@ -426,11 +426,6 @@ bool MeshQuery::spansInside(const glm::dvec3& p, const glm::dvec3& direction,
         spans.resize(last + 1);
     }
     return true;
-}
-
-MeshQuery::Crossing MeshQuery::crossingOf(const LineHit& hit, const glm::dvec3& direction) const {
-    return {shells_ || bodies_.empty() ? 0 : bodies_[hit.triangle],
-            dot(planeOf(mesh(), hit.triangle).normal, direction) < 0.0 ? -1 : 1};
 }
 
 ClosestPoint MeshQuery::closest(const glm::vec3& p, std::optional<std::uint32_t> hint) const {

@@ -2,6 +2,7 @@
 // Answers point and ray queries on a mesh with Embree: the truth that colliders are measured against.
 #pragma once
 
+#include <array>
 #include <compare>
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -56,6 +57,16 @@ struct BodyCounter {
     void cross(std::uint32_t body, int side);
 };
 
+/// Directions of the rays that classify points as inside or outside. About unit length. Modelled edges and faces are
+/// unlikely to be parallel to them.
+inline constexpr std::array<glm::dvec3, 7> kParityDirections = {{{0.5773, 0.6137, 0.5386},
+                                                                 {-0.7351, 0.3119, 0.6019},
+                                                                 {0.2677, -0.8713, 0.4111},
+                                                                 {0.4637, 0.3511, -0.8135},
+                                                                 {-0.1933, -0.5557, -0.8087},
+                                                                 {0.8819, -0.2749, -0.3829},
+                                                                 {-0.6131, 0.7717, -0.1693}}};
+
 /// Queries are thread-safe and deterministic. Directions may have any length above 0.
 class MeshQuery {
   public:
@@ -65,7 +76,7 @@ class MeshQuery {
     [[nodiscard]] const PreparedMesh& prepared() const { return mesh_; }
     [[nodiscard]] const TriangleMesh& mesh() const { return *mesh_; }
 
-    /// Classifies a point by the majority of seven rays, kParityDirections (inside.h). This is independent of the
+    /// Classifies a point by the majority of seven rays, kParityDirections . This is independent of the
     /// winding and tolerates holes for most points. For PreparedMesh::woundShells the winding number decides, so that
     /// the overlap of two solids is inside. In a union (PreparedMesh::unionOf) each body is tested separately, by two
     /// of three rays. Voids (PreparedMesh::voids) are inside.
@@ -89,7 +100,6 @@ class MeshQuery {
         return shells_ ? 0 : bodies_.empty() ? 1 : bodies_[triangle];
     }
 
-    /// Counts the triangles that a ray from `p` hits.
     [[nodiscard]] unsigned crossings(const glm::vec3& p, const glm::dvec3& direction) const;
 
     /// Finds all triangles on the infinite line through `p`, sorted by position, then index.
@@ -115,13 +125,11 @@ class MeshQuery {
     [[nodiscard]] bool otherWithin(const glm::vec3& p, double radius, std::span<const std::uint8_t> labels,
                                    std::uint8_t label) const;
 
-    /// Signed distance in object units, negative inside.
     [[nodiscard]] double signedDistance(const glm::vec3& p) const;
 
     /// Whether no triangle meets the open segment between two points.
     [[nodiscard]] bool segmentIsFree(const glm::dvec3& from, const glm::dvec3& to) const;
 
-    /// Whether no triangle meets the ray.
     [[nodiscard]] bool rayIsFree(const glm::dvec3& origin, const glm::dvec3& direction) const;
 
     [[nodiscard]] std::optional<FirstHit> firstHit(const glm::dvec3& origin,
@@ -130,14 +138,6 @@ class MeshQuery {
     [[nodiscard]] const EmbreeMesh& tree() const { return *tree_; }
 
   private:
-    /// A crossed body, and 1 if the line leaves it, −1 if the line enters it.
-    struct Crossing {
-        std::uint32_t body;
-        int side;
-        auto operator<=>(const Crossing&) const = default;
-    };
-    [[nodiscard]] Crossing crossingOf(const LineHit& hit, const glm::dvec3& direction) const;
-
     MeshQuery(PreparedMesh mesh, const EmbreeMesh& tree)
         : mesh_(std::move(mesh)), tree_(&tree), shells_(mesh_.woundShells()), bodies_(mesh_.bodies()) {}
 

@@ -2,41 +2,21 @@
 #include "bake/mesh/prepared_mesh.h"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 
 #include "bake/mesh/embree_mesh.h"
 
 namespace relief {
 
-struct PreparedMesh::State {
-    explicit State(TriangleMesh of) : mesh(std::move(of)) {}
+void PreparedMesh::State::computeFromEdges() {
+    const MeshEdges own = edges ? MeshEdges{} : edgesOf(mesh);
+    const MeshEdges& from = edges ? *edges : own;
+    odd_edges = relief::oddEdges(from);
+    several_shells = odd_edges->empty() && isSeveralShells(from);
+}
 
-    TriangleMesh mesh;
-    bool wound_outwards = false;
-    std::vector<bool> turned;
-    std::optional<MeshEdges> edges;
-    std::optional<std::vector<OddEdge>> odd_edges;
-    std::optional<bool> several_shells;
-    std::optional<double> orientation;
-    std::optional<AreaTable> areas;
-    std::optional<EmbreeMesh> tree;
-    std::vector<std::uint32_t> bodies;
-    Voids voids;
-
-    /// Computes everything that depends on the edges. If the edges are not stored, computes them temporarily.
-    void computeFromEdges() {
-        const MeshEdges own = edges ? MeshEdges{} : edgesOf(mesh);
-        const MeshEdges& from = edges ? *edges : own;
-        odd_edges = relief::oddEdges(from);
-        several_shells = odd_edges->empty() && isSeveralShells(from);
-    }
-};
-
-PreparedMesh::PreparedMesh(TriangleMesh mesh) : state_(std::make_shared<State>(std::move(mesh))) {}
-
-const TriangleMesh& PreparedMesh::operator*() const {
-    return state_->mesh;
+PreparedMesh::PreparedMesh(TriangleMesh mesh) : state_(std::make_shared<State>()) {
+    state_->mesh = std::move(mesh);
 }
 
 const MeshEdges& PreparedMesh::edges() const {
@@ -96,9 +76,9 @@ const AreaTable& PreparedMesh::areas() const {
 
 Result<const EmbreeMesh*> PreparedMesh::tree() const {
     if (!state_->tree) {
-        state_->tree = RELIEF_TRY(EmbreeMesh::build(state_->mesh));
+        state_->tree = std::make_shared<EmbreeMesh>(RELIEF_TRY(EmbreeMesh::build(state_->mesh)));
     }
-    return &*state_->tree;
+    return state_->tree.get();
 }
 
 PreparedMesh PreparedMesh::woundOutwards(const std::vector<bool>& turn) && {
@@ -125,10 +105,6 @@ PreparedMesh PreparedMesh::woundOutwards(const std::vector<bool>& turn) && {
     return wound;
 }
 
-const std::vector<bool>& PreparedMesh::turned() const {
-    return state_->turned;
-}
-
 PreparedMesh PreparedMesh::unionOf(TriangleMesh mesh, std::vector<std::uint32_t> bodies) {
     PreparedMesh whole(std::move(mesh));
     whole.state_->wound_outwards = true;
@@ -137,17 +113,9 @@ PreparedMesh PreparedMesh::unionOf(TriangleMesh mesh, std::vector<std::uint32_t>
     return whole;
 }
 
-const std::vector<std::uint32_t>& PreparedMesh::bodies() const {
-    return state_->bodies;
-}
-
 PreparedMesh PreparedMesh::withVoids(Voids voids) && {
     state_->voids = std::move(voids);
     return std::move(*this);
-}
-
-const Voids& PreparedMesh::voids() const {
-    return state_->voids;
 }
 
 PreparedMesh PreparedMesh::capped(TriangleMesh mesh) const {

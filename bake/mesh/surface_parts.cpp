@@ -41,29 +41,27 @@ glm::dvec3 medianOf(const std::vector<SurfacePart>& parts, double area) {
 
 }  // namespace
 
-SurfacePartsBuilder::SurfacePartsBuilder(const TriangleMesh& mesh)
-    : mesh_(mesh), part_of_(mesh.triangles.size(), kNoLabel) {}
-
-void SurfacePartsBuilder::add(const std::vector<std::uint32_t>& triangles, PartKind kind) {
+void SurfaceParts::add(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles, PartKind kind) {
+    part_of.resize(mesh.triangles.size(), kNoLabel);
     std::map<std::uint32_t, std::uint32_t> part_of_label;
     for (const std::uint32_t i : triangles) {
-        const std::uint32_t label = mesh_.labels.empty() ? kNoLabel : mesh_.labels[i];
+        const std::uint32_t label = mesh.labels.empty() ? kNoLabel : mesh.labels[i];
         const auto [found, is_new] =
-            part_of_label.try_emplace(label, static_cast<std::uint32_t>(parts_.size()));
+            part_of_label.try_emplace(label, static_cast<std::uint32_t>(parts.size()));
         if (is_new) {
-            parts_.emplace_back().kind = kind;
-            if (label < mesh_.surface_names.size()) {
-                const SurfaceName& name = mesh_.surface_names[label];
-                parts_.back().node_index = name.node_index;
-                parts_.back().node = name.node;
-                parts_.back().material = name.material;
+            parts.emplace_back().kind = kind;
+            if (label < mesh.surface_names.size()) {
+                const SurfaceName& name = mesh.surface_names[label];
+                parts.back().node_index = name.node_index;
+                parts.back().node = name.node;
+                parts.back().material = name.material;
             }
         }
-        SurfacePart& part = parts_[found->second];
-        addTriangle(part.bounds, mesh_, i);
-        part.area += 0.5 * length(planeOf(mesh_, i).normal);
+        SurfacePart& part = parts[found->second];
+        addTriangle(part.bounds, mesh, i);
+        part.area += 0.5 * length(planeOf(mesh, i).normal);
         ++part.triangles;
-        part_of_[i] = found->second;
+        part_of[i] = found->second;
     }
 }
 

@@ -38,23 +38,9 @@ struct SurfaceParts {
     std::vector<SurfacePart> parts;  ///< ordered by first triangle
     /// Per triangle of the baked solid, its part; kNoLabel for caps over holes.
     std::vector<std::uint32_t> part_of;
-};
 
-/// Builds SurfaceParts from the triangles of a mesh.
-class SurfacePartsBuilder {
-  public:
-    /// Borrows the mesh.
-    explicit SurfacePartsBuilder(const TriangleMesh& mesh);
-    /// Adds a connected piece. Its triangles of each label become a part.
-    void add(const std::vector<std::uint32_t>& triangles, PartKind kind);
-    /// Per triangle of the mesh; kNoLabel if it was not added.
-    [[nodiscard]] const std::vector<std::uint32_t>& partOf() const { return part_of_; }
-    [[nodiscard]] std::vector<SurfacePart>& parts() { return parts_; }
-
-  private:
-    const TriangleMesh& mesh_;
-    std::vector<SurfacePart> parts_;
-    std::vector<std::uint32_t> part_of_;
+    /// Adds a connected piece of a mesh. Its triangles of each label become a part.
+    void add(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles, PartKind kind);
 };
 
 /// Parts so far from the others that the common box is mostly empty: a stray vertex, a forgotten helper object.

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "bake/import/import_fields.h"
+#include "bake/import/import_job.h"
 #include "bake/maps/bake_maps.h"
 #include "bake/repair/repair.h"
 #include "bake/shape/shape.h"

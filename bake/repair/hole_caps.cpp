@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "bake/mesh/inside.h"
 #include "bake/mesh/mesh_edges.h"
+#include "bake/mesh/mesh_query.h"
 #include "bake/mesh/surface_sampler.h"
 #include "bake/mesh/triangle_plane.h"
 
@@ -29,7 +29,6 @@ struct Vote {
     double odd = 0.0;
 
     [[nodiscard]] bool inside() const { return odd > 0.5; }
-    /// Whether more than three quarters of the rays agree.
     [[nodiscard]] bool clear() const { return std::abs(odd - 0.5) > 0.25; }
 };
 
@@ -50,7 +49,6 @@ glm::dvec3 spread(std::size_t i) {
     return glm::fract(0.5 + steps * static_cast<double>(i));
 }
 
-/// Votes on both sides of points of the surface.
 std::vector<std::array<Vote, 2>> voteAtSurface(const MeshQuery& query, std::size_t probes) {
     const TriangleMesh& mesh = query.mesh();
     const AreaTable& areas = query.prepared().areas();
@@ -90,7 +88,6 @@ Enclosure enclosureOf(const std::vector<std::array<Vote, 2>>& votes) {
     return {static_cast<double>(one_sided) / count, agreement / (2.0 * count)};
 }
 
-/// Appends caps to a mesh, one hole at a time.
 class Capper {
   public:
     explicit Capper(TriangleMesh& mesh) : mesh_(mesh) {}
@@ -203,7 +200,7 @@ std::vector<BorderLoop> borderLoops(const std::vector<OddEdge>& edges) {
         steps.push_back({edges[i].to, edges[i].from, i, false});
         steps.push_back({edges[i].from, edges[i].to, i, true});
     }
-    std::sort(steps.begin(), steps.end(), [](const BorderStep& a, const BorderStep& b) {
+    std::ranges::sort(steps, [](const BorderStep& a, const BorderStep& b) {
         return std::tuple(a.from, a.against, a.to) < std::tuple(b.from, b.against, b.to);
     });
     // Per vertex with odd edges, its first step that may be unused.

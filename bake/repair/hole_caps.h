@@ -14,7 +14,6 @@
 
 namespace relief {
 
-/// Default number of probes on the surface.
 inline constexpr std::size_t kEnclosureProbes = 512;
 
 /// Measures how well a mesh encloses its inside: the crossing parity of opposite pairs of rays on both sides of probes,
@@ -33,7 +32,6 @@ inline constexpr double kAgreement = 0.85;
 
 [[nodiscard]] Enclosure measureEnclosure(const MeshQuery& query);
 
-/// A step along the border of a hole.
 struct BorderStep {
     std::uint32_t from = 0;
     std::uint32_t to = 0;

@@ -2,6 +2,7 @@
 #include "bake/repair/mesh_health.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -11,61 +12,61 @@
 namespace relief {
 namespace {
 
-/// Counts faults of one kind, and keeps the first place.
-struct First {
-    std::uint64_t count = 0;
-    glm::vec3 at{0.0F};
-
-    void add(const glm::dvec3& where) {
-        if (count++ == 0) {
-            at = where;
-        }
-    }
+/// A kind of fault that is counted.
+struct FaultKind {
+    std::uint64_t MeshHealth::*count;
+    const char* one;
+    const char* many;
+    const char* description;
 };
+enum Kind : std::size_t { kBoundary, kNonmanifold, kInconsistent, kDuplicate, kVertex };
+/// The most severe kind first.
+constexpr std::array<FaultKind, 5> kKinds = {{
+    {&MeshHealth::boundary_edges, "boundary edge", "boundary edges", "a boundary edge"},
+    {&MeshHealth::nonmanifold_edges, "non-manifold edge", "non-manifold edges",
+     "an edge of three or more triangles"},
+    {&MeshHealth::inconsistent_edges, "edge wound inconsistently", "edges wound inconsistently",
+     "an edge that two triangles traverse in the same direction"},
+    {&MeshHealth::duplicate_triangles, "duplicate triangle", "duplicate triangles", "a duplicate triangle"},
+    {&MeshHealth::nonmanifold_vertices, "non-manifold vertex", "non-manifold vertices",
+     "a vertex where surfaces only touch"},
+}};
 
 class Inspection {
   public:
     explicit Inspection(const PreparedMesh& mesh)
         : mesh_(*mesh),
-          inside_out_(mesh.orientation() < 0.0),
           welded_(mesh.edges().welded),
           component_of_(mesh->triangles.size()),
           // Corners of triangles; those that share an edge at their vertex are joined.
           corners_(3 * mesh->triangles.size()),
-          uses_(mesh.edges().uses) {}
+          uses_(mesh.edges().uses) {
+        health_.inside_out = mesh.orientation() < 0.0;
+    }
 
-    void run() {
+    MeshHealth run() {
         forEachEdge(uses_, [&](std::size_t begin, std::size_t end) { visitEdge(begin, end); });
         countComponents();
         countVertices();
         countDuplicates();
-    }
-
-    void write(MeshHealth& health) const {
-        health.triangles = mesh_.sourceTriangles();
-        health.degenerate_triangles = mesh_.dropped_triangles;
-        health.duplicate_triangles = duplicates_.count;
-        health.boundary_edges = boundary_.count;
-        health.nonmanifold_edges = nonmanifold_.count;
-        health.inconsistent_edges = inconsistent_.count;
-        health.nonmanifold_vertices = vertices_.count;
-        health.components = components_;
-        health.closed_components = closed_components_;
-        health.closed = closed_components_ == components_;
-        health.inside_out = inside_out_;
-        for (const auto& [what, first] :
-             {std::pair{"a boundary edge", &boundary_},
-              std::pair{"an edge of three or more triangles", &nonmanifold_},
-              std::pair{"an edge that two triangles traverse in the same direction", &inconsistent_},
-              std::pair{"a duplicate triangle", &duplicates_},
-              std::pair{"a vertex where surfaces only touch", &vertices_}}) {
-            if (first->count > 0) {
-                health.first_fault = MeshFault{what, first->at};
-                return;
+        health_.triangles = mesh_.sourceTriangles();
+        health_.degenerate_triangles = mesh_.dropped_triangles;
+        health_.closed = health_.closed_components == health_.components;
+        for (std::size_t kind = 0; kind < kKinds.size() && !health_.first_fault; ++kind) {
+            if (health_.*kKinds[kind].count > 0) {
+                health_.first_fault = MeshFault{kKinds[kind].description, first_[kind]};
             }
         }
-        if (health.inside_out) {
-            health.first_fault = MeshFault{"a triangle that is clockwise seen from outside", middle(0)};
+        if (!health_.first_fault && health_.inside_out) {
+            health_.first_fault = MeshFault{"a triangle that is clockwise seen from outside", middle(0)};
+        }
+        return health_;
+    }
+
+  private:
+    void add(Kind kind, const glm::dvec3& at) {
+        if ((health_.*kKinds[kind].count)++ == 0) {
+            first_[kind] = at;
         }
     }
 
@@ -74,19 +75,17 @@ class Inspection {
         return (glm::dvec3(corners[0]) + glm::dvec3(corners[1]) + glm::dvec3(corners[2])) / 3.0;
     }
 
-  private:
-    /// Visits an edge with the uses [begin, end).
     void visitEdge(std::size_t begin, std::size_t end) {
         const EdgeUse& first = uses_[begin];
         const std::size_t count = end - begin;
         const glm::dvec3 at =
             0.5 * (glm::dvec3(mesh_.positions[first.low]) + glm::dvec3(mesh_.positions[first.high]));
         if (count == 1) {
-            boundary_.add(at);
+            add(kBoundary, at);
         } else if (count > 2) {
-            nonmanifold_.add(at);
+            add(kNonmanifold, at);
         } else if (first.down == uses_[begin + 1].down) {
-            inconsistent_.add(at);
+            add(kInconsistent, at);
         }
         for (std::size_t i = begin + 1; i < end; ++i) {
             component_of_.join(first.triangle, uses_[i].triangle);
@@ -111,8 +110,8 @@ class Inspection {
         }
         for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i) {
             if (component_of_.find(i) == i) {
-                ++components_;
-                closed_components_ += open[i] ? 0U : 1U;
+                ++health_.components;
+                health_.closed_components += open[i] ? 0U : 1U;
             }
         }
     }
@@ -127,7 +126,7 @@ class Inspection {
         }
         for (std::size_t i = 0; i < fans.size(); ++i) {
             if (fans[i] > 1) {
-                vertices_.add(mesh_.positions[i]);
+                add(kVertex, mesh_.positions[i]);
             }
         }
     }
@@ -138,49 +137,35 @@ class Inspection {
         const std::vector<SortedTriangle> sorted = sortedTriangles(mesh_, welded_, all);
         for (std::size_t i = 1; i < sorted.size(); ++i) {
             if (sorted[i].corners == sorted[i - 1].corners) {
-                duplicates_.add(middle(sorted[i].index));
+                add(kDuplicate, middle(sorted[i].index));
             }
         }
     }
 
     const TriangleMesh& mesh_;
-    bool inside_out_;
     const std::vector<std::uint32_t>& welded_;
     DisjointSets component_of_;
     DisjointSets corners_;
     const std::vector<EdgeUse>& uses_;
     std::vector<std::uint32_t> odd_;  // triangles with an odd edge
-    First boundary_;
-    First nonmanifold_;
-    First inconsistent_;
-    First vertices_;
-    First duplicates_;
-    std::uint64_t components_ = 0;
-    std::uint64_t closed_components_ = 0;
+    MeshHealth health_;
+    std::array<glm::vec3, kKinds.size()> first_{};  // places, by kind
 };
 
 }  // namespace
 
 MeshHealth inspectMesh(const PreparedMesh& mesh) {
-    MeshHealth health;
-    Inspection inspection(mesh);
-    inspection.run();
-    inspection.write(health);
-    return health;
+    return Inspection(mesh).run();
 }
 
 std::string faultsText(const MeshHealth& health) {
     std::string text;
-    const auto add = [&](std::uint64_t count, const std::string& one, const std::string& many) {
-        if (count > 0) {
-            text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + (count == 1 ? one : many);
+    for (const FaultKind& kind : kKinds) {
+        if (const std::uint64_t count = health.*kind.count; count > 0) {
+            text += (text.empty() ? "" : ", ") + std::to_string(count) + " " +
+                    (count == 1 ? kind.one : kind.many);
         }
-    };
-    add(health.boundary_edges, "boundary edge", "boundary edges");
-    add(health.nonmanifold_edges, "non-manifold edge", "non-manifold edges");
-    add(health.inconsistent_edges, "edge wound inconsistently", "edges wound inconsistently");
-    add(health.duplicate_triangles, "duplicate triangle", "duplicate triangles");
-    add(health.nonmanifold_vertices, "non-manifold vertex", "non-manifold vertices");
+    }
     if (health.inside_out) {
         text += text.empty() ? "inside out" : ", inside out";
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/repair/mesh_repair.h"
+#include "bake/repair/repair.h"
 
 #include <algorithm>
 #include <array>

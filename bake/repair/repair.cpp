@@ -4,26 +4,10 @@
 #include <string_view>
 #include <utility>
 
-#include "bake/repair/mesh_repair.h"
 #include "bake/repair/winding.h"
 #include "formats/base/text.h"
 
 namespace relief {
-namespace {
-
-/// Examines the wrap, and fails if it is not a solid.
-Result<void> checkWrap(const PreparedMesh& mesh, RepairReport& report) {
-    report.repaired = inspectMesh(mesh);
-    mesh.freeEdges();
-    if (!report.repaired->isSolid()) {
-        return fail(ErrorCode::kFailure,
-                    mesh->name + ": wrapping it left " + faultsText(*report.repaired) +
-                        "; move the mesh to the origin, or try another --repair wrap=ALPHA");
-    }
-    return {};
-}
-
-}  // namespace
 
 Result<double> wrapAlpha(const std::string& method) {
     constexpr std::string_view kWrap = "wrap=";
@@ -62,7 +46,13 @@ Result<RepairedMesh> repairMesh(PreparedMesh mesh, const RepairOptions& options)
         if (mesh.orientation() < 0.0) {
             mesh = std::move(mesh).woundOutwards(std::vector<bool>(mesh->triangles.size(), true));
         }
-        RELIEF_TRY(checkWrap(mesh, report));
+        report.repaired = inspectMesh(mesh);
+        mesh.freeEdges();
+        if (!report.repaired->isSolid()) {
+            return fail(ErrorCode::kFailure,
+                        mesh->name + ": wrapping it left " + faultsText(*report.repaired) +
+                            "; move the mesh to the origin, or try another --repair wrap=ALPHA");
+        }
     }
     return RepairedMesh{std::move(mesh), std::move(report)};
 }

@@ -5,12 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "bake/mesh/inside.h"
 #include "bake/mesh/mesh_edges.h"
 #include "bake/mesh/mesh_query.h"
 #include "bake/mesh/surface_sampler.h"
@@ -243,7 +241,6 @@ class Winder {
             double facing =
                 0.0;  ///< for an open patch: samples with the inside in front, minus samples with it behind
         };
-        /// A crossing of a line with a patch.
         struct Place {
             std::uint32_t patch;
             bool outside;

@@ -38,7 +38,6 @@ class CornerFans {
     void addTo(Mitre& mitre, std::uint32_t corner) const;
     void addFan(std::vector<std::uint32_t>& fan, bool closed);
     void setMitre(std::span<const std::uint32_t> corners, const glm::dvec3& mitre);
-    /// Cuts between a corner and the next one.
     void cut(std::uint32_t corner, std::uint32_t next);
 
     Sheet& sheet_;

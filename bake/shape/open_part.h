@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The open parts of a mesh, and which of them are solids with holes, sheets and terrains.
+// Classifies the open parts of a mesh (solids with holes, sheets, terrains), and closes parts with holes.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "bake/mesh/prepared_mesh.h"
@@ -26,7 +27,6 @@ struct OpenPart {
     bool full = false;  ///< closed separately, and a solid
 };
 
-/// Returns the longest side of a sheet's bounds.
 [[nodiscard]] double sizeOf(const Sheet& sheet);
 
 /// Finds the solids with holes and the terrains among the open parts of a mesh.
@@ -35,5 +35,17 @@ struct OpenPart {
 /// Errors: those of MeshQuery::build.
 [[nodiscard]] Result<void> sortSheets(std::span<OpenPart> open, const PreparedMesh& mesh,
                                       std::span<const ShapeAs> kinds, std::size_t parts);
+
+/// A part with holes, after closing.
+struct ClosedPart {
+    std::optional<PreparedMesh> mesh;
+    bool balanced = true;
+    bool is_body = true;  ///< cut off at its foot; not a vessel
+};
+
+/// Closes a part. Returns no mesh if the holes cannot be closed, or if the result encloses nothing.
+/// \param is_body  already known to be a body.
+/// \param z_is_up  +z may be up, too.
+[[nodiscard]] Result<ClosedPart> closePart(const TriangleMesh& open, bool is_body, bool z_is_up);
 
 }  // namespace relief

@@ -4,9 +4,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <iterator>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <tuple>
+#include <utility>
 
 #include "bake/mesh/triangle_plane.h"
+#include "bake/shape/shape_options.h"
+#include "formats/base/text.h"
 
 namespace relief {
 namespace {
@@ -35,6 +45,147 @@ void forEachEdgeOfAKind(const MeshEdges& edges, std::span<const ShapeAs> kinds, 
         }
     });
 }
+
+struct Solid {
+    const Part* part = nullptr;
+    Bounds bounds;
+    double volume = 0.0;
+};
+
+Solid measured(const TriangleMesh& mesh, const Part& part) {
+    Solid solid;
+    solid.part = &part;
+    for (const std::uint32_t i : part.triangles) {
+        addTriangle(solid.bounds, mesh, i);
+        const TrianglePlane plane = planeOf(mesh, i);
+        solid.volume += dot(plane.point - glm::dvec3(mesh.bounds.center()), plane.normal);
+    }
+    solid.volume = std::abs(solid.volume);
+    return solid;
+}
+
+/// A grid of a part's corners that finds the nearest corner within a reach.
+class Corners {
+  public:
+    Corners(const TriangleMesh& mesh, const Solid& solid, double reach)
+        : mesh_(mesh), low_(solid.bounds.min), reach_(reach) {
+        for (const std::uint32_t i : solid.part->triangles) {
+            const glm::uvec3& t = mesh.triangles[i];
+            for (const std::uint32_t corner : {t.x, t.y, t.z}) {
+                places_.emplace_back(key(cellOf(mesh.positions[corner])), corner);
+            }
+        }
+        std::ranges::sort(places_);
+        places_.erase(std::unique(places_.begin(), places_.end()), places_.end());
+    }
+
+    /// Returns the largest distance from a corner of `other` to its nearest corner here; nullopt if it exceeds the
+    /// reach.
+    [[nodiscard]] std::optional<double> farthestOf(const Corners& other) const {
+        double farthest = 0.0;
+        for (const auto& [cell, corner] : other.places_) {
+            const std::optional<double> nearest = nearestTo(mesh_.positions[corner]);
+            if (!nearest) {
+                return std::nullopt;
+            }
+            farthest = std::max(farthest, *nearest);
+        }
+        return farthest;
+    }
+
+  private:
+    using Cell = std::array<std::int64_t, 3>;
+
+    /// Offset so that the lowest neighbour of a cell with corners is 0.
+    [[nodiscard]] Cell cellOf(const glm::dvec3& p) const {
+        const glm::dvec3 cell = glm::floor((p - low_) / reach_) + 2.0;
+        return {static_cast<std::int64_t>(cell.x), static_cast<std::int64_t>(cell.y),
+                static_cast<std::int64_t>(cell.z)};
+    }
+    [[nodiscard]] static std::uint64_t key(const Cell& cell) {
+        constexpr unsigned kBits = 21;  // 1 / kCopyReach is far below 2²¹
+        return static_cast<std::uint64_t>(cell[0]) << (2 * kBits) |
+               static_cast<std::uint64_t>(cell[1]) << kBits | static_cast<std::uint64_t>(cell[2]);
+    }
+
+    [[nodiscard]] std::optional<double> nearestTo(const glm::dvec3& p) const {
+        double nearest = std::numeric_limits<double>::infinity();
+        const Cell cell = cellOf(p);
+        for (std::int64_t z = -1; z <= 1; ++z) {
+            for (std::int64_t y = -1; y <= 1; ++y) {
+                for (std::int64_t x = -1; x <= 1; ++x) {
+                    const std::uint64_t wanted = key({cell[0] + x, cell[1] + y, cell[2] + z});
+                    auto at =
+                        std::lower_bound(places_.begin(), places_.end(), std::pair(wanted, std::uint32_t{0}));
+                    for (; at != places_.end() && at->first == wanted; ++at) {
+                        nearest =
+                            std::min(nearest, glm::distance(p, glm::dvec3(mesh_.positions[at->second])));
+                    }
+                }
+            }
+        }
+        return nearest <= reach_ ? std::optional(nearest) : std::nullopt;
+    }
+
+    const TriangleMesh& mesh_;
+    glm::dvec3 low_;
+    double reach_;
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> places_;  // cell, corner
+};
+
+/// Returns the distance between two parts; nullopt if they are not near copies.
+std::optional<double> distanceBetween(const TriangleMesh& mesh, const Solid& a, const Solid& b) {
+    const double reach = kCopyReach * double{std::max(a.bounds.longestSide(), b.bounds.longestSide())};
+    for (int axis = 0; axis < 3; ++axis) {
+        if (std::abs(double{a.bounds.min[axis]} - double{b.bounds.min[axis]}) > reach ||
+            std::abs(double{a.bounds.max[axis]} - double{b.bounds.max[axis]}) > reach) {
+            return std::nullopt;
+        }
+    }
+    // Now all of b is within reach of a's bounds, as its cells require.
+    const Corners of_a(mesh, a, reach);
+    const Corners of_b(mesh, b, reach);
+    const std::optional<double> one = of_a.farthestOf(of_b);
+    const std::optional<double> other = one ? of_b.farthestOf(of_a) : std::nullopt;
+    return other ? std::optional(std::max(*one, *other)) : std::nullopt;
+}
+
+/// Parts by size and by the cell of their lower corner. Parts with nearly equal bounds are in neighbouring cells.
+class Places {
+  public:
+    /// Calls visit(solid) until it returns true.
+    template <class Visit>
+    [[nodiscard]] bool anyNear(const Solid& solid, const Visit& visit) const {
+        int size = 0;
+        static_cast<void>(std::frexp(solid.bounds.longestSide(), &size));
+        for (int s = size - 1; s <= size + 1; ++s) {
+            const glm::dvec3 cell = cellOf(solid, s);
+            for (int i = 0; i < 27; ++i) {
+                const auto found =
+                    solids_.find({s, cell.x + i % 3 - 1, cell.y + i / 3 % 3 - 1, cell.z + i / 9 - 1});
+                if (found != solids_.end() && std::ranges::any_of(found->second, visit)) {
+                    return true;
+                }
+            }
+        }
+        return false;
+    }
+
+    void add(const Solid& solid) {
+        int size = 0;
+        static_cast<void>(std::frexp(solid.bounds.longestSide(), &size));
+        const glm::dvec3 cell = cellOf(solid, size);
+        solids_[{size, cell.x, cell.y, cell.z}].push_back(&solid);
+    }
+
+  private:
+    /// The cell size is slightly above the reach of parts of twice the size, so that most parts in a cell are copies.
+    static glm::dvec3 cellOf(const Solid& solid, int size) {
+        return glm::floor(glm::dvec3(solid.bounds.min) / (4.0 * kCopyReach * std::ldexp(1.0, size)));
+    }
+
+    std::map<std::tuple<int, double, double, double>, std::vector<const Solid*>> solids_;
+};
 
 }  // namespace
 
@@ -111,6 +262,46 @@ std::optional<double> enclosedVolume(const std::vector<glm::vec3>& positions,
         volume += dot(plane.point - center, plane.normal) / 6.0;
     }
     return std::abs(volume) < kVolumeMin * area * std::sqrt(area) ? std::nullopt : std::optional(volume);
+}
+
+std::string NearCopies::text() const {
+    const bool one = parts == 1;
+    return std::to_string(parts) + (one ? " closed part lies" : " closed parts lie") + " within " +
+           shortest(static_cast<float>(farthest)) +
+           " of another part; only the largest of such copies counts, and nothing between them is hollow";
+}
+
+NearCopies nearCopies(const TriangleMesh& mesh, std::span<const Part* const> solids) {
+    NearCopies copies;
+    if (solids.size() < 2) {
+        return copies;
+    }
+    std::vector<Solid> measures;
+    measures.reserve(solids.size());
+    for (const Part* part : solids) {
+        measures.push_back(measured(mesh, *part));
+    }
+    std::vector<std::size_t> order(measures.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t i) { return measures[i].volume; });
+    Places kept;
+    for (const std::size_t i : order) {
+        const Solid& solid = measures[i];
+        const bool is_copy = kept.anyNear(solid, [&](const Solid* other) {
+            const std::optional<double> distance = distanceBetween(mesh, *other, solid);
+            copies.farthest = std::max(copies.farthest, distance.value_or(0.0));
+            return distance.has_value();
+        });
+        if (is_copy) {
+            const std::vector<std::uint32_t>& triangles = solid.part->triangles;
+            copies.triangles.insert(copies.triangles.end(), triangles.begin(), triangles.end());
+            ++copies.parts;
+        } else {
+            kept.add(solid);
+        }
+    }
+    std::ranges::sort(copies.triangles);
+    return copies;
 }
 
 }  // namespace relief

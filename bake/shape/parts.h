@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Splits a mesh into parts that are connected by edges and of one kind. Equal positions count as one vertex.
+// Splits a mesh into parts that are connected by edges and of one kind, and finds copies among them. Equal positions
+// count as one vertex.
 #pragma once
 
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "bake/mesh/mesh.h"
@@ -41,5 +43,24 @@ struct Part {
 [[nodiscard]] std::optional<double> enclosedVolume(const std::vector<glm::vec3>& positions,
                                                    const std::vector<glm::uvec3>& triangles,
                                                    const glm::dvec3& center);
+
+/// Maximum distance of near copies, in units of the longer part's longest side: the thickness of the thinnest shell.
+inline constexpr double kCopyReach = 1e-4;
+
+struct NearCopies {
+    std::vector<std::uint32_t> triangles;  ///< of all parts except the largest of each group, ascending
+    std::uint64_t parts = 0;               ///< number of parts of these triangles
+    /// Largest distance from a corner to the nearest corner of the kept part, object units.
+    double farthest = 0.0;
+
+    /// Returns the warning: "2 closed parts lie within 1e-06 of another …".
+    [[nodiscard]] std::string text() const;
+};
+
+/// Finds closed parts that almost coincide with another part, as in an export of two copies, one enlarged by a
+/// millionth. The gap between them is thinner than any wall of a collider and would make the solid hollow. In near
+/// copies, every corner has a corner of the other part within kCopyReach of their longest side.
+/// \param solids  closed, not flat; borrowed.
+[[nodiscard]] NearCopies nearCopies(const TriangleMesh& mesh, std::span<const Part* const> solids);
 
 }  // namespace relief

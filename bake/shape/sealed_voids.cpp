@@ -12,8 +12,8 @@
 #include <numeric>
 #include <utility>
 
-#include "bake/mesh/inside.h"
 #include "bake/mesh/mersenne.h"
+#include "bake/mesh/mesh_query.h"
 #include "bake/mesh/surface_parts.h"
 #include "bake/mesh/surface_sampler.h"
 #include "bake/mesh/triangle_plane.h"
@@ -74,15 +74,10 @@ class Grid {
             }
             const std::vector<std::size_t> found = flood({node}, kWall, seen);
             const bool sealed_by_sheets = by_solids[node] != 0;
-            if (sealed_by_sheets && is_void(found)) {
-                ++voids.count;
-                for (const std::size_t i : found) {
-                    voids.places[i] = Place::kVoid;
-                }
-            } else {
-                for (const std::size_t i : found) {
-                    voids.places[i] = Place::kOutside;
-                }
+            const Place place = sealed_by_sheets && is_void(found) ? Place::kVoid : Place::kOutside;
+            voids.count += place == Place::kVoid ? 1 : 0;
+            for (const std::size_t i : found) {
+                voids.places[i] = place;
             }
         }
         if (voids.count == 0) {
@@ -192,7 +187,6 @@ class Grid {
     std::vector<std::uint8_t> flags_;
 };
 
-/// Returns the bounding box of all voids.
 std::array<glm::dvec3, 2> boxOf(const Voids& voids) {
     glm::ivec3 low = voids.nodes;
     glm::ivec3 high(0);

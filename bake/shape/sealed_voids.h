@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bake/mesh/mesh_query.h"
-#include "bake/mesh/voids.h"
+#include "bake/mesh/prepared_mesh.h"
 #include "formats/base/result.h"
 
 namespace relief {

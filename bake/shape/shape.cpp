@@ -15,14 +15,10 @@
 #include "bake/mesh/mesh_query.h"
 #include "bake/repair/hole_caps.h"
 #include "bake/repair/winding.h"
-#include "bake/shape/closed_part.h"
-#include "bake/shape/near_copies.h"
 #include "bake/shape/open_part.h"
 #include "bake/shape/parts.h"
 #include "bake/shape/sealed_voids.h"
-#include "bake/shape/shell.h"
-#include "bake/shape/solid_union.h"
-#include "bake/shape/terrain.h"
+#include "bake/shape/solids.h"
 #include "bake/shape/walls.h"
 
 namespace relief {
@@ -37,12 +33,7 @@ class Shaper {
   public:
     /// \param turned  per triangle: flipped before windOutwards; empty: none.
     Shaper(const PreparedMesh& mesh, const ShapeOptions& options, std::vector<bool> turned = {})
-        : prepared_(mesh),
-          mesh_(*mesh),
-          options_(options),
-          turned_(std::move(turned)),
-          collected_(mesh_),
-          union_(mesh_) {
+        : prepared_(mesh), mesh_(*mesh), options_(options), turned_(std::move(turned)), union_(mesh_) {
         turned_.resize(mesh_.triangles.size(), false);
         for (std::size_t i = 0; i < mesh.turned().size(); ++i) {
             turned_[i] = turned_[i] != mesh.turned()[i];
@@ -75,7 +66,7 @@ class Shaper {
         std::vector<const Part*> others;
         for (const Part& part : parts_) {
             const bool solid = isSolid(part);
-            collected_.add(part.triangles, solid ? PartKind::kSolid : PartKind::kSurface);
+            collected_.add(mesh_, part.triangles, solid ? PartKind::kSolid : PartKind::kSurface);
             (solid ? solids : others).push_back(&part);
         }
         if (const NearCopies copies = nearCopies(mesh_, solids); copies.parts > 0) {
@@ -87,10 +78,10 @@ class Shaper {
         }
         if (others.empty()) {
             report_.solids = solids.size();
-            return ShapedMesh{prepared_, report_, {std::move(collected_.parts()), collected_.partOf()}};
+            return ShapedMesh{prepared_, report_, std::move(collected_)};
         }
         for (const Part* part : solids) {
-            union_.addSource(part->triangles, collected_.partOf(), part->balanced ? 0 : ++bodies_);
+            union_.addSource(part->triangles, collected_.part_of, part->balanced ? 0 : ++bodies_);
         }
         report_.solids = solids.size();
         makeSheets(others);
@@ -103,7 +94,7 @@ class Shaper {
         if (options_.voids == VoidsAs::kFill && hasSealingSheet()) {
             mesh = RELIEF_TRY(fillVoids(std::move(mesh), part_of));
         }
-        return ShapedMesh{std::move(mesh), report_, {std::move(collected_.parts()), std::move(part_of)}};
+        return ShapedMesh{std::move(mesh), report_, {std::move(collected_.parts), std::move(part_of)}};
     }
 
   private:
@@ -208,9 +199,9 @@ class Shaper {
         std::vector<std::uint32_t> parts;
         parts.reserve(sources.size());
         for (const std::uint32_t source : sources) {
-            parts.push_back(source == kNoLabel ? kNoLabel : collected_.partOf()[source]);
+            parts.push_back(source == kNoLabel ? kNoLabel : collected_.part_of[source]);
             if (parts.back() != kNoLabel) {
-                collected_.parts()[parts.back()].kind = kind;
+                collected_.parts[parts.back()].kind = kind;
             }
         }
         return parts;
@@ -363,7 +354,7 @@ class Shaper {
                 const MeshQuery query = RELIEF_TRY(MeshQuery::build(std::move(finished)));
                 add(part.sheet, thickened(part.sheet, query, thickness), PartKind::kSheet);
                 for (const std::uint32_t source : part.sheet.sources) {
-                    SurfacePart& piece = collected_.parts()[collected_.partOf()[source]];
+                    SurfacePart& piece = collected_.parts[collected_.part_of[source]];
                     piece.thickness = thickness;
                     piece.right_thickness = right;
                 }
@@ -387,11 +378,11 @@ class Shaper {
     [[nodiscard]] bool hasSealingSheet() const { return std::ranges::any_of(open_, seals); }
 
     Result<PreparedMesh> fillVoids(PreparedMesh mesh, std::vector<std::uint32_t>& part_of) {
-        std::vector<Wall> of_part(collected_.parts().size(), Wall::kSolid);
+        std::vector<Wall> of_part(collected_.parts.size(), Wall::kSolid);
         for (const OpenPart& part : open_) {
             if (part.role.kind == OpenKind::kSheet) {
                 for (const std::uint32_t source : part.sheet.sources) {
-                    of_part[collected_.partOf()[source]] = seals(part) ? Wall::kSheet : Wall::kNothing;
+                    of_part[collected_.part_of[source]] = seals(part) ? Wall::kSheet : Wall::kNothing;
                 }
             }
         }
@@ -433,7 +424,7 @@ class Shaper {
     std::vector<OpenPart> open_;                        // from parts_
     std::vector<std::array<std::size_t, 2>> unjoined_;  // ShellWalls::unjoined, as indices of open_
     std::uint32_t bodies_ = 0;                          // bodies that use parity, numbered from 1
-    SurfacePartsBuilder collected_;
+    SurfaceParts collected_;
     SolidUnion union_;
     ShapeReport report_;
 };
@@ -441,11 +432,11 @@ class Shaper {
 }  // namespace
 
 SurfaceParts surfacePartsOf(const PreparedMesh& mesh) {
-    SurfacePartsBuilder builder(*mesh);
+    SurfaceParts parts;
     for (const Part& part : partsOf(*mesh, mesh.edges())) {
-        builder.add(part.triangles, PartKind::kSurface);
+        parts.add(*mesh, part.triangles, PartKind::kSurface);
     }
-    return {std::move(builder.parts()), builder.partOf()};
+    return parts;
 }
 
 Result<ShapedMesh> shapeMesh(const PreparedMesh& mesh, const ShapeOptions& options) {

@@ -19,7 +19,6 @@
 #include "bake/mesh/prepared_mesh.h"
 #include "bake/mesh/surface_parts.h"
 #include "bake/shape/shape_options.h"
-#include "bake/shape/thickness.h"
 #include "formats/base/result.h"
 
 namespace relief {
@@ -46,7 +45,7 @@ struct ShapeReport {
     std::uint64_t voids = 0;  ///< sealed by sheets, and filled
     /// Dropped from sheets, and from solids that are closed without them.
     std::uint64_t coincident_triangles = 0;
-    /// Closed parts dropped in favour of a larger part (near_copies.h).
+    /// Closed parts dropped in favour of a larger part (parts.h).
     std::uint64_t near_copies = 0;
     double thickness = 0.0;          ///< of the thickest shell, object units; 0: no shells
     double thickness_min = 0.0;      ///< of the thinnest shell

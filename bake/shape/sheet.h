@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces without thickness. shell.h and terrain.h build solids from them.
+// Surfaces without thickness. solids.h builds solids from them.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +39,6 @@ inline constexpr double kFoldCosine = -0.5;
 /// Returns the sheet as a mesh before finishMesh, with its sources as labels.
 [[nodiscard]] TriangleMesh meshOf(const Sheet& sheet, const std::string& name);
 
-/// Returns the unit normal of a triangle.
 [[nodiscard]] glm::dvec3 unitNormal(const std::vector<glm::vec3>& positions, const glm::uvec3& t);
 
 /// Twice the projected areas of a sheet along each axis. Both are equal, up to the sign, for a height field.

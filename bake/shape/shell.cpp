@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/shape/shell.h"
+#include "bake/shape/solids.h"
 
 #include <tbb/parallel_for.h>
 

@@ -1,26 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds pairs of open parts that are the two shells of a wall.
+// Finds pairs of open parts that are the two shells of a wall, such as a double-walled vessel, and joins them at their
+// rims.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
-#include "bake/shape/rims.h"
+#include "bake/mesh/mesh.h"
 #include "bake/shape/sheet.h"
 
 namespace relief {
 
-/// An open part of a mesh.
+/// Two shells, joined by a ring between each pair of facing rims.
+struct ShellWall {
+    std::size_t outer = 0;  ///< index of the candidate
+    std::size_t inner = 0;
+    bool alike = false;  ///< both have the same winding: towards the outside, or towards the enclosed space
+    TriangleMesh mesh;   ///< before finishMesh; may still have small holes
+};
+
+struct ShellWalls {
+    std::vector<ShellWall> walls;
+    /// Pairs of outer and inner candidates with nearly facing mouths, one per inner one that is in no wall. Either may
+    /// be a solid.
+    std::vector<std::array<std::size_t, 2>> unjoined;
+};
+
 struct WallCandidate {
     const Sheet* sheet = nullptr;
     bool may_join = false;      ///< it may be a shell of a wall
-    bool may_be_solid = false;  ///< OpenShell::is_solid
+    bool may_be_solid = false;  ///< it may be a solid with holes; true for at least one shell of a wall
 };
 
-/// Joins the rims of candidates of similar size whose bounds contain each other's centre. Tests only pairs that overlap
-/// along x, because a file may have thousands of open parts.
+/// Joins the rims of an outer and an inner candidate of similar size whose bounds contain each other's centre. Holes of
+/// the inner one that face no hole of the outer one must be small. A candidate belongs to at most one wall. Tests only
+/// pairs that overlap along x, because a file may have thousands of open parts.
 /// \param name  of the mesh.
-/// \return shells as indices of candidates.
 [[nodiscard]] ShellWalls wallsAmong(const std::vector<WallCandidate>& candidates, const std::string& name);
 
 /// Whether the two shells of a wall have the same winding in the file, or one of them has an inconsistent winding.

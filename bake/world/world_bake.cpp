@@ -11,7 +11,7 @@
 #include <mutex>
 #include <set>
 
-#include "bake/import/level_folder.h"
+#include "bake/import/level.h"
 #include "bake/pipeline/bake.h"
 #include "bake/pipeline/stages.h"
 #include "bake/recipe/bake_cache.h"

@@ -6,7 +6,7 @@
 #include <limits>
 #include <map>
 
-#include "bake/import/level_folder.h"
+#include "bake/import/level.h"
 #include "bake/measure/part_accuracy.h"
 #include "bake/measure/percent.h"
 #include "bake/mesh/loops.h"

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bake/images/verdict_slice.h"
+#include "bake/images/slice.h"
 #include "bake/world/placed_mesh.h"
 #include "formats/fields/field.h"
 #include "formats/world/world_field.h"

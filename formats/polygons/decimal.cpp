@@ -17,7 +17,6 @@ bool isDigit(char c) {
     return c >= '0' && c <= '9';
 }
 
-/// Removes leading digits.
 std::string_view takeDigits(std::string_view& text) {
     std::size_t length = 0;
     while (length < text.size() && isDigit(text[length])) {

@@ -3,36 +3,23 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <span>
-#include <utility>
 
 #include "formats/base/text.h"
 
 namespace relief {
 namespace {
 
-constexpr std::pair<std::string_view, PlyEncoding> kEncodings[] = {
-    {"ascii", PlyEncoding::kAscii},
-    {"binary_little_endian", PlyEncoding::kLittle},
-    {"binary_big_endian", PlyEncoding::kBig}};
-constexpr std::pair<std::string_view, PlyType> kTypes[] = {
-    {"char", PlyType::kInt8},      {"int8", PlyType::kInt8},       {"uchar", PlyType::kUint8},
-    {"uint8", PlyType::kUint8},    {"short", PlyType::kInt16},     {"int16", PlyType::kInt16},
-    {"ushort", PlyType::kUint16},  {"uint16", PlyType::kUint16},   {"int", PlyType::kInt32},
-    {"int32", PlyType::kInt32},    {"uint", PlyType::kUint32},     {"uint32", PlyType::kUint32},
-    {"float", PlyType::kFloat32},  {"float32", PlyType::kFloat32}, {"double", PlyType::kFloat64},
-    {"float64", PlyType::kFloat64}};
+// Two names for each type, in the order of PlyType.
+constexpr std::array<std::string_view, 16> kTypes = {
+    "char", "int8",  "uchar", "uint8",  "short", "int16",   "ushort", "uint16",
+    "int",  "int32", "uint",  "uint32", "float", "float32", "double", "float64"};
 
-template <class T, std::size_t N>
-std::optional<T> find(const std::pair<std::string_view, T> (&words)[N], std::string_view word) {
-    for (const auto& [name, value] : words) {
-        if (name == word) {
-            return value;
-        }
-    }
-    return std::nullopt;
+std::optional<PlyType> typeOf(std::string_view word) {
+    const auto found = std::find(kTypes.begin(), kTypes.end(), word);
+    return found == kTypes.end() ? std::nullopt
+                                 : std::optional(static_cast<PlyType>((found - kTypes.begin()) / 2));
 }
 
 std::size_t sizeOf(PlyType type) {
@@ -40,7 +27,6 @@ std::size_t sizeOf(PlyType type) {
     return kSizes[static_cast<std::size_t>(type)];
 }
 
-/// \param words  of the element's line.
 Result<void> addElement(std::span<const std::string_view> words, PlyHeader& header) {
     const std::optional<std::uint64_t> count = words.size() == 3 ? parseUnsigned(words[2]) : std::nullopt;
     if (!count || header.elements.size() == kPlyElementsMax) {
@@ -50,7 +36,6 @@ Result<void> addElement(std::span<const std::string_view> words, PlyHeader& head
     return {};
 }
 
-/// \param words  of the property's line.
 Result<void> addProperty(std::span<const std::string_view> words, PlyHeader& header) {
     if (header.elements.empty() || header.elements.back().properties.size() == kPlyPropertiesMax) {
         return invalidInput("a property in its header precedes all elements, or an element has more than " +
@@ -60,8 +45,8 @@ Result<void> addProperty(std::span<const std::string_view> words, PlyHeader& hea
     if (!list && words.size() != 3) {
         return invalidInput("a property of its header is malformed");
     }
-    const std::optional<PlyType> type = find(kTypes, words[words.size() - 2]);
-    const std::optional<PlyType> length_type = list ? find(kTypes, words[2]) : std::nullopt;
+    const std::optional<PlyType> type = typeOf(words[words.size() - 2]);
+    const std::optional<PlyType> length_type = list ? typeOf(words[2]) : std::nullopt;
     if (!type || (list && !length_type)) {
         return invalidInput("a property of its header has an unknown type");
     }
@@ -96,7 +81,7 @@ Result<PlyHeader> takePlyHeader(std::string_view& data) {
             }
         }
         if (kind == "format" && words.size() > 1) {
-            encoding = find(kEncodings, words[1]);
+            encoding = fromWord<PlyEncoding>(words[1]);
         } else if (kind == "element") {
             RELIEF_TRY(addElement(words, header));
         } else if (kind == "property") {

@@ -2,6 +2,7 @@
 // Reads the header and the numbers of PLY files. The caller decides which elements are required.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -9,12 +10,16 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/base/enum_words.h"
 #include "formats/base/result.h"
 #include "formats/base/text_scanner.h"
 
 namespace relief {
 
 enum class PlyEncoding : std::uint8_t { kAscii, kLittle, kBig };
+template <>
+inline constexpr std::array<std::string_view, 3> kWordsOf<PlyEncoding>{"ascii", "binary_little_endian",
+                                                                       "binary_big_endian"};
 enum class PlyType : std::uint8_t { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
 
 /// Limits on the properties of one element and on the elements of a file; real files have fewer.
@@ -56,7 +61,6 @@ class PlyNumbers {
 
     /// Returns the next number; nullopt at the end of the data, or if a word is not a number.
     [[nodiscard]] std::optional<double> next(PlyType type);
-    /// Returns whether next() failed because the data ended.
     [[nodiscard]] bool ended() const { return ended_; }
     /// Returns the data after the last number.
     [[nodiscard]] std::string_view rest() const { return isText() ? text_.rest() : data_; }
@@ -65,7 +69,6 @@ class PlyNumbers {
     [[nodiscard]] bool atLineEnd() { return text_.atLineEnd(); }
     /// Returns "line 12: " for the last word; "" for binary data.
     [[nodiscard]] std::string where() const;
-    /// Returns the last word of a text file.
     [[nodiscard]] std::string_view word() const { return word_; }
 
   private:

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The polygons of a file, as read from OBJ, OFF, PLY and STL.
+// The polygons of a file, as read from OBJ, OFF, PLY and STL, and the readers of OBJ and PLY, which the runtime also
+// needs.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -74,5 +76,30 @@ struct PolygonMesh {
 [[nodiscard]] inline Result<void> checkVertexCount(std::uint64_t vertices) {
     return checkCount(vertices, 3 * kPolygonTrianglesMax, "vertices");
 }
+
+struct ObjMesh {
+    PolygonMesh polygons;
+    std::vector<std::string> libraries;  ///< material libraries, as named by mtllib
+};
+
+/// Reads Wavefront OBJ: the statements v, f, l, p, g, o, usemtl and mtllib. Free-form surfaces are counted; all other
+/// statements are skipped. Statements may be indented, continued by a backslash, and followed by a comment. A vertex
+/// has three coordinates, optionally followed by a weight that divides them or by a colour in 0…1. Corners are "7",
+/// "7/1", "7//3" or "7/1/3"; negative indices count back from the last vertex so far. Faces may precede their vertices.
+/// A face has the name of its material, and the names of the current group or object, whichever started last. The names
+/// of a group are its whole line and each of its words. A new material does not end the group.
+/// Errors, with the line but not the file: kInvalidInput.
+[[nodiscard]] Result<ObjMesh> readObj(std::span<const std::byte> bytes,
+                                      PolygonColors colors = PolygonColors::kSkip);
+
+/// Reads PLY, as text or binary of either byte order: the element `vertex`, and the lists `vertex_indices` (or
+/// `vertex_index`) of the elements `face` and `tristrips`. In a strip, every three consecutive indices form a triangle,
+/// with alternating winding; -1 starts a new strip. Other elements are skipped, with a warning if they look like faces.
+/// Vertex colours are red, green and blue as bytes, 16-bit integers, or floats in 0…1.
+/// \return at least one polygon.
+/// Errors, with the line of a text file but not the file: kInvalidInput (not a PLY, truncated, a missing vertex, no
+/// faces), kLimit.
+[[nodiscard]] Result<PolygonMesh> readPly(std::span<const std::byte> bytes,
+                                          PolygonColors colors = PolygonColors::kSkip);
 
 }  // namespace relief

@@ -4,8 +4,7 @@
 #include "formats/base/file_io.h"
 #include "formats/base/result.h"
 #include "formats/base/text.h"
-#include "formats/polygons/obj_mesh.h"
-#include "formats/polygons/ply_mesh.h"
+#include "formats/polygons/polygon_mesh.h"
 
 namespace relief {
 namespace {

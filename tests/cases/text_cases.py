@@ -20,7 +20,7 @@ FORMATS = ["obj", "off", "stl"]
 
 
 def answer_of(data):
-    """The result of relief-import (bake/import/import_message.h): triangles as three positions each, or an error message."""
+    """The result of relief-import (bake/import/import_protocol.h): triangles as three positions each, or an error message."""
     at = 4
 
     def take(size):

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "bake/import/import_readers.h"
-#include "bake/import/scene_flattener.h"
+#include "bake/import/import_scene.h"
 #include "formats/animation/animated_mesh.h"
 #include "tests/fuzz/target.h"
 

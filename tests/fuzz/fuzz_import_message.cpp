@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "bake/import/import_message.h"
+#include "bake/import/import_protocol.h"
 #include "bake/import/import_source.h"
 #include "tests/fuzz/target.h"
 

@@ -7,10 +7,9 @@
 
 #include "bake/import/import_format.h"
 #include "bake/import/import_readers.h"
+#include "bake/import/import_scene.h"
 #include "bake/import/polygon_cutter.h"
-#include "bake/import/scene_polygons.h"
-#include "formats/polygons/obj_mesh.h"
-#include "formats/polygons/ply_mesh.h"
+#include "formats/polygons/polygon_mesh.h"
 #include "tests/fuzz/target.h"
 
 namespace {

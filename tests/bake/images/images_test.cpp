@@ -8,7 +8,6 @@
 #include "bake/images/exr.h"
 #include "bake/images/map_image.h"
 #include "bake/images/slice.h"
-#include "bake/images/verdict_slice.h"
 #include "bake/images/view_image.h"
 #include "bake/import/mesh_import.h"
 #include "tests/bake/images/exr_file.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // EXT_meshopt_compression: round trips through the meshoptimizer library, filters against their formulas, and hostile
 // sizes.
-#include "bake/import/gltf_meshopt.h"
+#include "bake/import/gltf_data.h"
 
 #include <meshoptimizer.h>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Names, materials and parts of mesh files: patterns mark the right triangles, and everything except triangles is
 // counted, named or rejected.
-#include "bake/import/level_folder.h"
+#include "bake/import/import_scene.h"
+#include "bake/import/level.h"
 #include "bake/import/mesh_import.h"
-#include "bake/import/scene_polygons.h"
-#include "formats/polygons/obj_mesh.h"
+#include "formats/polygons/polygon_mesh.h"
 #include "tests/bake/import/import_meshes.h"
 #include "tests/temporary_folder.h"
 

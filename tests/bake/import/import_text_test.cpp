@@ -10,7 +10,7 @@
 #include "bake/import/mesh_import.h"
 #include "bake/mesh/triangle_plane.h"
 #include "formats/polygons/decimal.h"
-#include "formats/polygons/ply_mesh.h"
+#include "formats/polygons/polygon_mesh.h"
 #include "tests/bake/import/import_meshes.h"
 #include "tests/bake/meshes.h"
 

@@ -14,7 +14,7 @@
 #include <random>
 #include <set>
 
-#include "bake/import/import_message.h"
+#include "bake/import/import_protocol.h"
 #include "bake/import/import_source.h"
 #include "bake/import/mesh_import.h"
 #include "formats/base/hash.h"

@@ -5,10 +5,11 @@
 #include <limits>
 #include <span>
 
+#include "bake/import/import_job.h"
 #include "bake/import/import_source.h"
-#include "bake/import/import_units.h"
-#include "bake/import/level_folder.h"
+#include "bake/import/level.h"
 #include "bake/import/mesh_import.h"
+#include "bake/import/source_marks.h"
 #include "tests/bake/import/import_meshes.h"
 #include "tests/temporary_folder.h"
 

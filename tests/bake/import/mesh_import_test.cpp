@@ -8,7 +8,7 @@
 #include <random>
 
 #include "bake/import/import_format.h"
-#include "bake/import/level_folder.h"
+#include "bake/import/level.h"
 #include "bake/import/mesh_import.h"
 #include "bake/import/polygon_cutter.h"
 #include "bake/mesh/triangle_plane.h"

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "bake/mesh/area_table.h"
 #include "bake/mesh/mesh_query.h"
 #include "bake/mesh/surface_sampler.h"
 #include "bake/pipeline/bake.h"

@@ -7,11 +7,11 @@
 #include <random>
 #include <vector>
 
-#include "bake/mesh/area_table.h"
 #include "bake/mesh/mersenne.h"
+#include "bake/mesh/mesh.h"
 #include "bake/mesh/mesh_query.h"
-#include "bake/mesh/ray_cost.h"
 #include "bake/mesh/surface_parts.h"
+#include "bake/mesh/surface_sampler.h"
 #include "bake/mesh/triangle_plane.h"
 #include "tests/bake/meshes.h"
 #include "tests/seeds.h"
@@ -128,15 +128,15 @@ TEST(SurfaceParts, LabelsSplitPieces) {
     mesh.surface_names = {{3, "box", "wood"}, {3, "box", "glass"}};
     mesh.labels.assign(12, 0);
     mesh.labels[5] = 1;
-    SurfacePartsBuilder builder(mesh);
-    builder.add({0, 1, 2, 3, 4, 5, 6}, PartKind::kSheet);
-    ASSERT_EQ(builder.parts().size(), 2U);
-    EXPECT_EQ(builder.parts()[0].triangles, 6U);
-    EXPECT_EQ(builder.parts()[1].material, "glass");
-    EXPECT_EQ(builder.parts()[1].node_index, 3U);
-    EXPECT_DOUBLE_EQ(builder.parts()[1].area, 2.0);
-    EXPECT_EQ(builder.partOf()[5], 1U);
-    EXPECT_EQ(builder.partOf()[7], kNoLabel);
+    SurfaceParts found;
+    found.add(mesh, {0, 1, 2, 3, 4, 5, 6}, PartKind::kSheet);
+    ASSERT_EQ(found.parts.size(), 2U);
+    EXPECT_EQ(found.parts[0].triangles, 6U);
+    EXPECT_EQ(found.parts[1].material, "glass");
+    EXPECT_EQ(found.parts[1].node_index, 3U);
+    EXPECT_DOUBLE_EQ(found.parts[1].area, 2.0);
+    EXPECT_EQ(found.part_of[5], 1U);
+    EXPECT_EQ(found.part_of[7], kNoLabel);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The guarantees of hole_caps.h, mesh_edges.h, mesh_health.h, mesh_repair.h and winding.h.
+// The guarantees of hole_caps.h, mesh_edges.h, mesh_health.h, repair.h and winding.h.
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -13,7 +13,7 @@
 #include "bake/mesh/triangle_plane.h"
 #include "bake/repair/hole_caps.h"
 #include "bake/repair/mesh_health.h"
-#include "bake/repair/mesh_repair.h"
+#include "bake/repair/repair.h"
 #include "bake/repair/winding.h"
 #include "tests/bake/meshes.h"
 #include "tests/bake/points.h"
