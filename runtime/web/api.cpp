@@ -65,9 +65,8 @@ extern "C" {
 
 /// Like relief_world_load(), but loads the coarse container of each collider that has one.
 EMSCRIPTEN_KEEPALIVE relief_world* relief_world_load_coarse(const char* path) {
-    return create<relief_world>(__func__, [&](const Call&) -> Result<std::shared_ptr<WorldObject>> {
-        return std::make_shared<WorldObject>(
-            WorldObject{WorldField(RELIEF_TRY(loadWorld(path, {}, WorldDetail::kCoarse)))});
+    return create<relief_world>(__func__, [&](const Call&) -> Result<WorldObject> {
+        return WorldObject{WorldField(RELIEF_TRY(loadWorld(path, {}, WorldDetail::kCoarse)))};
     });
 }
 
