@@ -38,12 +38,19 @@ class Shape:
         self.points, self.triangles, self.materials = [], [], []
         self.colors = None  # colours of the points in pictures; None: colours of the materials
 
-    def add(self, points, triangles, material):
+    def add(self, points, faces, material):
+        """faces: triangles, or convex polygons, which become fans."""
         first = len(self.points)
+        fans = [tuple(first + i for i in (f[0], f[k], f[k + 1])) for f in faces for k in range(1, len(f) - 1)]
         self.points += points
-        self.triangles += [tuple(first + i for i in t) for t in triangles]
-        self.materials += [material] * len(triangles)
+        self.triangles += fans
+        self.materials += [material] * len(fans)
         return self
+
+    def bar(self, corners, material):
+        """A hexahedron: four corners of one end, then those of the other."""
+        sides = [(i, (i + 1) % 4, 4 + (i + 1) % 4, 4 + i) for i in range(4)]
+        return self.add(corners, [(0, 3, 2, 1), (4, 5, 6, 7)] + sides, material)
 
     def box(self, low, high, material, turn=0.0, about=(0.0, 0.0)):
         """turn: radians about the vertical axis through `about`, (x, z)."""
@@ -53,8 +60,7 @@ class Shape:
             c, s = math.cos(turn), math.sin(turn)
             dx, dz = x - about[0], z - about[1]
             corners.append((about[0] + c * dx + s * dz, y, about[1] - s * dx + c * dz))
-        quads = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)]
-        return self.add(corners, [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))], material)
+        return self.add(corners, [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)], material)
 
     def beam(self, a, b, thick, material):
         """A square bar from a to b."""
@@ -66,25 +72,17 @@ class Shape:
         size = math.sqrt(sum(x * x for x in u))
         u = [0.5 * thick * x / size for x in u]
         v = cross(w, u)
-        points = [tuple(p[k] + i * u[k] + j * v[k] for k in range(3)) for p in (a, b) for i, j in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
-        quads = [(0, 3, 2, 1), (4, 5, 6, 7)] + [(i, (i + 1) % 4, 4 + (i + 1) % 4, 4 + i) for i in range(4)]
-        return self.add(points, [t for q in quads for t in ((q[0], q[1], q[2]), (q[0], q[2], q[3]))], material)
+        return self.bar([tuple(p[k] + i * u[k] + j * v[k] for k in range(3))
+                         for p in (a, b) for i, j in ((-1, -1), (1, -1), (1, 1), (-1, 1))], material)
 
     def turned(self, profile, sides, material, at=(0.0, 0.0, 0.0)):
         """A solid of revolution about the vertical axis through `at`. profile: (radius, height) upwards."""
         points = [(at[0] + r * math.cos(2 * math.pi * k / sides), at[1] + h, at[2] - r * math.sin(2 * math.pi * k / sides))
                   for r, h in profile for k in range(sides)]
-        rings = len(profile)
-        triangles = []
-        for i in range(rings - 1):
-            for k in range(sides):
-                a, b = i * sides + k, i * sides + (k + 1) % sides
-                triangles += [(a, b, b + sides), (a, b + sides, a + sides)]
-        points += [(at[0], at[1] + profile[0][1], at[2]), (at[0], at[1] + profile[-1][1], at[2])]
+        faces, last, count = strips(len(profile), sides), len(points) - sides, len(points)
         for k in range(sides):
-            triangles.append((len(points) - 2, (k + 1) % sides, k))
-            triangles.append((len(points) - 1, (rings - 1) * sides + k, (rings - 1) * sides + (k + 1) % sides))
-        return self.add(points, triangles, material)
+            faces += [(count, (k + 1) % sides, k), (count + 1, last + k, last + (k + 1) % sides)]
+        return self.add(points + [(at[0], at[1] + profile[i][1], at[2]) for i in (0, -1)], faces, material)
 
     def blob(self, at, radius, rough, seed, material, flat=1.0, steps=2):
         """A ball with bumps."""
@@ -108,14 +106,13 @@ class Shape:
         """A prism along x. profile: six corners (z, y), three on the lower side from -z to z, three on the upper side back."""
         points = [(x, y, w) for x in (x0, x1) for w, y in profile]
         n = len(profile)
-        triangles = []
+        faces = []
         for k in range(n):
             a, b = k, (k + 1) % n
-            triangles += [(a, n + b, b), (a, n + a, n + b)]
+            faces += [(a, n + b, b), (a, n + a, n + b)]
         for quad in ((0, 1, 4, 5), (1, 2, 3, 4)):
-            triangles += [(quad[0], quad[1], quad[2]), (quad[0], quad[2], quad[3])]
-            triangles += [(n + quad[0], n + quad[2], n + quad[1]), (n + quad[0], n + quad[3], n + quad[2])]
-        return self.add(points, triangles, material)
+            faces += [quad, (n + quad[0], n + quad[2], n + quad[1]), (n + quad[0], n + quad[3], n + quad[2])]
+        return self.add(points, faces, material)
 
     def gable(self, x, z, base, eaves, ridge, material):
         """Gable walls over [-x, x] × [-z, z] up to a ridge along x."""
@@ -124,6 +121,12 @@ class Shape:
         for a, b in ((0, 1), (1, 2), (2, 3), (3, 4), (4, 0)):
             triangles += [(a, 5 + a, 5 + b), (a, 5 + b, b)]
         return self.add(points, [(a, c, b) for a, b, c in triangles] if signed(points, triangles) < 0 else triangles, material)
+
+
+def strips(rings, sides):
+    """Quads between consecutive rings of points."""
+    return [(i * sides + k, i * sides + (k + 1) % sides, (i + 1) * sides + (k + 1) % sides, (i + 1) * sides + k)
+            for i in range(rings - 1) for k in range(sides)]
 
 
 def cross(a, b):
@@ -246,9 +249,7 @@ def sails():
             r = 1.4 + 0.6 * i
             s.beam(at(r, -0.1), at(r, 1.3), 0.07, "wood")
         corners = [at(1.5, 0.1), at(6.1, 0.1), at(6.1, 1.2), at(1.5, 1.2)]
-        points = [(x, y, -0.05) for x, y, _ in corners] + [(x, y, 0.02) for x, y, _ in corners]
-        faces = [(0, 3, 2, 1), (4, 5, 6, 7)] + [(i, (i + 1) % 4, 4 + (i + 1) % 4, 4 + i) for i in range(4)]
-        s.add(points, [t for f in faces for t in ((f[0], f[1], f[2]), (f[0], f[2], f[3]))], "canvas")
+        s.bar([(x, y, z) for z in (-0.05, 0.02) for x, y, _ in corners], "canvas")
     return s
 
 
@@ -336,14 +337,8 @@ def well():
     ring = [(1.1, -0.6), (1.1, 0.85), (0.8, 0.85), (0.8, 0.5)]
     sides = 20
     points = [(r * math.cos(2 * math.pi * k / sides), y, -r * math.sin(2 * math.pi * k / sides)) for r, y in ring for k in range(sides)]
-    triangles = []
-    for i in range(3):
-        for k in range(sides):
-            a, b = i * sides + k, i * sides + (k + 1) % sides
-            triangles += [(a, b, b + sides), (a, b + sides, a + sides)]
-    points += [(0.0, -0.6, 0.0)]
-    triangles += [(len(points) - 1, (k + 1) % sides, k) for k in range(sides)]
-    s.add(points, triangles, "stone")
+    bottom = [(len(points), (k + 1) % sides, k) for k in range(sides)]
+    s.add(points + [(0.0, -0.6, 0.0)], strips(len(ring), sides) + bottom, "stone")
     disc = [points[3 * sides + k] for k in range(sides)] + [(0.0, 0.5, 0.0)]
     s.add(disc, [(sides, k, (k + 1) % sides) for k in range(sides)], "water")
     for x in (-0.95, 0.95):
@@ -451,11 +446,9 @@ def ground_color(x, z):
 def pond():
     ring = [(5.2 * math.cos(2 * math.pi * k / 40), 0.0, -5.2 * math.sin(2 * math.pi * k / 40)) for k in range(40)]
     low = [(x, -0.6, z) for x, _, z in ring]
-    triangles = [(80, k, (k + 1) % 40) for k in range(40)] + [(81, 40 + (k + 1) % 40, 40 + k) for k in range(40)]
-    for k in range(40):
-        a, b = k, (k + 1) % 40
-        triangles += [(40 + a, 40 + b, b), (40 + a, b, a)]
-    return Shape().add(ring + low + [(0.0, 0.0, 0.0), (0.0, -0.6, 0.0)], triangles, "water")
+    faces = [(80, k, (k + 1) % 40) for k in range(40)] + [(81, 40 + (k + 1) % 40, 40 + k) for k in range(40)]
+    faces += [(40 + k, 40 + (k + 1) % 40, (k + 1) % 40, k) for k in range(40)]
+    return Shape().add(ring + low + [(0.0, 0.0, 0.0), (0.0, -0.6, 0.0)], faces, "water")
 
 
 def shapes():

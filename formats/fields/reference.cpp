@@ -126,6 +126,10 @@ Json numbersSchema(std::size_t count, bool whole, const FieldInfo& info) {
             {"maxItems", count}};
 }
 
+Json listSchema(const Json& items) {
+    return {{"type", "array"}, {"items", items}};
+}
+
 bool isWhole(FieldRef value) {
     return value.form() == FieldForm::kUnsigned || value.form() == FieldForm::kSigned;
 }
@@ -255,21 +259,21 @@ std::string markdownTables(const std::vector<FieldReference>& fields,
     return text;
 }
 
-Json fileSchema(const std::vector<FieldReference>& fields) {
+Json fileSchema(const std::vector<FieldReference>& fields, const std::string& place) {
     Json properties = Json::object();
     Json required = Json::array();
     for (const FieldReference& field : fields) {
         Json schema = {{"description", fieldDescription(field.info)}};
+        const std::string here = place + "/properties/" + std::string(field.name);
         if (field.fields.empty()) {
             schema.update(field.type.schema);
+        } else if (field.info.rules.single) {
+            const std::string table = here + "/oneOf/0";
+            schema["oneOf"] = {fileSchema(field.fields, table), listSchema({{"$ref", table}})};
+        } else if (field.several) {
+            schema.update(listSchema(fileSchema(field.fields, here + "/items")));
         } else {
-            Json table = fileSchema(field.fields);
-            Json list = {{"type", "array"}, {"items", table}};
-            if (field.info.rules.single) {
-                schema["oneOf"] = {table, list};
-            } else {
-                schema.update(field.several ? list : table);
-            }
+            schema.update(fileSchema(field.fields, here));
         }
         properties[std::string(field.name)] = std::move(schema);
         if (field.info.rules.required && field.info.rules.only.empty()) {

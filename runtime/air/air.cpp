@@ -51,11 +51,10 @@ Result<void> checkNoise(const CurlNoise& noise) {
 void fields(FieldVisitor& visit, Attractor& a) {
     visit("position", a.position, {"Centre of attraction", "[x, y, z]", kPointRange, {}, kRequired});
     visit("strength", a.strength,
-          {"Acceleration at the radius; negative values repel",
-           "1/s²",
-           within(kAccelerationMax),
-           {},
-           {.required = true, .not_zero = true}});
+          {.help = "Acceleration at the radius; negative values repel",
+           .unit = "1/s²",
+           .range = within(kAccelerationMax),
+           .rules = {.required = true, .not_zero = true}});
     visit("radius", a.radius, {"Distance at which the strength peaks", {}, kSizeRange, {}, kRequired});
     visit("falloff", a.falloff, {"Exponent of the decrease with distance beyond the radius", {}, {0.0, 2.0}});
     visit("reach", a.reach,
@@ -70,11 +69,10 @@ void fields(FieldVisitor& visit, Vortex& v) {
     visit("axis", v.axis,
           {"Direction of the axis, of any length", "[x, y, z]", kPointRange, {}, {.unit_length = true}});
     visit("strength", v.strength,
-          {"Acceleration at the radius, right-handed about the axis",
-           "1/s²",
-           within(kAccelerationMax),
-           {},
-           {.required = true, .not_zero = true}});
+          {.help = "Acceleration at the radius, right-handed about the axis",
+           .unit = "1/s²",
+           .range = within(kAccelerationMax),
+           .rules = {.required = true, .not_zero = true}});
     visit("radius", v.radius,
           {"Distance from the axis at which the strength peaks", {}, kSizeRange, {}, kRequired});
     visit("falloff", v.falloff, {"Exponent of the decrease with distance beyond the radius", {}, {0.0, 2.0}});

@@ -15,8 +15,6 @@ namespace relief {
 
 namespace {
 
-constexpr ParticleType kSnow{.restitution = 0.0F, .friction = 1.0F};
-
 /// Returns four poses of half size in alternate corners of the box.
 std::vector<Pose> fourPoses(const BenchScene& scene) {
     std::vector<Pose> poses;
@@ -65,7 +63,7 @@ Result<WorldTextures> makeTextures(const BenchScene& scene, const BenchVariant& 
 }
 
 Result<void> setSixteenTypes(ParticleSystem& particles, const BenchScene& /*scene*/) {
-    std::vector<ParticleType> types(kParticleTypesMax, benchParticleType());
+    std::vector<ParticleType> types(kParticleTypesMax, kBenchSnow);
     for (std::size_t i = 0; i < types.size(); ++i) {
         const float share = static_cast<float>(i) / static_cast<float>(types.size());
         types[i].mass = 1.0F + share;
@@ -75,7 +73,7 @@ Result<void> setSixteenTypes(ParticleSystem& particles, const BenchScene& /*scen
 }
 
 Result<void> setRadius(ParticleSystem& particles, const BenchScene& scene) {
-    ParticleType type = benchParticleType();
+    ParticleType type = kBenchSnow;
     type.radius = 0.005F * scene.side;
     return particles.setType(type);
 }
@@ -136,13 +134,6 @@ std::function<void()> turning(WorldTextures* textures, std::vector<Pose> poses) 
 
 }  // namespace
 
-ParticleType benchParticleType() {
-    ParticleType type;
-    type.restitution = kSnow.restitution;
-    type.friction = kSnow.friction;
-    return type;
-}
-
 BenchScene makeBenchScene(Collider collider, std::uint32_t particles, float lifetime) {
     BenchScene scene;
     scene.collider = std::move(collider);
@@ -185,7 +176,7 @@ Result<BenchSystem> makeBenchSystem(const BenchScene& scene, StepPath path, cons
     BenchSystem system;
     system.particles = std::make_unique<ParticleSystem>(std::move(particles));
     RELIEF_TRY(system.particles->setForces(scene.forces));
-    RELIEF_TRY(system.particles->setType(kSnow));
+    RELIEF_TRY(system.particles->setType(kBenchSnow));
     if (variant.solids != Solids::kNone) {
         system.textures = std::make_unique<WorldTextures>(RELIEF_TRY(makeTextures(scene, variant)));
         RELIEF_TRY(system.particles->setCollider(system.textures.get()));

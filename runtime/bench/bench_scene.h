@@ -34,8 +34,8 @@ struct BenchScene {
 [[nodiscard]] BenchScene makeBenchScene(Collider collider, std::uint32_t particles,
                                         float lifetime = kBenchForever);
 
-/// Returns the type of the snow, without a radius.
-[[nodiscard]] ParticleType benchParticleType();
+/// The type of the snow, without a radius.
+inline constexpr ParticleType kBenchSnow{.restitution = 0.0F, .friction = 1.0F};
 
 /// A particle system with its colliders.
 struct BenchSystem {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/bench/brick_rival.h"
-
 #include <algorithm>
 #include <glm/common.hpp>
 #include <string>
 #include <utility>
 
+#include "runtime/bench/rival_step.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"

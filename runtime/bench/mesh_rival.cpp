@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/bench/mesh_rival.h"
-
 #include <algorithm>
 #include <string>
 
+#include "runtime/bench/rival_step.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"

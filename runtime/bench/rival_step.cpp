@@ -26,7 +26,7 @@ Result<RivalStep> RivalStep::create(Rival rival, const BenchScene& scene, StepPa
     made.rival_ = std::move(rival);
     made.path_ = RELIEF_TRY(chosenPath(path));
     made.forces_ = scene.forces;
-    made.types_ = {benchParticleType()};
+    made.types_ = {kBenchSnow};
     made.makeState(scene);
     for (std::size_t i = 0; i < 2; ++i) {
         std::vector<GLuint> names;

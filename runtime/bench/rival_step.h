@@ -7,7 +7,9 @@
 #include <functional>
 #include <vector>
 
+#include "formats/bricks/brick_atlas.h"
 #include "runtime/bench/bench_scene.h"
+#include "runtime/bench/mesh_tree.h"
 #include "runtime/particles/step_pass.h"
 
 namespace relief {
@@ -26,6 +28,15 @@ struct Rival {
     /// Adds a float to the state of each particle: the sampler u_kept, and the output or image unit 2. Initially -1.
     bool keeps = false;
 };
+
+/// Uploads a distance volume of bricks. Errors: kLimit (GL limits for bricks or texels), kFailure.
+[[nodiscard]] Result<Rival> makeBrickRival(const BrickAtlas& atlas);
+
+/// Uploads a triangle mesh with exact distances. The textures and defines of the rival also fit bench/mesh_query.frag.
+/// \param keeps  stores a bound on the distance with each particle, which avoids queries or limits their range. The
+///               particles move exactly as without the bound.
+/// Errors: kLimit (GL limits), kFailure.
+[[nodiscard]] Result<Rival> makeMeshRival(const MeshTree& tree, bool keeps = false);
 
 class RivalStep {
   public:

@@ -46,16 +46,15 @@ Result<AnimatedBody*> relief::animatedOf(const Call& call, relief_textures* anim
 }
 
 relief_animation* relief_animation_create(const relief_collider* collider) {
-    return create<relief_animation>(
-        __func__, [&](const Call& call) -> Result<std::shared_ptr<AnimationObject>> {
-            const Collider& from = *RELIEF_TRY(call.object(collider, "collider"));
-            if (from.animation.empty()) {
-                return call.reject("collider has no animated mesh; bake it with --animated");
-            }
-            auto mesh = std::make_shared<const AnimatedMesh>(RELIEF_TRY(readAnimatedMesh(from.animation)));
-            const PoseExtent extent = poseExtent(*mesh);
-            return std::make_shared<AnimationObject>(AnimationObject{std::move(mesh), extent});
-        });
+    return create<relief_animation>(__func__, [&](const Call& call) -> Result<AnimationObject> {
+        const Collider& from = *RELIEF_TRY(call.object(collider, "collider"));
+        if (from.animation.empty()) {
+            return call.reject("collider has no animated mesh; bake it with --animated");
+        }
+        auto mesh = std::make_shared<const AnimatedMesh>(RELIEF_TRY(readAnimatedMesh(from.animation)));
+        const PoseExtent extent = poseExtent(*mesh);
+        return AnimationObject{std::move(mesh), extent};
+    });
 }
 
 void relief_animation_free(relief_animation* animation) {
@@ -105,9 +104,8 @@ size_t relief_animation_weight_count(const relief_animation* animation) {
 }
 
 relief_world* relief_world_create(void) {
-    return create<relief_world>(__func__, [](const Call&) -> Result<std::shared_ptr<WorldObject>> {
-        return std::make_shared<WorldObject>(WorldObject{WorldField(LoadedWorld{})});
-    });
+    return create<relief_world>(
+        __func__, [](const Call&) -> Result<WorldObject> { return WorldObject{WorldField(LoadedWorld{})}; });
 }
 
 int64_t relief_world_add(relief_world* world, const relief_animation* animation, const relief_pose* pose,
@@ -125,12 +123,7 @@ int64_t relief_world_add(relief_world* world, const relief_animation* animation,
         added.options.resolution = resolution > 0 ? resolution : added.options.resolution;
         added.options.box_size = added.animation.extent.box_size;
         if (box_size != nullptr) {
-            glm::vec3 sides;
-            for (std::size_t i = 0; i < 3; ++i) {
-                RELIEF_TRY(call.number(box_size[i], kLifetime, {"box_size", i}));
-                sides[static_cast<int>(i)] = box_size[i];
-            }
-            added.options.box_size = sides;
+            added.options.box_size = RELIEF_TRY(vectorOf(call, box_size, kLifetime, "box_size"));
         }
         const std::size_t body = to.field.world().bodies.size() + to.added.size();
         if (body >= kWorldBodiesMax) {

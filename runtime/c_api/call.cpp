@@ -16,6 +16,10 @@ std::string numberText(double value) {
     return text;
 }
 
+/// In the order of HandleKind.
+constexpr std::array<const char*, kHandleKinds> kTypeNames{
+    "relief_collider", "relief_textures",  "relief_particles", "relief_renderer",
+    "relief_world",    "relief_animation", "relief_emitter"};
 constexpr int kKindBits = 3;
 constexpr std::uintptr_t kHighest = ~(~std::uintptr_t{0} >> 1);
 
@@ -121,8 +125,8 @@ Result<void> Call::context() const {
     return reject("no OpenGL context is current; make yours current on this thread");
 }
 
-tl::unexpected<Error> Call::faulty(HandleKind kind, std::uintptr_t handle, const char* argument,
-                                   const char* type) const {
+tl::unexpected<Error> Call::faulty(HandleKind kind, std::uintptr_t handle, const char* argument) const {
+    const std::string type = kTypeNames[static_cast<std::size_t>(kind) - 1];
     if (handle != 0) {
         return reject(std::string(argument) + " is not a live " + type +
                       " handle: it was freed, has another type, or was never created");

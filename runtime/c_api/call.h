@@ -56,15 +56,18 @@ class HandleTable {
 /// The table of the process. It is never destroyed; the system reclaims objects that the program does not free.
 [[nodiscard]] HandleTable& handleTable();
 
-/// Maps a handle type H of the C API to its object: specialisations define Object, kKind and kName.
+/// The object behind a handle.
+template <class T, HandleKind kind>
+struct HandleOf {
+    using Object = T;
+    static constexpr HandleKind kKind = kind;
+};
+
+/// Maps a handle type H of the C API to its object: specialisations derive from HandleOf.
 template <class H>
 struct HandleType;
 template <>
-struct HandleType<relief_collider> {
-    using Object = Collider;
-    static constexpr HandleKind kKind = HandleKind::kCollider;
-    static constexpr const char* kName = "relief_collider";
-};
+struct HandleType<relief_collider> : HandleOf<Collider, HandleKind::kCollider> {};
 
 /// The errors of the calls of one thread.
 class CallErrors {
@@ -182,10 +185,10 @@ class Call {
         if (const auto* found = handleTable().find(HandleType<H>::kKind, number); found != nullptr) {
             return found;
         }
-        return faulty(HandleType<H>::kKind, number, argument, HandleType<H>::kName);
+        return faulty(HandleType<H>::kKind, number, argument);
     }
-    [[nodiscard]] tl::unexpected<Error> faulty(HandleKind kind, std::uintptr_t handle, const char* argument,
-                                               const char* type) const;
+    [[nodiscard]] tl::unexpected<Error> faulty(HandleKind kind, std::uintptr_t handle,
+                                               const char* argument) const;
     [[nodiscard]] tl::unexpected<Error> wrongNumber(double value, const FieldRange& range,
                                                     const NumberName& name) const;
 
@@ -211,12 +214,13 @@ T answer(const char* function, T failed, const F& body) noexcept {
     return failed;
 }
 
-/// Returns a new handle of the object that body(call) creates, or NULL on failure.
+/// Returns a new handle of the object that body(call) returns, or NULL on failure.
 template <class H, class F>
 H* create(const char* function, const F& body) noexcept {
     constexpr HandleKind kKind = HandleType<H>::kKind;
     const auto handle = answer(function, std::uintptr_t{0}, [&](const Call& call) -> Result<std::uintptr_t> {
-        return handleTable().add(kKind, RELIEF_TRY(body(call)));
+        using Object = typename HandleType<H>::Object;
+        return handleTable().add(kKind, std::make_shared<Object>(RELIEF_TRY(body(call))));
     });
     if (handle == 0) {
         callErrors().failedToMake(kKind);

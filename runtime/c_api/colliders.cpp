@@ -52,17 +52,17 @@ uint64_t relief_error_count() {
 // --- colliders, on the CPU
 
 relief_collider* relief_collider_load(const char* path) {
-    return create<relief_collider>(__func__, [&](const Call& call) -> Result<std::shared_ptr<Collider>> {
+    return create<relief_collider>(__func__, [&](const Call& call) -> Result<Collider> {
         RELIEF_TRY(call.notNull(path, "path"));
-        return std::make_shared<Collider>(RELIEF_TRY(loadCollider(path)));
+        return loadCollider(path);
     });
 }
 
 relief_collider* relief_collider_read(const void* bytes, size_t size) {
-    return create<relief_collider>(__func__, [&](const Call& call) -> Result<std::shared_ptr<Collider>> {
+    return create<relief_collider>(__func__, [&](const Call& call) -> Result<Collider> {
         const auto* first = static_cast<const std::byte*>(bytes);
         RELIEF_TRY(call.array(first, "bytes", size, "size"));
-        return std::make_shared<Collider>(RELIEF_TRY(readContainer({first, size})));
+        return readContainer({first, size});
     });
 }
 
@@ -111,16 +111,9 @@ int64_t relief_collider_material_at(const relief_collider* collider, const float
         const Materials& materials = RELIEF_TRY(call.object(collider, "collider"))->materials;
         RELIEF_TRY(call.notNull(point, "point"));
         RELIEF_TRY(call.notNull(normal, "normal"));
-        for (std::size_t i = 0; i < 3; ++i) {
-            RELIEF_TRY(call.number(point[i], kAny, {"point", i}));
-        }
-        for (std::size_t i = 0; i < 3; ++i) {
-            RELIEF_TRY(call.number(normal[i], kAny, {"normal", i}));
-        }
-        const glm::vec3 n(normal[0], normal[1], normal[2]);
-        return materials.empty()
-                   ? int64_t{-1}
-                   : static_cast<int64_t>(materialAt(materials, glm::vec3(point[0], point[1], point[2]), n));
+        const glm::vec3 p = RELIEF_TRY(vectorOf(call, point, kAny, "point"));
+        const glm::vec3 n = RELIEF_TRY(vectorOf(call, normal, kAny, "normal"));
+        return materials.empty() ? int64_t{-1} : static_cast<int64_t>(materialAt(materials, p, n));
     });
 }
 
@@ -140,13 +133,12 @@ void relief_collider_nearest(const relief_collider* collider, const float* point
 // --- colliders, on the GPU
 
 relief_textures* relief_textures_create(const relief_collider* collider) {
-    return create<relief_textures>(
-        __func__, [&](const Call& call) -> Result<std::shared_ptr<TexturesObject>> {
-            const Collider& field = *RELIEF_TRY(call.object(collider, "collider"));
-            RELIEF_TRY(call.context());
-            auto textures = RELIEF_TRY(WorldTextures::create(field));
-            return std::make_shared<TexturesObject>(RELIEF_TRY(texturesObject(std::move(textures))));
-        });
+    return create<relief_textures>(__func__, [&](const Call& call) -> Result<TexturesObject> {
+        const Collider& field = *RELIEF_TRY(call.object(collider, "collider"));
+        RELIEF_TRY(call.context());
+        auto textures = RELIEF_TRY(WorldTextures::create(field));
+        return texturesObject(std::move(textures));
+    });
 }
 
 void relief_textures_free(relief_textures* textures) {

@@ -96,14 +96,12 @@ Result<EmitterSurface> surfaceOf(const Call& call, const AnimatedMesh& mesh, con
 
 /// \param mesh     animated mesh; null for a collider.
 /// \param surface  surface of the mesh at rest, or of the collider.
-Result<std::shared_ptr<EmitterObject>> emitterOf(const Call& call, const relief_emitter_options& options,
-                                                 std::shared_ptr<const AnimatedMesh> mesh,
-                                                 EmitterSurface surface) {
+Result<EmitterObject> emitterOf(const Call& call, const relief_emitter_options& options,
+                                std::shared_ptr<const AnimatedMesh> mesh, EmitterSurface surface) {
     EmitterSettings settings = RELIEF_TRY(settingsOf(call, options));
     settings.surface = BirthSurfaceValue(std::make_unique<EmitterSurface>(std::move(surface)));
     RELIEF_TRY(withArgument(call, "options", Emitter::check(settings)));
-    return std::make_shared<EmitterObject>(
-        EmitterObject{std::move(mesh), Emitter(std::move(settings), options.seed), options.inherit});
+    return EmitterObject{std::move(mesh), Emitter(std::move(settings), options.seed), options.inherit};
 }
 
 /// Deforms the emitter's mesh like the body, which reached its current pose during the last dt seconds.
@@ -134,7 +132,7 @@ std::vector<PoseKey> motionOf(const Pose& before, const Pose& now, double second
 
 relief_emitter* relief_emitter_create(const relief_animation* animation, const char* group,
                                       const char* material, const relief_emitter_options* options) {
-    return create<relief_emitter>(__func__, [&](const Call& call) -> Result<std::shared_ptr<EmitterObject>> {
+    return create<relief_emitter>(__func__, [&](const Call& call) -> Result<EmitterObject> {
         const auto mesh = RELIEF_TRY(call.object(animation, "animation"))->mesh;
         RELIEF_TRY(call.notNull(options, "options"));
         const auto all = RELIEF_TRY(call.structure(options, "options", "relief_emitter_options"));
@@ -144,7 +142,7 @@ relief_emitter* relief_emitter_create(const relief_animation* animation, const c
 
 relief_emitter* relief_emitter_create_on(const relief_collider* collider, const char* material,
                                          const relief_emitter_options* options) {
-    return create<relief_emitter>(__func__, [&](const Call& call) -> Result<std::shared_ptr<EmitterObject>> {
+    return create<relief_emitter>(__func__, [&](const Call& call) -> Result<EmitterObject> {
         const Collider& on = *RELIEF_TRY(call.object(collider, "collider"));
         RELIEF_TRY(call.notNull(options, "options"));
         const auto all = RELIEF_TRY(call.structure(options, "options", "relief_emitter_options"));

@@ -91,43 +91,17 @@ struct WorldObject {
 };
 
 template <>
-struct HandleType<relief_textures> {
-    using Object = TexturesObject;
-    static constexpr HandleKind kKind = HandleKind::kTextures;
-    static constexpr const char* kName = "relief_textures";
-};
+struct HandleType<relief_textures> : HandleOf<TexturesObject, HandleKind::kTextures> {};
 template <>
-struct HandleType<relief_particles> {
-    using Object = ParticlesObject;
-    static constexpr HandleKind kKind = HandleKind::kParticles;
-    static constexpr const char* kName = "relief_particles";
-};
+struct HandleType<relief_particles> : HandleOf<ParticlesObject, HandleKind::kParticles> {};
 template <>
-struct HandleType<relief_renderer> {
-    using Object = RendererObject;
-    static constexpr HandleKind kKind = HandleKind::kPicture;
-    static constexpr const char* kName = "relief_renderer";
-};
+struct HandleType<relief_renderer> : HandleOf<RendererObject, HandleKind::kPicture> {};
 template <>
-struct HandleType<relief_world> {
-    using Object = WorldObject;
-    static constexpr HandleKind kKind = HandleKind::kWorld;
-    static constexpr const char* kName = "relief_world";
-};
-
+struct HandleType<relief_world> : HandleOf<WorldObject, HandleKind::kWorld> {};
 template <>
-struct HandleType<relief_animation> {
-    using Object = AnimationObject;
-    static constexpr HandleKind kKind = HandleKind::kAnimation;
-    static constexpr const char* kName = "relief_animation";
-};
-
+struct HandleType<relief_animation> : HandleOf<AnimationObject, HandleKind::kAnimation> {};
 template <>
-struct HandleType<relief_emitter> {
-    using Object = EmitterObject;
-    static constexpr HandleKind kKind = HandleKind::kEmitter;
-    static constexpr const char* kName = "relief_emitter";
-};
+struct HandleType<relief_emitter> : HandleOf<EmitterObject, HandleKind::kEmitter> {};
 
 // Ranges of relief_runtime.h. A particle beyond 1e15 counts as lost (isLost()).
 inline constexpr FieldRange kAny{-1e15, 1e15};
@@ -148,6 +122,15 @@ inline void put(const glm::vec3& v, float (&out)[3]) {
 
 inline glm::vec3 pointAt(const float* points, std::size_t i) {
     return {points[3 * i], points[3 * i + 1], points[3 * i + 2]};
+}
+
+/// Checks and returns three numbers.
+[[nodiscard]] inline Result<glm::vec3> vectorOf(const Call& call, const float* given, const FieldRange& range,
+                                                const char* argument) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        RELIEF_TRY(call.number(given[i], range, {argument, i}));
+    }
+    return pointAt(given, 0);
 }
 
 /// Finds an animated body by its number.

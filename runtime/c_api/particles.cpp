@@ -95,17 +95,16 @@ Result<relief_view> viewOf(const Call& call, const relief_view* given) {
 
 relief_particles* relief_particles_create(const relief_textures* textures,
                                           const relief_particles_options* options) {
-    return create<relief_particles>(
-        __func__, [&](const Call& call) -> Result<std::shared_ptr<ParticlesObject>> {
-            const auto among = RELIEF_TRY(call.optional(textures, "textures"));
-            const relief_particles_options all = RELIEF_TRY(optionsOf(call, options));
-            RELIEF_TRY(call.context());
-            auto system =
-                RELIEF_TRY(ParticleSystem::create({.capacity = all.capacity == 0 ? 65536 : all.capacity}));
-            RELIEF_TRY(system.setCollider(among ? &among->textures() : nullptr));
-            RELIEF_TRY(apply(all, system));
-            return std::make_shared<ParticlesObject>(ParticlesObject{among, std::move(system), {}});
-        });
+    return create<relief_particles>(__func__, [&](const Call& call) -> Result<ParticlesObject> {
+        const auto among = RELIEF_TRY(call.optional(textures, "textures"));
+        const relief_particles_options all = RELIEF_TRY(optionsOf(call, options));
+        RELIEF_TRY(call.context());
+        auto system =
+            RELIEF_TRY(ParticleSystem::create({.capacity = all.capacity == 0 ? 65536 : all.capacity}));
+        RELIEF_TRY(system.setCollider(among ? &among->textures() : nullptr));
+        RELIEF_TRY(apply(all, system));
+        return ParticlesObject{among, std::move(system), {}};
+    });
 }
 
 void relief_particles_free(relief_particles* particles) {
@@ -176,29 +175,28 @@ int64_t relief_particles_read(const relief_particles* particles, relief_particle
 // --- renderers
 
 relief_renderer* relief_renderer_create(const relief_textures* textures, const relief_collider* collider) {
-    return create<relief_renderer>(
-        __func__, [&](const Call& call) -> Result<std::shared_ptr<RendererObject>> {
-            const auto among = RELIEF_TRY(call.optional(textures, "textures"));
-            const auto field = RELIEF_TRY(call.optional(collider, "collider"));
-            const bool world = among && among->world;
-            if (world && field) {
-                return call.reject("collider must be NULL for textures of a world");
-            }
-            if (!world && (among == nullptr) != (field == nullptr)) {
-                return call.reject(std::string(among ? "collider" : "textures") +
-                                   " is NULL; pass the textures and their collider, or NULL for both");
-            }
-            RELIEF_TRY(call.context());
-            std::optional<ColliderView> view;
-            float diameter = 0.01F;
-            if (among) {
-                view = world ? ColliderView{&among->textures(), *among->world, among->texel}
-                             : ColliderView{&among->textures(), field->bounds, finestTexel(*field)};
-                diameter = 0.01F * view->bounds.longestSide();
-            }
-            auto renderer = RELIEF_TRY(ParticleRenderer::create(view));
-            return std::make_shared<RendererObject>(RendererObject{among, std::move(renderer), diameter});
-        });
+    return create<relief_renderer>(__func__, [&](const Call& call) -> Result<RendererObject> {
+        const auto among = RELIEF_TRY(call.optional(textures, "textures"));
+        const auto field = RELIEF_TRY(call.optional(collider, "collider"));
+        const bool world = among && among->world;
+        if (world && field) {
+            return call.reject("collider must be NULL for textures of a world");
+        }
+        if (!world && (among == nullptr) != (field == nullptr)) {
+            return call.reject(std::string(among ? "collider" : "textures") +
+                               " is NULL; pass the textures and their collider, or NULL for both");
+        }
+        RELIEF_TRY(call.context());
+        std::optional<ColliderView> view;
+        float diameter = 0.01F;
+        if (among) {
+            view = world ? ColliderView{&among->textures(), *among->world, among->texel}
+                         : ColliderView{&among->textures(), field->bounds, finestTexel(*field)};
+            diameter = 0.01F * view->bounds.longestSide();
+        }
+        auto renderer = RELIEF_TRY(ParticleRenderer::create(view));
+        return RendererObject{among, std::move(renderer), diameter};
+    });
 }
 
 void relief_renderer_free(relief_renderer* renderer) {

@@ -98,9 +98,9 @@ Result<Pose> relief::poseOf(const Call& call, const relief_pose& given, NumberNa
 }
 
 relief_world* relief_world_load(const char* world_path) {
-    return create<relief_world>(__func__, [&](const Call& call) -> Result<std::shared_ptr<WorldObject>> {
+    return create<relief_world>(__func__, [&](const Call& call) -> Result<WorldObject> {
         RELIEF_TRY(call.notNull(world_path, "world_path"));
-        return std::make_shared<WorldObject>(WorldObject{WorldField(RELIEF_TRY(loadWorld(world_path)))});
+        return WorldObject{WorldField(RELIEF_TRY(loadWorld(world_path)))};
     });
 }
 
@@ -181,15 +181,14 @@ void relief_world_query(const relief_world* world, const float* points, size_t c
 }
 
 relief_textures* relief_textures_create_world(const relief_world* world) {
-    return create<relief_textures>(
-        __func__, [&](const Call& call) -> Result<std::shared_ptr<TexturesObject>> {
-            const WorldObject& from = *RELIEF_TRY(call.object(world, "world"));
-            if (bodyCount(from) == 0) {
-                return call.reject("world has no bodies; add one with relief_world_add()");
-            }
-            RELIEF_TRY(call.context());
-            return std::make_shared<TexturesObject>(RELIEF_TRY(upload(from)));
-        });
+    return create<relief_textures>(__func__, [&](const Call& call) -> Result<TexturesObject> {
+        const WorldObject& from = *RELIEF_TRY(call.object(world, "world"));
+        if (bodyCount(from) == 0) {
+            return call.reject("world has no bodies; add one with relief_world_add()");
+        }
+        RELIEF_TRY(call.context());
+        return upload(from);
+    });
 }
 
 int relief_textures_set_poses(relief_textures* world_textures, const uint32_t* bodies,
@@ -246,20 +245,19 @@ int relief_textures_set_poses(relief_textures* world_textures, const uint32_t* b
 }
 
 relief_textures* relief_textures_stream_world(const char* world_path, uint64_t gpu_bytes) {
-    return create<relief_textures>(
-        __func__, [&](const Call& call) -> Result<std::shared_ptr<TexturesObject>> {
-            RELIEF_TRY(call.notNull(world_path, "world_path"));
-            RELIEF_TRY(call.number(static_cast<double>(gpu_bytes), {1.0, kStreamBytesMax}, {"gpu_bytes"}));
-            RELIEF_TRY(call.context());
-            const LoadedWorld coarse = RELIEF_TRY(loadWorld(world_path, {}, WorldDetail::kCoarse));
-            const World& world = coarse.world;
-            auto stream = RELIEF_TRY(WorldStream::open(coarse, world_path, {.gpu_bytes = gpu_bytes}));
-            auto made = RELIEF_TRY(texturesObject(std::move(stream)));
-            made.world = worldBounds(world);
-            made.texel = made.world->longestSide() / 2048.0F;
-            made.poses = worldPoses(world);
-            return std::make_shared<TexturesObject>(std::move(made));
-        });
+    return create<relief_textures>(__func__, [&](const Call& call) -> Result<TexturesObject> {
+        RELIEF_TRY(call.notNull(world_path, "world_path"));
+        RELIEF_TRY(call.number(static_cast<double>(gpu_bytes), {1.0, kStreamBytesMax}, {"gpu_bytes"}));
+        RELIEF_TRY(call.context());
+        const LoadedWorld coarse = RELIEF_TRY(loadWorld(world_path, {}, WorldDetail::kCoarse));
+        const World& world = coarse.world;
+        auto stream = RELIEF_TRY(WorldStream::open(coarse, world_path, {.gpu_bytes = gpu_bytes}));
+        auto made = RELIEF_TRY(texturesObject(std::move(stream)));
+        made.world = worldBounds(world);
+        made.texel = made.world->longestSide() / 2048.0F;
+        made.poses = worldPoses(world);
+        return made;
+    });
 }
 
 int64_t relief_textures_stream(relief_textures* world_textures, const relief_sphere* spheres, size_t count,

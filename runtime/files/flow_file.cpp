@@ -97,11 +97,10 @@ void fields(FieldVisitor& visit, FlowFile& flow) {
     const FieldFile path{flow.path, flow.origin};
     visit("raw", path, {"Little-endian 32-bit floats, x fastest, then y, then z", {}, {}, {}, kRequired});
     visit("size", flow.size,
-          {"Nodes along x, y and z, at most 2²⁴ in total",
-           "[nx, ny, nz]",
-           {1.0, FlowField::kSideMax},
-           {},
-           kRequired});
+          {.help = "Nodes along x, y and z, at most 2²⁴ in total",
+           .unit = "[nx, ny, nz]",
+           .range = {1.0, FlowField::kSideMax},
+           .rules = kRequired});
     visit("components", flow.components, {"Floats per node", {}, {2.0, 3.0}});
     visit("box_min", flow.box_min,
           {"Lower corner of the flow's box", "[x, y, z]", kPointRange, {}, kRequired});

@@ -68,6 +68,14 @@ std::vector<Pose> posesAt(const Scene& scene, double time) {
     return poses;
 }
 
+/// Returns the body of a collider of the scene; null if none of them is.
+template <class Bodies>
+auto bodyOf(Bodies& bodies, std::size_t collider) {
+    const auto found =
+        std::find_if(bodies.begin(), bodies.end(), [&](const auto& body) { return body.index == collider; });
+    return found == bodies.end() ? nullptr : &*found;
+}
+
 }  // namespace
 
 /// Uploads the colliders: a single one without a pose in its object space, others in world space.
@@ -443,50 +451,35 @@ Result<void> Simulation::showLive(double time) {
 }
 
 const GpuMesh* Simulation::mesh(std::size_t collider) const {
-    const auto found = std::find_if(live_.begin(), live_.end(),
-                                    [&](const LiveBody& body) { return body.index == collider; });
-    if (found != live_.end()) {
-        return &found->collider.mesh();
+    if (const LiveBody* live = bodyOf(live_, collider)) {
+        return &live->collider.mesh();
     }
-    const PlayedBody* played = playedBody(collider);
+    const PlayedBody* played = bodyOf(played_, collider);
     return played == nullptr ? nullptr : &played->collider.live().mesh();
 }
 
-const Simulation::PlayedBody* Simulation::playedBody(std::size_t collider) const {
-    const auto found = std::find_if(played_.begin(), played_.end(),
-                                    [&](const PlayedBody& body) { return body.index == collider; });
-    return found == played_.end() ? nullptr : &*found;
-}
-
 MeshTrail* Simulation::trailOf(std::size_t collider) {
-    for (LiveBody& body : live_) {
-        if (body.index == collider) {
-            return &body.trail;
-        }
+    if (LiveBody* live = bodyOf(live_, collider)) {
+        return &live->trail;
     }
-    for (PlayedBody& body : played_) {
-        if (body.index == collider) {
-            return &body.trail;
-        }
-    }
-    return nullptr;
+    PlayedBody* played = bodyOf(played_, collider);
+    return played == nullptr ? nullptr : &played->trail;
 }
 
 const AnimatedMesh* Simulation::animatedMesh(std::size_t collider) const {
-    const PlayedBody* played = playedBody(collider);
+    const PlayedBody* played = bodyOf(played_, collider);
     return played == nullptr ? nullptr : &played->collider.mesh();
 }
 
 Result<void> Simulation::setPose(std::size_t collider, std::optional<MeshPose> pose) {
-    for (PlayedBody& body : played_) {
-        if (body.index == collider) {
-            RELIEF_TRY(pose ? body.collider.check(*pose) : Result<void>());
-            body.pose = std::move(pose);
-            return {};
-        }
+    PlayedBody* played = bodyOf(played_, collider);
+    if (played == nullptr) {
+        return fail(ErrorCode::kUsage,
+                    "collider " + std::to_string(collider) + " plays no clip; add 'play' in the scene");
     }
-    return fail(ErrorCode::kUsage,
-                "collider " + std::to_string(collider) + " plays no clip; add 'play' in the scene");
+    RELIEF_TRY(pose ? played->collider.check(*pose) : Result<void>());
+    played->pose = std::move(pose);
+    return {};
 }
 
 }  // namespace relief

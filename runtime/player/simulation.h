@@ -125,7 +125,6 @@ class Simulation {
         MeshTrail trail = {};
     };
     Simulation() = default;
-    [[nodiscard]] const PlayedBody* playedBody(std::size_t collider) const;
     /// Returns the trail of a deforming collider; null for other colliders.
     [[nodiscard]] MeshTrail* trailOf(std::size_t collider);
     [[nodiscard]] Result<void> makeTextures(const LoadedScene& loaded,

@@ -15,7 +15,6 @@
 #include "formats/config/toml_reader.h"
 #include "formats/container.h"
 #include "runtime/files/flow_file.h"
-#include "runtime/scene/scene_parser.h"
 #include "runtime/scene/scene_world.h"
 
 namespace relief {

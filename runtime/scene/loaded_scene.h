@@ -16,7 +16,6 @@
 #include "runtime/scene/scene.h"
 #include "runtime/scene/scene_births.h"
 #include "runtime/scene/scene_live.h"
-#include "runtime/scene/scene_play.h"
 #include "runtime/scene/scene_sweep.h"
 
 namespace relief {

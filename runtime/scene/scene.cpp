@@ -11,6 +11,8 @@
 namespace relief {
 namespace {
 
+constexpr std::uint64_t kSceneBytesMax = std::uint64_t{1} << 20;
+
 /// Returns the fault of a camera at `eye`, or nullptr.
 const char* cameraFault(const glm::vec3& eye, const glm::vec3& target) {
     const glm::vec3 d = eye - target;
@@ -357,6 +359,19 @@ Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
     scene.render.first_frame = firstFrame(scene);
     scene.render.last_frame = lastFrame(scene);
     return scene;
+}
+
+Result<Scene> parseScene(std::string_view text, const std::filesystem::path& path,
+                         const std::filesystem::path& root) {
+    Scene scene;
+    RELIEF_TRY(readTomlFile(text, {oneLine(path.native()), path.parent_path(), root, "scene"},
+                            [&](const TomlValue& top) { readToml(top, scene); }));
+    return scene;
+}
+
+Result<Scene> loadScene(const std::filesystem::path& path, const std::filesystem::path& root) {
+    const auto bytes = RELIEF_TRY(readFile(path, kSceneBytesMax));
+    return parseScene({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path, root);
 }
 
 }  // namespace relief

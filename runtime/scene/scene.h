@@ -219,4 +219,17 @@ void fields(FieldVisitor& visit, Scene& scene);
 /// Errors: kInvalidInput (with defaults, the camera is directly above or below its target).
 [[nodiscard]] Result<Scene> withDefaults(Scene scene, const Bounds& bounds);
 
+/// Parses a scene file.
+/// \param text    contents of the file; untrusted.
+/// \param path    name of the file in messages. Paths in the scene are relative to its folder and may not leave it
+///                (confined_path.h).
+/// \param root    another folder in which the scene's files may lie; empty: none.
+/// Errors: kInvalidInput, one line "file:line:column: what is wrong; what to do".
+[[nodiscard]] Result<Scene> parseScene(std::string_view text, const std::filesystem::path& path,
+                                       const std::filesystem::path& root = {});
+
+/// Reads and parses a file. Errors: those of readFile() and parseScene(); kLimit above 1 MiB.
+[[nodiscard]] Result<Scene> loadScene(const std::filesystem::path& path,
+                                      const std::filesystem::path& root = {});
+
 }  // namespace relief

@@ -14,7 +14,6 @@
 #include "runtime/scene/scene_collider.h"
 #include "runtime/scene/scene_emitter.h"
 #include "runtime/scene/scene_live.h"
-#include "runtime/scene/scene_play.h"
 
 namespace relief {
 

@@ -1,9 +1,60 @@
 // SPDX-License-Identifier: Apache-2.0
 // The keys of a scene file.
 #include "runtime/scene/scene.h"
-#include "runtime/scene/scene_types.h"
 
 namespace relief {
+namespace {
+
+/// All keys except `collides_with`, which refers to bodies by name.
+void fields(FieldVisitor& visit, ParticleType& type) {
+    visit("gravity", type.gravity,
+          {"Factor on forces.gravity; negative makes particles rise", {}, within(kFactorMax)});
+    visit("mass", type.mass, {"Divides the drag", {}, {1e-15, 1e9}});
+    visit("radius", type.radius, {"Collision radius; independent of size", {}, kLengthRange});
+    visit("restitution", type.restitution,
+          {"Fraction of the normal speed that is kept", {}, {0.0, 1.0}, "that of [collision]"});
+    visit("friction", type.friction,
+          {"Fraction of the tangential speed that is lost", {}, {0.0, 1.0}, "that of [collision]"});
+    visit("friction_threshold", type.friction_threshold,
+          {"Speed below which there is no friction", "1/s", kSpeedRange, "that of [collision]"});
+    visit("on_collision", type.on_collision, {"Response to a collision (runtime/METHOD.md, Collision)"});
+    visit("lifetime_loss", type.lifetime_loss, {"Lifetime lost in each step in contact", "s", kTimeRange});
+}
+
+void fields(FieldVisitor& visit, SpawnSettings& s) {
+    visit("on", s.on,
+          {.help = "Event. collision: first contact with a body or the ground; death: by age or by a hit",
+           .rules = {.required = true, .selects = true}});
+    visit("parent", s.parent,
+          {.help = "Index or name of the type that hits or dies",
+           .range = {0.0, kParticleTypesMax - 1},
+           .fallback = "all",
+           .rules = {.index_of = "type"}});
+    visit("min_speed", s.min_speed,
+          {.help = "Minimum speed of a hit along the normal, relative to the surface",
+           .unit = "1/s",
+           .range = kSpeedRange,
+           .rules = {.only = "collision"}});
+    visit("type", s.type,
+          {"Index or name of the type to emit", {}, {0.0, kParticleTypesMax - 1}, {}, {.index_of = "type"}});
+    visit("count", FieldSpan{s.count_min, s.count_max}, {"Births per event", {}, {1.0, 10'000.0}});
+    visit("max_per_step", s.max_per_step, {"Maximum births per step", {}, {1.0, 1 << 24}});
+    visit("lifetime", FieldSpan{s.lifetime_min, s.lifetime_max}, {"Lifetime of births", "s", kLifeRange});
+    visit("inherit", s.inherit,
+          {.help =
+               "Factor on the parent's velocity, which births inherit; after a hit, only its tangential part",
+           .range = kFactorRange});
+    visit("speed", FieldSpan{s.speed_min, s.speed_max}, {"Speed within the cone", "1/s", kSpeedRange});
+    visit("kick", s.kick, {"Factor on the hit's speed, which is added to speed", {}, kFactorRange});
+    visit("cone", s.cone_degrees,
+          {"Half angle of the cone around the normal",
+           "degrees",
+           {0.0, 180.0},
+           "60; 180 for \"death\"",
+           {.needs = "speed kick"}});
+}
+
+}  // namespace
 
 void fields(FieldVisitor& visit, ParticleLook& look) {
     visit("size", look.size,
@@ -102,19 +153,15 @@ void fields(FieldVisitor& visit, SceneCollider& c) {
     visit("mesh", FieldMaybe{path, live},
           leftOut({"OBJ or PLY file that deforms; it is not baked", {}, {}, "none", {.instead_of = "file"}}));
     visit("node", c.node,
-          leftOut({"Node of the scene's world to place or move; needs world",
-                   {},
-                   {},
-                   "none",
-                   {.instead_of = "file mesh"}}));
+          leftOut({.help = "Node of the scene's world to place or move; needs world",
+                   .fallback = "none",
+                   .rules = {.instead_of = "file mesh"}}));
     visit("deform", c.live,
           leftOut({"Waves that deform the mesh", {}, {}, "required with mesh", {.needs = "mesh"}}));
     visit("resolution", c.resolution,
-          leftOut({"Texels along a side of each map of the deforming mesh",
-                   {},
-                   {16.0, 4096.0},
-                   {},
-                   {.needs = "mesh"}}));
+          leftOut({.help = "Texels along a side of each map of the deforming mesh",
+                   .range = {16.0, 4096.0},
+                   .rules = {.needs = "mesh"}}));
     visit("play", c.play,
           leftOut({"Clip that the animated mesh plays", {}, {}, "at rest", {.needs = "file"}}));
     fields(visit, c.given_pose);
@@ -130,11 +177,8 @@ void fields(FieldVisitor& visit, SceneCollider& c) {
                    {0.0, 1.0},
                    "clay"}));
     visit("material", c.materials,
-          leftOut({"Colours of the animated mesh's materials",
-                   {},
-                   {},
-                   {},
-                   {.needs = "play", .most = kMeshMaterialsMax}}));
+          leftOut({.help = "Colours of the animated mesh's materials",
+                   .rules = {.needs = "play", .most = kMeshMaterialsMax}}));
     visit("key", c.given_keys, leftOut({"Poses at times; at least two", {}, {}, {}, {.most = kPoseKeysMax}}));
 }
 
@@ -142,11 +186,9 @@ void fields(FieldVisitor& visit, SceneTouching& touching) {
     const NameList names{touching.materials};
     bool named = !touching.materials.empty();
     visit("within", touching.within,
-          {"Largest distance to the nearest other surface that counts as touching",
-           {},
-           kSizeRange,
-           {},
-           kRequired});
+          {.help = "Largest distance to the nearest other surface that counts as touching",
+           .range = kSizeRange,
+           .rules = kRequired});
     visit("material", FieldMaybe{names, named},
           leftOut({"Material that must be touched, or a list of materials", {}, {}, "any, or the ground"}));
     visit("min_speed", touching.min_speed,
@@ -162,12 +204,12 @@ void fields(FieldVisitor& visit, SceneEmitter& e) {
     EmitterAim none;
     EmitterAim& aim = e.aim ? *e.aim : visit.fills() ? e.aim.emplace() : none;
     const EmitterSpeed speed{aim};
-    visit("shape", e.shape,
-          {"Region of births: sphere is the volume, shell its surface, surface that of a collider or mesh",
-           {},
-           {},
-           "\"point\" or \"points\" if that key is set, otherwise \"box\"",
-           {.selects = true}});
+    visit(
+        "shape", e.shape,
+        {.help =
+             "Region of births: sphere is the volume, shell its surface, surface that of a collider or mesh",
+         .fallback = "\"point\" or \"points\" if that key is set, otherwise \"box\"",
+         .rules = {.selects = true}});
     visit("box_min", FieldMaybe{e.box_min, e.has_box},
           {"Lower corner",
            "[x, y, z]",
@@ -181,11 +223,10 @@ void fields(FieldVisitor& visit, SceneEmitter& e) {
            "as box_min, 0.75 L above the top",
            {.needs = "box_min", .only = "box"}});
     visit("point", e.box_min,
-          {"Position",
-           "[x, y, z]",
-           kPointRange,
-           {},
-           {.instead_of = "box_min", .only = "point", .required = true, .chooses = true}});
+          {.help = "Position",
+           .unit = "[x, y, z]",
+           .range = kPointRange,
+           .rules = {.instead_of = "box_min", .only = "point", .required = true, .chooses = true}});
     visit("center", e.center,
           {"Centre", "[x, y, z]", kPointRange, {}, {.only = "sphere shell disc", .required = true}});
     visit("radius", e.radius,
@@ -193,30 +234,22 @@ void fields(FieldVisitor& visit, SceneEmitter& e) {
     visit("normal", e.normal,
           {"Normal of the disc", "[x, y, z]", kPointRange, {}, {.only = "disc", .not_zero = true}});
     visit("points", FieldFile{e.points_file, e.points_origin},
-          {"File of 1 to 2²² points (see below)",
-           {},
-           {},
-           {},
-           {.only = "points", .required = true, .chooses = true}});
+          {.help = "File of 1 to 2²² points (see below)",
+           .rules = {.only = "points", .required = true, .chooses = true}});
     visit("mesh", FieldFile{e.mesh_file, e.mesh_origin},
-          leftOut({"OBJ or PLY file whose surface emits, in the emitter's space",
-                   {},
-                   {},
-                   "the surface of the attached collider, as it moves and deforms",
-                   {.only = "surface"}}));
-    visit("group", e.group,
-          leftOut({"Joint or node whose weights set the density of births; for OBJ, a group or object",
-                   {},
-                   {},
-                   "all",
-                   {.only = "surface"}}));
+          leftOut({.help = "OBJ or PLY file whose surface emits, in the emitter's space",
+                   .fallback = "the surface of the attached collider, as it moves and deforms",
+                   .rules = {.only = "surface"}}));
+    visit(
+        "group", e.group,
+        leftOut({.help = "Joint or node whose weights set the density of births; for OBJ, a group or object",
+                 .fallback = "all",
+                 .rules = {.only = "surface"}}));
     visit("material", e.material, leftOut({"Material that emits", {}, {}, "all", {.only = "surface"}}));
     visit("touching", e.touching,
-          leftOut({"Births only where the surface touches another one",
-                   {},
-                   {},
-                   "everywhere",
-                   {.only = "surface"}}));
+          leftOut({.help = "Births only where the surface touches another one",
+                   .fallback = "everywhere",
+                   .rules = {.only = "surface"}}));
     visit("start", e.start, {"Time at which births begin", "s", kTimeRange});
     visit("rate", FieldMaybe{e.rate, e.has_rate},
           {"Births per second; emitters without a rate share the capacity that the others leave",
@@ -258,18 +291,16 @@ void fields(FieldVisitor& visit, SceneEmitter& e) {
           {"Index or name of the type", {}, {0.0, kParticleTypesMax - 1}, {}, {.index_of = "type"}});
     visit("seed", e.seed, {"Seed; emitter i uses stream i of its seed", {}, {0.0, kSeedMax}});
     visit("attach", e.attach,
-          leftOut({"Index, from 0, of the collider to attach to; needs a position or shape = \"surface\"",
-                   {},
-                   {0.0, WorldTextures::kBodiesMax - 1},
-                   "the world",
-                   {.index_of = "collider"}}));
+          leftOut(
+              {.help = "Index, from 0, of the collider to attach to; needs a position or shape = \"surface\"",
+               .range = {0.0, WorldTextures::kBodiesMax - 1},
+               .fallback = "the world",
+               .rules = {.index_of = "collider"}}));
     visit("key", e.given_keys, leftOut({"Poses at times; at least two", {}, {}, {}, {.most = kPoseKeysMax}}));
     visit("inherit", e.inherit,
-          leftOut({"Factor on the emitter's velocity, which births inherit",
-                   {},
-                   kFactorRange,
-                   {},
-                   {.needs = "attach key"}}));
+          leftOut({.help = "Factor on the emitter's velocity, which births inherit",
+                   .range = kFactorRange,
+                   .rules = {.needs = "attach key"}}));
 }
 
 void fields(FieldVisitor& visit, SceneSpawn& spawn) {
@@ -311,20 +342,19 @@ void fields(FieldVisitor& visit, SceneCollision& c) {
     visit("friction", c.friction, {"Fraction of the tangential speed that is lost", {}, {0.0, 1.0}});
     visit("friction_threshold", c.friction_threshold,
           {"Speed below which there is no friction", "1/s", kSpeedRange});
-    visit("sweep", c.sweep,
-          {"Largest distance between two collision tests within a step; 0: tests only the end of the step",
-           {},
-           kLengthRange,
-           "half the thickness of the thinnest collider if steps are longer, otherwise 0"});
+    visit(
+        "sweep", c.sweep,
+        {.help =
+             "Largest distance between two collision tests within a step; 0: tests only the end of the step",
+         .range = kLengthRange,
+         .fallback = "half the thickness of the thinnest collider if steps are longer, otherwise 0"});
 }
 
 void fields(FieldVisitor& visit, SceneStream& stream) {
     visit("radius", stream.radius,
-          {"Distance from emitters and the camera within which the world has full detail",
-           {},
-           kSizeRange,
-           {},
-           kRequired});
+          {.help = "Distance from emitters and the camera within which the world has full detail",
+           .range = kSizeRange,
+           .rules = kRequired});
     visit("memory", stream.memory,
           {"GPU memory for colliders, including coarse ones", "MB", {0.001, 65536.0}});
 }
@@ -377,10 +407,10 @@ void fields(FieldVisitor& visit, SceneRender& r) {
           {"Step of the first frame; 0: before the first step", {}, {0.0, kStepsMax}, "steps_per_frame"});
     visit("last_frame", r.last_frame, {"Step of the last frame", {}, {0.0, kStepsMax}, "the last step"});
     visit("sort_frames", r.sort_frames,
-          {"Frames over which one depth sort is spread, at least 2; 0: no sort. The compute path sorts every "
-           "frame",
-           {},
-           {0.0, 200.0}});
+          {.help = "Frames over which one depth sort is spread, at least 2; 0: no sort. The compute path "
+                   "sorts every "
+                   "frame",
+           .range = {0.0, 200.0}});
     visit("sprite", r.sprite, {"Shape of particles; quads may have any size and rotate"});
     visit("blend", r.blend, {"Blend mode of particles"});
     visit("soft_distance", r.soft_distance,
@@ -388,67 +418,56 @@ void fields(FieldVisitor& visit, SceneRender& r) {
     visit("atlas", FieldFile{r.atlas, r.atlas_origin},
           leftOut({"PNG with alpha, up to 8192 pixels a side; needs a type with cell", {}, {}, "none"}));
     visit("atlas_cells", FieldPair{r.atlas_columns, r.atlas_rows},
-          leftOut({"Cells of the atlas; must divide its sides",
-                   "[columns, rows]",
-                   {1.0, 4096.0},
-                   {},
-                   {.needs = "atlas"}}));
+          leftOut({.help = "Cells of the atlas; must divide its sides",
+                   .unit = "[columns, rows]",
+                   .range = {1.0, 4096.0},
+                   .rules = {.needs = "atlas"}}));
     visit("mesh", FieldFile{r.mesh, r.mesh_origin},
-          leftOut({"OBJ or PLY file to draw instead of the maps, which still cast the shadows: the "
-                   "collider's source mesh",
-                   {},
-                   {},
-                   "none: the maps are drawn"}));
+          leftOut({.help = "OBJ or PLY file to draw instead of the maps, which still cast the shadows: the "
+                           "collider's source mesh",
+                   .fallback = "none: the maps are drawn"}));
     visit("meshes", FieldFile{r.meshes, r.meshes_origin},
-          leftOut({"Folder of PLY and OBJ meshes to draw (see Meshes and weather)",
-                   {},
-                   {},
-                   "none: the maps are drawn",
-                   {.instead_of = "mesh"}}));
+          leftOut({.help = "Folder of PLY and OBJ meshes to draw (see Meshes and weather)",
+                   .fallback = "none: the maps are drawn",
+                   .rules = {.instead_of = "mesh"}}));
     visit("fog_distance", r.fog_distance,
-          {"Distance at which fog hides 63 %, in the background colour; 0: no fog",
-           {},
-           kLengthRange,
-           {},
-           {.needs = "meshes"}});
+          {.help = "Distance at which fog hides 63 %, in the background colour; 0: no fog",
+           .range = kLengthRange,
+           .rules = {.needs = "meshes"}});
     visit("units_per_meter", r.units_per_meter,
-          {"World units per metre: scales surface grain, snow drifts and corner shading",
-           {},
-           kSizeRange,
-           {},
-           {.needs = "meshes"}});
+          {.help = "World units per metre: scales surface grain, snow drifts and corner shading",
+           .range = kSizeRange,
+           .rules = {.needs = "meshes"}});
     visit("shadow_distance", r.shadow_distance,
-          leftOut({"Distance from camera.target in x and z within which meshes cast shadows and give shelter",
-                   {},
-                   kSizeRange,
-                   "the whole scene",
-                   {.needs = "meshes"}}));
+          leftOut(
+              {.help =
+                   "Distance from camera.target in x and z within which meshes cast shadows and give shelter",
+               .range = kSizeRange,
+               .fallback = "the whole scene",
+               .rules = {.needs = "meshes"}}));
     visit("weather", r.weather,
-          leftOut({"Weather of the meshes at times, interpolated linearly",
-                   {},
-                   {},
-                   "sunny and dry",
-                   {.needs = "meshes", .most = 10'000}}));
+          leftOut({.help = "Weather of the meshes at times, interpolated linearly",
+                   .fallback = "sunny and dry",
+                   .rules = {.needs = "meshes", .most = 10'000}}));
 }
 
 void fields(FieldVisitor& visit, SceneType& type) {
     visit("name", type.name, leftOut({"Unique name, for emitter.type and spawn", {}, {}, "none"}));
     fields(visit, static_cast<ParticleType&>(type));
-    visit("collides_with", CollidesList{type.collides_with},
-          {"Colliders that it collides with, by index from 0 (7: all from 7 on), and \"ground\", as in [0, "
-           "\"ground\"]",
-           {},
-           {},
-           "everything"});
+    visit(
+        "collides_with", CollidesList{type.collides_with},
+        {.help =
+             "Colliders that it collides with, by index from 0 (7: all from 7 on), and \"ground\", as in [0, "
+             "\"ground\"]",
+         .fallback = "everything"});
     fields(visit, type.look);
 }
 
 void fields(FieldVisitor& visit, Scene& scene) {
     visit("world", FieldFile{scene.world, scene.world_origin},
-          leftOut({"World (world.json) whose bodies particles collide with, in addition to the colliders",
-                   {},
-                   {},
-                   "none; a collider is then required"}));
+          leftOut(
+              {.help = "World (world.json) whose bodies particles collide with, in addition to the colliders",
+               .fallback = "none; a collider is then required"}));
     visit("collider", scene.colliders,
           {"Colliders", {}, {}, {}, {.most = WorldTextures::kBodiesMax, .single = true}});
     visit("material", scene.materials,

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colliders of a scene that deform in waves (collider.deform): a mesh instead of a container.
+// Colliders of a scene that deform: in waves (collider.deform), or by playing a clip (collider.play).
 #pragma once
 
+#include <cstddef>
+#include <memory>
+#include <optional>
+
+#include "formats/animation/mesh_pose.h"
 #include "formats/base/result.h"
 #include "formats/collider.h"
 #include "runtime/live/wobble_pass.h"
@@ -10,7 +15,7 @@
 
 namespace relief {
 
-/// The mesh of a live collider and its waves.
+/// The mesh of a collider that deforms in waves, instead of a container.
 struct LiveMesh {
     PictureMesh mesh;  ///< with one normal per vertex, so that waves do not tear it
     Wobble wobble;
@@ -22,5 +27,30 @@ struct LiveMesh {
 /// Errors: those of loadPictureMesh(); kInvalidInput (a mesh without extent). Messages start with the place in the
 /// scene.
 [[nodiscard]] Result<LiveMesh> loadLiveMesh(const SceneCollider& from);
+
+/// An animated mesh, and the clip that a collider plays.
+struct PlayedMesh {
+    std::shared_ptr<const AnimatedMesh> mesh;
+    std::optional<std::size_t> clip;  ///< of the mesh; nullopt: it has no clips and rests
+    bool cyclic = false;              ///< isCyclic()
+    ScenePlay play;
+    glm::vec3 box_size{0.0F};  ///< sides of the box of its maps, object units
+    Collider frames;           ///< bounds of all clips in object space, and three maps without texels
+
+    /// Returns the pose at a time of the scene, seconds.
+    [[nodiscard]] MeshPose poseAt(double time) const;
+    /// Returns the number of the current run of the clip. The pose jumps between runs unless the clip is cyclic.
+    [[nodiscard]] double run(double time) const;
+};
+
+/// Applies the clip, start and speed of `from`. Errors: those of loadPlayedMesh(); nothing changes then.
+[[nodiscard]] Result<void> changeClip(PlayedMesh& played, const SceneCollider& from);
+
+/// Finds the clip, and chooses maps that cover all clips of the mesh.
+/// \param from  with `play`. \param mesh  of its container. \param extent  poseExtent() of the mesh.
+/// Errors: kInvalidInput (no such clip), with the place in the scene and a list of the clips.
+[[nodiscard]] Result<PlayedMesh> loadPlayedMesh(const SceneCollider& from,
+                                                std::shared_ptr<const AnimatedMesh> mesh,
+                                                const PoseExtent& extent);
 
 }  // namespace relief

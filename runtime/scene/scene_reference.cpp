@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/scene/scene_reference.h"
 
+#include <string>
+#include <vector>
+
 #include "formats/fields/reference.h"
 #include "runtime/scene/scene.h"
 
@@ -27,6 +30,29 @@ CustomSchemas customSchemas() {
           {"ground"}}}};
 }
 
+/// Returns JSON with a line for each member of values that are longer than a line.
+std::string tableText(const Json& json, std::size_t indent = 0) {
+    constexpr std::size_t kColumns = 200;
+    if (!json.is_structured()) {
+        return json.dump();
+    }
+    std::vector<std::string> members;
+    std::size_t width = indent;
+    bool several = false;  // lines
+    for (const auto& [key, value] : json.items()) {
+        const std::string name = json.is_object() ? Json(key).dump() + ": " : "";
+        members.push_back(name + tableText(value, indent + 2));
+        width += members.back().size() + 2;
+        several = several || width > kColumns || members.back().find('\n') != std::string::npos;
+    }
+    const std::string line = several ? "\n" + std::string(indent, ' ') : "";
+    std::string text;
+    for (const std::string& member : members) {
+        text += (text.empty() ? "" : several ? "," : ", ") + (several ? line + "  " : "") + member;
+    }
+    return (json.is_object() ? "{" : "[") + text + line + (json.is_object() ? "}" : "]");
+}
+
 }  // namespace
 
 GeneratedTexts sceneReference() {
@@ -48,7 +74,7 @@ GeneratedTexts sceneReference() {
     Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
                    {"title", "A scene of relief-sim"}};
     schema.update(fileSchema(fields));
-    texts.push_back({"runtime/scene/scene.schema.json", "", jsonText(schema)});
+    texts.push_back({"runtime/scene/scene.schema.json", "", tableText(schema) + "\n"});
     texts.push_back({.path = "scene.dict", .part = {}, .text = fuzzDictionary(fields), .built = true});
     return texts;
 }

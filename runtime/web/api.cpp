@@ -4,12 +4,13 @@
 // Functions that use GL need a current context and restore its state.
 #include <emscripten.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -47,6 +48,19 @@ CameraMatrices cameraOf(const float* matrices) {
     return {view, projection};
 }
 
+/// Writes numbers and vectors as floats, and moves `out` behind them.
+template <class... Values>
+void writeRow(float*& out, const Values&... values) {
+    const auto write = [&out](const auto& value) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, glm::vec3>) {
+            out = std::copy_n(&value.x, 3, out);
+        } else {
+            *out++ = static_cast<float>(value);
+        }
+    };
+    (write(values), ...);
+}
+
 /// Returns the result of body(), or `failed`; restores the state of the context.
 template <class T, class F>
 T inPass(const char* function, T failed, const F& body) {
@@ -65,9 +79,8 @@ extern "C" {
 
 /// Like relief_world_load(), but loads the coarse container of each collider that has one.
 EMSCRIPTEN_KEEPALIVE relief_world* relief_world_load_coarse(const char* path) {
-    return create<relief_world>(__func__, [&](const Call&) -> Result<std::shared_ptr<WorldObject>> {
-        return std::make_shared<WorldObject>(
-            WorldObject{WorldField(RELIEF_TRY(loadWorld(path, {}, WorldDetail::kCoarse)))});
+    return create<relief_world>(__func__, [&](const Call&) -> Result<WorldObject> {
+        return WorldObject{WorldField(RELIEF_TRY(loadWorld(path, {}, WorldDetail::kCoarse)))};
     });
 }
 
@@ -164,24 +177,8 @@ EMSCRIPTEN_KEEPALIVE int relief_player_next_hits(const Player* player, double* o
 EMSCRIPTEN_KEEPALIVE void relief_player_hits(Player* player, float* out) {
     const StepEvents& step = player->hits.front();
     for (const ParticleEvent& one : step.events) {
-        const float row[16] = {one.position.x,
-                               one.position.y,
-                               one.position.z,
-                               static_cast<float>(step.time - one.time),
-                               one.velocity.x,
-                               one.velocity.y,
-                               one.velocity.z,
-                               one.speed,
-                               one.normal.x,
-                               one.normal.y,
-                               one.normal.z,
-                               static_cast<float>(one.body),
-                               static_cast<float>(one.material),
-                               static_cast<float>(one.type),
-                               one.death ? 1.0F : 0.0F,
-                               static_cast<float>(one.id & 0xffffffU)};
-        std::memcpy(out, row, sizeof(row));
-        out += 16;
+        writeRow(out, one.position, step.time - one.time, one.velocity, one.speed, one.normal, one.body,
+                 one.material, one.type, one.death, one.id & 0xffffffU);
     }
     player->hits.pop_front();
 }
@@ -369,20 +366,8 @@ EMSCRIPTEN_KEEPALIVE int relief_player_read(Player* player) {
 /// contact, contact in the last step, low 24 bits of the id.
 EMSCRIPTEN_KEEPALIVE void relief_player_states(const Player* player, float* out) {
     for (const ParticleState& one : player->read) {
-        const float row[12] = {one.position.x,
-                               one.position.y,
-                               one.position.z,
-                               one.age,
-                               one.velocity.x,
-                               one.velocity.y,
-                               one.velocity.z,
-                               one.lifetime,
-                               static_cast<float>(one.type),
-                               static_cast<float>(one.collisions),
-                               static_cast<float>(one.contact),
-                               static_cast<float>(one.id & 0xffffffU)};
-        std::memcpy(out, row, sizeof(row));
-        out += 12;
+        writeRow(out, one.position, one.age, one.velocity, one.lifetime, one.type, one.collisions,
+                 one.contact, one.id & 0xffffffU);
     }
 }
 

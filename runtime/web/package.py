@@ -18,7 +18,11 @@ TYPES = re.compile(r"^// Scene, with the keys of scene\.toml: package\.py .*\n",
 
 
 def typescript(schema, name, interfaces):
-    """Returns the TypeScript type of a JSON Schema. Adds objects to `interfaces`, under `name`."""
+    """Returns the TypeScript type of a JSON Schema. Adds objects to `interfaces`, under `name`.
+
+    A $ref is the items of a list, which are described by the table before it: under the same name."""
+    if "$ref" in schema:
+        return name
     if "oneOf" in schema:
         return " | ".join(typescript(one, name, interfaces) for one in schema["oneOf"])
     if "enum" in schema or "const" in schema:

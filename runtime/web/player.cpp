@@ -9,7 +9,7 @@
 #include "formats/base/file_io.h"
 #include "formats/base/finite.h"
 #include "formats/config/toml_reader.h"
-#include "runtime/scene/scene_parser.h"
+#include "runtime/scene/scene.h"
 #include "runtime/scene/scene_world.h"
 
 namespace relief {
@@ -93,7 +93,7 @@ Result<Scene> readScene(std::string_view text, const std::filesystem::path& path
     add(one, "", Json::parse(text));
     Scene scene;
     RELIEF_TRY(readTomlTable(*one[0].as_table(), {path.string(), path.parent_path(), {}, "scene"},
-                             [&](const TomlValue& top) { relief::readScene(top, scene); }));
+                             [&](const TomlValue& top) { readToml(top, scene); }));
     return scene;
 }
 

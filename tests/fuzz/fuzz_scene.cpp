@@ -3,7 +3,6 @@
 #include <string_view>
 
 #include "runtime/scene/scene.h"
-#include "runtime/scene/scene_parser.h"
 #include "tests/fuzz/target.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

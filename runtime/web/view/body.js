@@ -53,12 +53,12 @@ export class Body {
         return this.#programs[kind];
     }
 
-    /** Draws the surface of the maps. values: uniforms shared by all bodies. */
-    draw(values) {
+    /** Draws the surface of the maps. values: uniforms shared by all bodies. model: its place. */
+    draw(values, model = this.model) {
         const { gl, box, drawn } = this;
         const { maps, finest_texel: texel } = this.collider.info;
         this.use("surface").set({
-            ...values, u_model: this.model, u_box_min: drawn.min, u_box_max: drawn.max,
+            ...values, u_model: model, u_box_min: drawn.min, u_box_max: drawn.max,
             u_deep: kDeep * box.longest, u_tiny: Math.max(1e-3 * texel, 1e-6 * box.longest),
             u_clear: { int: kClearUnit }, u_cells_from: this.cells.from, u_cell: this.cells.side,
             u_steps: { int: Math.min(maps.reduce((sum, map) => sum + stepsAcross(map, box.longest / texel), 256), 60000) },
@@ -88,10 +88,7 @@ export class BodyPlace {
     }
 
     draw(values) {
-        const own = this.body.model;
-        this.body.model = this.model;
-        this.body.draw(values);
-        this.body.model = own;
+        this.body.draw(values, this.model);
     }
 }
 

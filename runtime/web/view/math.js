@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors are arrays of three numbers; matrices are 16 numbers, column-major.
+// Vectors are arrays of three numbers; matrices are Float32Arrays of 16 numbers, column-major.
 
 export const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
 export const sub = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
@@ -9,24 +9,15 @@ export const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * 
 export const mix = (a, b, t) => [0, 1, 2].map((k) => a[k] + t * (b[k] - a[k]));
 export const length = (a) => Math.hypot(a[0], a[1], a[2]);
 export const clamp = (v, low, high) => Math.min(Math.max(v, low), high);
-export const identity = () => new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
+export const identity = () => new DOMMatrix().toFloat32Array();
+export const multiply = (a, b) => DOMMatrix.fromFloat32Array(a).multiply(DOMMatrix.fromFloat32Array(b)).toFloat32Array();
 
 export function normalize(a) {
     const l = length(a);
     return l > 0 ? scale(a, 1 / l) : [0, 1, 0];
 }
 
-export function multiply(a, b) {
-    const r = new Float32Array(16);
-    for (let c = 0; c < 4; ++c) {
-        for (let i = 0; i < 4; ++i) {
-            r[4 * c + i] = a[i] * b[4 * c] + a[4 + i] * b[4 * c + 1] + a[8 + i] * b[4 * c + 2] + a[12 + i] * b[4 * c + 3];
-        }
-    }
-    return r;
-}
-
-/** Inverts a regular matrix by Gauss-Jordan elimination with pivoting. */
+/** Inverts a regular matrix by Gauss-Jordan elimination with pivoting; DOMMatrix rejects small determinants in some browsers. */
 export function inverse(m) {
     const rows = [0, 1, 2, 3].map((i) => [0, 1, 2, 3, 4, 5, 6, 7].map((c) => (c < 4 ? m[4 * c + i] : Number(c - 4 === i))));
     for (let c = 0; c < 4; ++c) {

@@ -18,7 +18,6 @@
 #include "runtime/scene/scene_live.h"
 #include "runtime/scene/scene_meshes.h"
 #include "runtime/scene/scene_pictures.h"
-#include "runtime/scene/scene_play.h"
 #include "runtime/scene/scene_world.h"
 #include "tests/formats/animation/animated_meshes.h"
 #include "tests/formats/sample_colliders.h"

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "runtime/scene/scene.h"
-#include "runtime/scene/scene_parser.h"
 
 namespace relief {
 
