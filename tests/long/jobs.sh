@@ -56,7 +56,7 @@ programs() {
 # These tests have separate jobs.
 strace_tests='^cli[.](atomic_outputs|import_faults)$'
 sample_tests='^cli[.](samples|demo|lead_through)$'
-other_tests='^(python[.]|fuzz[.]|docs$|bench|oracle[.]|vdb[.])|^cli[.]vdb$'
+other_tests='^(python[.]|fuzz[.]|docs$|bench|vdb[.])|^cli[.]vdb$'
 
 job nightly 20 release
 job_release() {
@@ -99,12 +99,6 @@ job_vdb() {
     release
     programs '*' "$bin/relief_vdb_test"
     tested build/release -R 'cli[.]vdb'
-}
-
-job nightly 1 oracle
-job_oracle() {
-    release relief_oracle_test
-    programs '*' "$bin/relief_oracle_test"
 }
 
 job nightly 3 engines
@@ -179,7 +173,7 @@ job_coverage() {
     say "$(sed -n 's/^\(lines\|branches\): \([0-9.]*%\).*/\2 of \1/p' "$work/coverage.log" | paste -sd, | sed 's/,/, /')"
 }
 
-job nightly 9 cases
+job nightly 5 cases
 job_cases() {
     local generator status=0
     release
