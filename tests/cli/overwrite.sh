@@ -53,9 +53,9 @@ box.obj,box.mtl $relief bake box.obj --map cube:size=8 -o new.relief --depfile @
 box.relief,box.obj,box.mtl $relief view box.relief --mesh box.obj -o @
 box.relief,box.obj,box.mtl $relief check box.relief --mesh box.obj --samples 50 --page @
 box.relief,points.csv $relief query box.relief --points points.csv -o @
-r.toml,box.obj,box.mtl $relief bake --recipe r.toml --stamp @
-r.toml,box.obj,box.mtl $relief bake --recipe r.toml --depfile @
-r.toml,box.obj,box.mtl $relief bake --recipe r.toml --events @
+r.toml,box.obj,box.mtl $relief bake --recipe r.toml -q --stamp @
+r.toml,box.obj,box.mtl $relief bake --recipe r.toml -q --depfile @
+r.toml,box.obj,box.mtl $relief bake --recipe r.toml -q --events @
 C
 mkdir dumps engine
 ln -s ../points.csv dumps/particles_0001.ply
