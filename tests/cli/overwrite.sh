@@ -44,8 +44,8 @@ while read -r names command; do
         expect_kept "'(.*/)?$output'" ${command//@/$output}
     done
 done <<C
-all.toml,box.relief,live.obj,points.csv,flow.raw,atlas.png $relief_sim all.toml --dump @
-all.toml,box.relief,live.obj,points.csv,flow.raw,atlas.png $relief_sim all.toml --events @
+all.toml,box.relief,live.obj,points.csv,flow.raw,atlas.png $relief_sim all.toml --steps 1 --dump @
+all.toml,box.relief,live.obj,points.csv,flow.raw,atlas.png $relief_sim all.toml --steps 1 --events @
 drawn.toml,box.relief,box.obj $relief_sim drawn.toml --steps 1 --dump @
 box.relief $relief_sim box.relief --steps 1 --dump @
 box.obj,box.mtl $relief bake box.obj --map cube:size=8 -o @
