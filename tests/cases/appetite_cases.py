@@ -6,17 +6,17 @@ a result or with one line that names the file and only options that were given. 
 import math
 
 from cases import Cases
-from solids import BOX_FACES, box_corners, write_obj
 
 SECONDS = 60  # generous, for a shared machine
 MEMORY = 1500 << 20
+BOX_FACES = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
 
 
 # Meshes are (positions, faces).
 def box(mesh, at, half):
     positions, faces = mesh
     first = len(positions)
-    positions += [tuple(c + h for c, h in zip(at, corner)) for corner in box_corners([half] * 3)]
+    positions += [tuple(c + (half if k >> i & 1 else -half) for i, c in enumerate(at)) for k in range(8)]
     faces += [tuple(first + c for c in face) for face in BOX_FACES]
 
 
@@ -78,7 +78,9 @@ def cells(cases):
 def bake(cases, folder):
     make = cases.random.choice((boxes_far_apart, boxes_far_apart, scattered_triangles, scattered_triangles, fan, cells))
     positions, faces = make(cases)
-    write_obj(folder / "a.obj", positions, faces)
+    with open(folder / "a.obj", "w", encoding="ascii") as out:
+        out.writelines("v %.9g %.9g %.9g\n" % tuple(p) for p in positions)
+        out.writelines("f " + " ".join(str(c + 1) for c in face) + "\n" for face in faces)
     done = cases.run("relief", "bake", "a.obj", "-o", "a.relief", "--no-check", "-q", cwd=folder, seconds=SECONDS,
                      memory=MEMORY + (4 << 30))  # the address space includes the importer's own limit
     if done is None:

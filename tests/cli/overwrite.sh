@@ -1,28 +1,74 @@
 # SPDX-License-Identifier: Apache-2.0
-# No tool overwrites its inputs or writes two outputs to one file, whether by name, symbolic link or hard link.
-# tests/cases/overwrite_cases.py draws combinations; this script covers those that need a shell or several runs.
+# No tool overwrites its inputs or writes two outputs to one file, whether by name, symbolic link or hard link. Unit
+# tests cover the guard; this script covers every output of both tools, and runs that need a shell.
 . "$(dirname "$0")/lib.sh"
 
 page_place >stub.html
 export RELIEF_VIEW_PAGE=$work/stub.html
 
-PYTHONPATH=$RELIEF_SOURCE/tests/cases python3 "$RELIEF_SOURCE/tests/cases/overwrite_cases.py" "$RELIEF_BIN" --seed "${RELIEF_TEST_SEED:-1}" --cases 40
-
 { echo 'mtllib box.mtl' && cat "$models/OBJ/box.obj"; } >box.obj
 printf 'newmtl a\nKd 1 0 0\n' >box.mtl
-"$relief" bake box.obj -o box.relief --map cube:size=16 -q
+cp box.obj live.obj
+"$relief" bake box.obj -o box.relief --budget 20kB --no-check -q
 echo '0,1,0' >points.csv
+head -c 96 /dev/zero >flow.raw
 convert -size 4x4 xc:red atlas.png
 mkdir frames
 cp atlas.png frames/frame_0002.png
 printf '%s\n' '[collider]' 'file = "box.relief"' '[time]' 'steps = 4' '[[type]]' 'cell = 0' '[render]' \
     'atlas = "frames/frame_0002.png"' 'size = [16, 16]' 'steps_per_frame = 2' >scene.toml
+printf '%s\n' '[[collider]]' 'file = "box.relief"' '[[collider]]' 'mesh = "live.obj"' 'resolution = 16' \
+    'deform = { amplitude = 0.1, frequency = 2 }' '[emitter]' 'shape = "points"' 'points = "points.csv"' '[flow]' \
+    'raw = "flow.raw"' 'size = [2, 2, 2]' 'components = 3' 'box_min = [-1, -1, -1]' 'box_max = [1, 1, 1]' '[[type]]' \
+    'cell = 0' '[render]' 'atlas = "atlas.png"' >all.toml
+printf '%s\n' '[collider]' 'file = "box.relief"' '[render]' 'mesh = "box.obj"' >drawn.toml
 printf 'version = 1\n[[asset]]\nmesh = "box.obj"\noutput = "{stem}.new.relief"\nmap = "cube:size=16"\n' >r.toml
-sha256sum box.* points.csv atlas.png scene.toml r.toml frames/frame_0002.png >before
+inputs=(box.obj box.mtl box.relief live.obj points.csv flow.raw atlas.png scene.toml all.toml drawn.toml r.toml)
+sha256sum "${inputs[@]}" frames/frame_0002.png >before
 expect_kept() { # PATTERN COMMAND…: fails with a usage error, and no file changes
     expect_error 1 "$@"
     sha256sum --quiet -c before || die "an input was overwritten: $*"
 }
+
+# Every output of a run at each of its inputs, under one name after another. @ stands for the output.
+for input in "${inputs[@]}"; do
+    ln -s "$input" "symbolic.$input"
+    ln "$input" "hard.$input"
+done
+run=0
+while read -r names command; do
+    for name in ${names//,/ }; do
+        prefixes=('' symbolic. hard.)
+        output=${prefixes[$((run++ % 3))]}$name
+        # shellcheck disable=SC2086
+        expect_kept "'(.*/)?$output'" ${command//@/$output}
+    done
+done <<C
+all.toml,box.relief,live.obj,points.csv,flow.raw,atlas.png $relief_sim all.toml --steps 1 --dump @
+all.toml,box.relief,live.obj,points.csv,flow.raw,atlas.png $relief_sim all.toml --steps 1 --events @
+drawn.toml,box.relief,box.obj $relief_sim drawn.toml --steps 1 --dump @
+box.relief $relief_sim box.relief --steps 1 --dump @
+box.obj,box.mtl $relief bake box.obj --map cube:size=8 -o @
+box.obj,box.mtl $relief bake box.obj --map cube:size=8 -o new.relief --depfile @
+box.relief,box.obj,box.mtl $relief view box.relief --mesh box.obj -o @
+box.relief,box.obj,box.mtl $relief check box.relief --mesh box.obj --samples 50 --page @
+box.relief,points.csv $relief query box.relief --points points.csv -o @
+r.toml,box.obj,box.mtl $relief bake --recipe r.toml -q --stamp @
+r.toml,box.obj,box.mtl $relief bake --recipe r.toml -q --depfile @
+r.toml,box.obj,box.mtl $relief bake --recipe r.toml -q --events @
+C
+mkdir dumps engine
+ln -s ../points.csv dumps/particles_0001.ply
+expect_kept 'particles_0001\.ply' "$relief_sim" all.toml --steps 2 --dump-frames dumps --steps-per-frame 1
+ln -s ../box.relief engine/relief.glsl
+expect_kept 'relief\.glsl' "$relief" export box.relief --engine c engine
+
+# Two outputs in one place.
+expect_kept 'both write' "$relief_sim" scene.toml --dump new --events new
+expect_kept 'both write' "$relief_sim" scene.toml --dump - --events /dev/stdout
+expect_kept 'shots' "$relief_sim" scene.toml --frames shots --dump shots
+expect_kept 'json' "$relief" bake box.obj --map cube:size=8 -o - --json
+[ ! -e new ] && [ ! -e new.relief ] || die "a rejected run wrote a file"
 
 # A frame is an input only if its number is written.
 expect_kept "frame_0002\.png' is the input" "$relief_sim" scene.toml --first-frame 0 --frames frames

@@ -56,7 +56,7 @@ programs() {
 # These tests have separate jobs.
 strace_tests='^cli[.](atomic_outputs|import_faults)$'
 sample_tests='^cli[.](samples|demo|lead_through)$'
-other_tests='^(python[.]|fuzz[.]|docs$|bench|oracle[.]|vdb[.])|^cli[.]vdb$'
+other_tests='^(python[.]|fuzz[.]|docs$|bench|vdb[.])|^cli[.]vdb$'
 
 job nightly 20 release
 job_release() {
@@ -99,12 +99,6 @@ job_vdb() {
     release
     programs '*' "$bin/relief_vdb_test"
     tested build/release -R 'cli[.]vdb'
-}
-
-job nightly 1 oracle
-job_oracle() {
-    release relief_oracle_test
-    programs '*' "$bin/relief_oracle_test"
 }
 
 job nightly 3 engines
@@ -179,7 +173,7 @@ job_coverage() {
     say "$(sed -n 's/^\(lines\|branches\): \([0-9.]*%\).*/\2 of \1/p' "$work/coverage.log" | paste -sd, | sed 's/,/, /')"
 }
 
-job nightly 9 cases
+job nightly 5 cases
 job_cases() {
     local generator status=0
     release
@@ -212,34 +206,6 @@ job_import() {
 import json, sys
 test = json.load(open(sys.argv[1]))['testsuites'][0]['testsuite'][0]
 print(f"import: {test['tried']} files, {test['read']} of them read, the others rejected")
-P
-}
-
-job nightly 5 level
-job_level() {
-    scripts/setup.sh sweethome3d-furniture
-    release relief
-    python3 tests/long/level.py "$work/level.glb"
-    "$bin/relief" bake "$work/level.glb" -o "$work/level.relief" --budget 16MB -q
-    "$bin/relief" check "$work/level.relief" --mesh "$work/level.glb" --json >"$work/level.json"
-    python3 - "$work/level.json" <<'P'
-import json, sys
-d = json.load(open(sys.argv[1]))
-verdict, nodes = d['verdict'], [group for group in d['parts']['groups'] if group['of'] == 'node']
-print(f"level: {verdict['wrong_percent']:.2g} % wrong near the surface, {verdict['lost_parts']} parts lost: {verdict['grade']}; "
-      f"worst nodes: {', '.join('%s %.0f %%' % (node['name'], node['wrong_percent']) for node in nodes[:3])}")
-sys.exit(0 if verdict['grade'] != 'good' and verdict['lost_parts'] > 0 and nodes[0]['name'] != 'terrain' else 1)
-P
-    # A world with the same budget is accurate. Shells of a few meshes exceed their smallest parts, so it loses some, too.
-    "$bin/relief" bake "$work/level.glb" --world "$work/world" --budget 16MB -q
-    "$bin/relief" check "$work/world/world.json" --mesh "$work/level.glb" --within 0.5 --json >"$work/world.json"
-    python3 - "$work/level.json" "$work/world.json" <<'P'
-import json, sys
-level, world = (json.load(open(path)) for path in sys.argv[1:])
-wrong, meshes = (world['accuracy'][key] for key in ('wrong_percent', 'lost_parts'))
-lost = sum(mesh['lost'] for mesh in meshes)
-print(f"level: as a world {wrong:.2g} % wrong, {lost} parts of {len(meshes)} meshes lost")
-sys.exit(0 if wrong <= 2 and lost < 0.25 * level['verdict']['lost_parts'] else 1)
 P
 }
 
@@ -429,44 +395,6 @@ job_characters() {
     RELIEF_ANIMATED=$work/mannequin.relief "$bin/relief_gl_test" \
         --gtest_filter='*AnimatedColliderGlTest.InsideMatchesThePosedMesh/Gl33Core' |
         sed "s/^.*% wrong/$name: &/"
-}
-
-job weekly 30 ground
-job_ground() {
-    local side=4097 drops=1048576 balls=16384 dir=$work/ground scene steps
-    release relief relief-sim
-    hills() { python3 tests/long/ground.py "$@"; }
-    mkdir -p "$dir"
-    hills write "$dir/hills.r16" $side
-    "$bin/relief" bake "$dir/hills.r16" --heights low=0,high=300,tile=512 --world "$dir/w"
-    "$bin/relief" check "$dir/w/world.json" --mesh "$dir/hills.r16"
-    hills points "$dir/drops.csv" $side $drops
-    hills points "$dir/balls.csv" $side $balls
-    hills points "$dir/aside.csv" $side $balls --aside 256
-    hills scene w/world.json $side drops drops.csv $drops >"$dir/drops.toml"
-    hills scene w/world.json $side drops drops.csv $drops --stream 6 >"$dir/stream.toml"
-    for scene in drops stream; do
-        "$bin/relief-sim" "$dir/$scene.toml" --dump "$dir/$scene.ply"
-        hills below "$dir/$scene.ply" $side >"$dir/$scene"
-    done
-    for scene in balls aside; do
-        hills scene w/world.json $side balls $scene.csv $balls >"$dir/$scene.toml"
-        for steps in 100 300; do
-            "$bin/relief-sim" "$dir/$scene.toml" --steps $steps --dump "$dir/$scene$steps.ply" -q
-        done
-        hills kicks "$dir/$scene"100.ply "$dir/$scene"300.ply >"$dir/$scene"
-    done
-    python3 - "$dir" <<'P'
-import sys
-drops, stream, balls, aside = ([float(word) for word in open(f'{sys.argv[1]}/{name}').read().split()]
-                               for name in ('drops', 'stream', 'balls', 'aside'))
-print(f'ground: {drops[0]:.0f} drops on seams, {drops[1]:.0f} deeper than 5 cm, the deepest {1000 * drops[2]:.0f} mm, the highest '
-      f'{1000 * drops[3]:.0f} mm; with 6 MB the deepest {stream[2]:.2f} m; of balls 999 of 1000 gain at most {balls[1]:.3f} J/kg, beside '
-      f'seams {aside[1]:.3f}, and any at most {balls[2]:.2f} and {aside[2]:.2f}')
-# Coarse tiles use every fourth sample and have errors up to 1.5 m.
-sys.exit(0 if drops[1] == 0 and drops[3] < 0.05 and stream[2] < 1.5 and stream[0] == drops[0] and balls[1] < 0.05 and
-         balls[2] < 1.1 * aside[2] + 0.05 else 1)
-P
 }
 
 job weekly 120 load

@@ -61,6 +61,7 @@ TEST_F(GroundBakes, SeamsAreWithinTheBound) {
         std::uniform_real_distribution<double> share(-1.0, 1.0);
         int wrong = 0;
         int close = 0;
+        int turned = 0;
         for (int i = 0; i < 120'000; ++i) {
             const double away = i % 2 == 0 ? 1e-6 * 300.0 : 0.05;
             const glm::dvec2 at = nearSeam(random, away / spacing, 2);
@@ -72,13 +73,23 @@ TEST_F(GroundBakes, SeamsAreWithinTheBound) {
             const double z = (double{p.z} - 41.0) / spacing;
             const double height = double{p.y} - 12.0;
             const double exact = *surfaceAt(grid, x, z);
+            const WorldSample sample = field.evaluate(p);
             if (std::abs(height - exact) <= bound) {
                 ++close;
+                const auto slope = [&](double dx, double dz) {
+                    return (surfaceAt(grid, x + dx, z + dz).value_or(exact) -
+                            surfaceAt(grid, x - dx, z - dz).value_or(exact)) /
+                           (0.5 * spacing);
+                };
+                const glm::dvec3 normal =
+                    glm::normalize(glm::dvec3(-slope(0.25, 0.0), 1.0, -slope(0.0, 0.25)));
+                turned += sample.body < 0 || glm::dot(glm::dvec3(sample.normal), normal) < 0.95 ? 1 : 0;
                 continue;
             }
-            wrong += field.evaluate(p).inside() != (height < exact) ? 1 : 0;
+            wrong += sample.inside() != (height < exact) ? 1 : 0;
         }
         EXPECT_EQ(wrong, 0) << spacing;
+        EXPECT_LE(turned, close / 100) << "a ball would be kicked";
         EXPECT_LT(close, 40'000);
     }
 }

@@ -16,7 +16,9 @@ class GltfBuilder {
   public:
     GltfBuilder();
 
-    /// \return the accessor. \param type  "SCALAR", "VEC3", …
+    /// \return the accessor. \param type  "SCALAR", "VEC3", … \param component  5120 to 5126. \param count  of numbers
+    std::size_t accessor(const char* type, int component, std::size_t count, const std::string& data,
+                         bool normalized);
     std::size_t floats(const char* type, const std::vector<float>& values);
     std::size_t bytes(const char* type, const std::vector<int>& values, bool normalized = false);
     /// Normalized 16-bit integers; values from −1 to 1.
@@ -32,8 +34,6 @@ class GltfBuilder {
     [[nodiscard]] GltfCase file() const;
 
   private:
-    std::size_t accessor(const char* type, int component, std::size_t count, const std::string& data,
-                         bool normalized);
     std::string buffer_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small random glTF files that use all features of the specification, and mutations of them.
+// glTF files as a document and a buffer, and mutations of them.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,6 @@ class Dice {
     /// 0 … sides − 1.
     std::uint64_t roll(std::uint64_t sides);
     bool once(std::uint64_t in) { return roll(in) == 0; }
-    int from(int least, int most);
 
   private:
     std::uint64_t state_;
@@ -31,11 +30,6 @@ struct GltfCase {
     std::string buffer;
     GltfContainer container = GltfContainer::kBinary;
 };
-
-/// Node hierarchies with matrices or translations, rotations and scales; shared and skinned meshes; triangles, strips,
-/// fans, lines and points; float and quantized positions, strided and sparse; 8-, 16- and 32-bit indices, sparse or
-/// absent.
-[[nodiscard]] GltfCase makeGltf(Dice& dice);
 
 /// Changes one value of the document: removes, duplicates or replaces it.
 /// \return a description of the change, for messages

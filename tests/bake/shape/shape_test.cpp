@@ -285,6 +285,24 @@ TEST(Shape, ShellsWithUnlikeRimsFormAWall) {
         }));
         return finished(mesh.positions, triangles);
     };
+    // Teeth that the mesh has are no spikes: they and the gaps between them stay.
+    const auto withTeeth = [](const TriangleMesh& mesh, std::size_t teeth, float height) {
+        std::vector<glm::vec3> positions = mesh.positions;
+        std::vector<glm::uvec3> triangles = mesh.triangles;
+        for (const glm::uvec3& t : mesh.triangles) {
+            for (int i = 0; i < 3; ++i) {
+                const std::uint32_t a = t[i];
+                const std::uint32_t b = t[(i + 1) % 3];
+                const float top = mesh.bounds.max.y;
+                if (teeth > 0 && mesh.positions[a].y == top && mesh.positions[b].y == top) {
+                    --teeth;
+                    triangles.emplace_back(b, a, static_cast<std::uint32_t>(positions.size()));
+                    positions.push_back(0.5F * (positions[a] + positions[b]) + glm::vec3(0, height, 0));
+                }
+            }
+        }
+        return finished(positions, triangles);
+    };
     const TriangleMesh mug = turn({{0.0, 0.0}, {0.5, 0.0}, {0.5, 1.2}});
     const TriangleMesh liner = turn({{0.0, 0.02}, {0.48, 0.02}, {0.48, 1.2}});
     const TriangleMesh vase = turn({{0.0, 0.0}, {0.5, 0.0}, {0.6, 0.5}, {0.15, 1.2}});
@@ -310,7 +328,9 @@ TEST(Shape, ShellsWithUnlikeRimsFormAWall) {
         {lessOne(mug), liner, {0, 0.6, 0}, {0.1, 0.01, 0}},
         {mug, lessOneAtRim(liner), {0, 0.6, 0}, {0.1, 0.01, 0}},
         {lessOneAtRim(mug), liner, {0, 0.6, 0}, {0.1, 0.01, 0}},
-        {lessOneAtRim(mug), lessOneAtRim(liner), {0, 0.6, 0}, {0.1, 0.01, 0}}};
+        {lessOneAtRim(mug), lessOneAtRim(liner), {0, 0.6, 0}, {0.1, 0.01, 0}},
+        {withTeeth(mug, 1, 0.4F), liner, {0, 0.6, 0}, {0.4791, 1.35, 0.0953}},
+        {withTeeth(mug, 16, 0.4F), withTeeth(liner, 16, 0.4F), {0.485, 1.4, 0}, {0.471, 1.3, 0.094}}};
     for (std::size_t i = 0; i < walls.size(); ++i) {
         SCOPED_TRACE(i);
         const ShapedMesh shape = shaped(joined({walls[i].outer, walls[i].inner}));
@@ -445,6 +465,11 @@ TEST(Shape, ShellOfASharpWedgeHasFullThickness) {
         const ShellCount count = countAtShell(meshes[i], 0.04, 0.11);
         EXPECT_LT(count.hollow, 0.05 * count.near) << count.near;
         EXPECT_EQ(count.filled, 0);
+        // A mitre is at most two halves of the thickness long, also at the tip of a needle.
+        const MeshQuery sheet = queryOf(meshes[i]);
+        for (const glm::vec3& p : shaped(meshes[i], ShapeAs::kShell, 0.1).mesh->positions) {
+            ASSERT_LT(sheet.closest(p).distance, 0.1 + 1e-5) << p.x << ' ' << p.y << ' ' << p.z;
+        }
     }
 }
 

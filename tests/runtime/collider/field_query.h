@@ -19,15 +19,20 @@
 
 namespace relief {
 
-/// With RELIEF_QUERY_INSIDE it uses reliefSolid; the distance is then −1 inside and 1 outside.
+/// With RELIEF_QUERY_INSIDE it uses reliefSolid, and with RELIEF_QUERY_PROBE reliefProbe, which evaluates this map
+/// first; the distance is then −1 inside and 1 outside.
 inline constexpr const char* kFieldQuery = R"(
 uniform highp sampler2D u_points;  // xyz: object space
 layout(location = 0) out vec4 o_normal_distance;
 layout(location = 1) out vec4 o_map;  // x: deciding map, −1 for none
 void main() {
     vec3 p = texelFetch(u_points, ivec2(gl_FragCoord.xy), 0).xyz;
+#if defined(RELIEF_QUERY_INSIDE) || defined(RELIEF_QUERY_PROBE)
 #ifdef RELIEF_QUERY_INSIDE
     ReliefField field = reliefSolid(p);
+#else
+    ReliefField field = reliefFieldOf(reliefProbe(0, u_relief_count.x, RELIEF_QUERY_PROBE, p));
+#endif
     bool inside = reliefInside(field);
     o_normal_distance = vec4(inside ? field.normal : vec3(0.0), inside ? -1.0 : 1.0);
 #else

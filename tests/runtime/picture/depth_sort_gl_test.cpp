@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The depth sort on each path: against std::stable_sort, and as fragments against each pass of the network. While
-// particles move, are born and die, and the viewer moves, it checks invariants of every frame and how far the order is
-// from sorted.
+// The depth sort on each path: against std::stable_sort. While particles move, are born and die, and the viewer moves,
+// it checks invariants of every frame and how far the order is from sorted.
 #include "runtime/picture/depth_sort.h"
 
 #include <gtest/gtest.h>
@@ -186,33 +185,6 @@ TEST(DepthSort, SequencesAreAsLongAsInThePaper) {
     EXPECT_EQ(DepthSorter::passesPerFrame(1U << 20, 50), 5U);
     EXPECT_EQ(DepthSorter::passesPerFrame(8, 50), 1U);
     EXPECT_EQ(DepthSorter::passesPerFrame(1, 50), 0U);
-}
-
-// Batcher's network as loops over its pairs (Knuth, Algorithm M), compared element by element after each pass.
-TEST_P(DepthSortNetworkGlTest, EveryPassMatchesTheNetwork) {
-    constexpr std::uint32_t kCount = 2048;
-    Pcg32 random(5);
-    const Cloud cloud = latticeCloud(kCount, 1024, random);
-    make(kCount);
-    std::vector<Element> expected = latticeElements(cloud, kCount);
-    std::uint32_t passes = 0;
-    for (std::uint32_t p = 1; p < kCount; p *= 2) {
-        for (std::uint32_t k = p; k >= 1; k /= 2) {
-            for (std::uint32_t j = k % p; j + k < kCount; j += 2 * k) {
-                for (std::uint32_t i = j; i < std::min(j + k, kCount - k); ++i) {
-                    if (i / (2 * p) == (i + k) / (2 * p) && before(expected[i + k], expected[i])) {
-                        std::swap(expected[i], expected[i + k]);
-                    }
-                }
-            }
-            EXPECT_EQ(sorter_->passesDone(), passes);
-            ++passes;
-            update(cloud, 1);
-            ASSERT_TRUE(readOrder(*sorter_) == expected) << "block " << 2 * p << " stride " << k;
-        }
-    }
-    EXPECT_EQ(passes, DepthSorter::sequencePasses(kCount));
-    EXPECT_TRUE(std::is_sorted(expected.begin(), expected.end(), before));
 }
 
 TEST_P(DepthSortNetworkGlTest, RestartsBeginAWholeSequence) {
