@@ -31,7 +31,6 @@ struct FieldReference {
 /// Schemas of the types that FieldCustom::read reads.
 using CustomSchemas = std::map<const FieldCustom*, FieldSchema>;
 
-/// Returns the fields of a struct.
 [[nodiscard]] std::vector<FieldReference> referenceOf(FieldRef value, const CustomSchemas& custom = {});
 template <class T>
 [[nodiscard]] std::vector<FieldReference> referenceOf() {
@@ -44,7 +43,6 @@ template <class T>
 /// include.
 [[nodiscard]] std::string markdownTables(const std::vector<FieldReference>& fields,
                                          std::span<const std::string_view> names);
-/// Returns a JSON Schema of the file.
 [[nodiscard]] Json fileSchema(const std::vector<FieldReference>& fields);
 /// Returns keys, words and table names for libFuzzer.
 [[nodiscard]] std::string fuzzDictionary(const std::vector<FieldReference>& fields);
