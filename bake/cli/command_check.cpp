@@ -155,16 +155,14 @@ void addCheck(CLI::App& app, Action& action) {
         withDetails(
             "Check a container, or measure a collider against its mesh\n\n"
             "Without --mesh, it lists the issues of each file, with their codes, and the sections of a "
-            "damaged "
-            "file that are usable. With --mesh, it prints a verdict, the three worst places with their "
-            "causes, and commands that may help.",
+            "damaged file that are usable. With --mesh, it prints a verdict, the three worst places with "
+            "their causes, and commands that may help.",
             "formats/README.md lists the codes.\n"
             "With --mesh, the report also contains the percentage of wrong points near the surface and in "
             "the whole box, the errors of distance and normal, and the fraction of the surface that no map "
             "sees. Most commands were tried in memory; others are marked \"not tried\". Truth is the parity "
-            "of rays through the "
-            "mesh, independent of the maps; for a collider baked with --repair, also through the repaired "
-            "mesh.\n"
+            "of rays through the mesh, independent of the maps; for a collider baked with --repair, also "
+            "through the repaired mesh.\n"
             "For a world.json of relief bake --world, it checks that all containers are present and correct. "
             "With --mesh, it prints the percentage of wrong points near each body, the ten worst places, and "
             "the meshes that lose parts.\n"

@@ -345,9 +345,8 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
          .recorded = true,
          .details =
              "The runtime poses the collider. Three front-back maps along the axes, with --resolution texels "
-             "a side, "
-             "store its rest pose. Besides the options of its output, only --clips, --resolution, --quality, "
-             "--prefer, --unit, --up and limits apply."});
+             "a side, store its rest pose. Besides the options of its output, only --clips, --resolution, "
+             "--quality, --prefer, --unit, --up and limits apply."});
     visit("clips", request.clips,
           {.help = "With --animated: add the animations of this glTF file, matched by node name; repeatable",
            .value = "FILE"});

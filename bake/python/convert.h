@@ -6,7 +6,6 @@
 #include <pybind11/pybind11.h>
 
 #include <algorithm>
-#include <glm/vec3.hpp>
 #include <map>
 #include <string>
 #include <type_traits>
@@ -61,19 +60,20 @@ inline void need(const Result<void>& done) {
     }
 }
 
-/// Collects one member of all items into an array: (n,), or (n, 3) for vectors.
+/// Collects one member of all items into an array: (n,), or (n, parts) for vectors and quaternions.
 template <class T, class Class, class Item>
 auto column(const std::vector<Item>& items, T Class::*member) {
     const auto count = static_cast<py::ssize_t>(items.size());
-    if constexpr (std::is_same_v<T, glm::vec3>) {
-        Floats array({count, py::ssize_t{3}});
-        for (std::size_t i = 0; i < items.size(); ++i) {
-            std::copy_n(&(items[i].*member).x, 3, array.mutable_data() + 3 * i);
-        }
-        return array;
-    } else {
+    if constexpr (std::is_arithmetic_v<T>) {
         py::array_t<T> array(count);
         std::ranges::transform(items, array.mutable_data(), [&](const Item& item) { return item.*member; });
+        return array;
+    } else {
+        constexpr std::size_t kParts = sizeof(T) / sizeof(float);
+        Floats array({count, static_cast<py::ssize_t>(kParts)});
+        for (std::size_t i = 0; i < items.size(); ++i) {
+            std::copy_n(&(items[i].*member)[0], kParts, array.mutable_data() + kParts * i);
+        }
         return array;
     }
 }

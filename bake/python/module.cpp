@@ -100,17 +100,6 @@ py::tuple queryWorld(const WorldField& field, const Floats& points) {
     return py::make_tuple(s.distance, s.normal, s.map);
 }
 
-/// Returns `kParts` floats per body.
-template <std::size_t kParts, class Value>
-Floats ofBodies(const WorldField& field, const Value& value) {
-    const std::vector<WorldBody>& bodies = field.world().bodies;
-    Floats out({static_cast<py::ssize_t>(bodies.size()), static_cast<py::ssize_t>(kParts)});
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        std::copy_n(value(bodies[i]), kParts, out.mutable_data() + kParts * i);
-    }
-    return out;
-}
-
 Floats cornersOf(const Bounds& bounds) {
     const auto& [low, high] = bounds;
     return Floats({2, 3}, std::array{low.x, low.y, low.z, high.x, high.y, high.z}.data());
@@ -338,16 +327,10 @@ PYBIND11_MODULE(_relief, m) {
                                    }
                                    return nodes;
                                })
-        .def_property_readonly("positions",
-                               [](const WorldField& f) {
-                                   return ofBodies<3>(f,
-                                                      [](const WorldBody& body) { return &body.position.x; });
-                               })
-        .def_property_readonly("rotations",
-                               [](const WorldField& f) {
-                                   return ofBodies<4>(
-                                       f, [](const WorldBody& body) { return body.rotation.data(); });
-                               })
+        .def_property_readonly(
+            "positions", [](const WorldField& f) { return column(f.world().bodies, &WorldBody::position); })
+        .def_property_readonly(
+            "rotations", [](const WorldField& f) { return column(f.world().bodies, &WorldBody::rotation); })
         .def_property_readonly(
             "scales", [](const WorldField& f) { return column(f.world().bodies, &WorldBody::scale); })
         .def_property_readonly(

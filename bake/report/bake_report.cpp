@@ -286,8 +286,7 @@ void fields(FieldVisitor& visit, const BakeJson& report) {
               ? std::optional(PartsReport{*result.part_accuracy, result.parts, baked.collider})
               : std::nullopt,
           {"Accuracy of each part of the mesh relative to its size; null if the bake was not measured or the "
-           "mesh has one "
-           "part"});
+           "mesh has one part"});
     visit("closed_holes", mesh.closed_holes, {"Holes of the mesh that were closed"});
     visit("cap_triangles", mesh.cap_triangles,
           {"Triangles added to close holes, for the rims of shells, and for the ground below terrains"});

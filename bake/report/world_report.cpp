@@ -121,8 +121,7 @@ void fields(FieldVisitor& visit, const WorldColliderResult& c) {
     visit("hash", c.hash, {.help = "XXH3-128 of the container; empty if it failed", .pattern = kHashPattern});
     visit("wrong_percent", c.wrong ? std::optional(c.wrong->total()) : std::nullopt,
           {"Points near the mesh's surface that are on the wrong side; null unless it was baked "
-           "and "
-           "measured",
+           "and measured",
            "%", kPercentRange});
     visit("verdict", c.verdict, {"Summary; null unless it was baked and measured"});
     visit("ignored_parts", c.ignored,

@@ -310,8 +310,7 @@ void fields(FieldVisitor& visit, const IgnoredParts& ignored) {
     visit("size", ignored.size, {"Longest side of the largest ignored part", "object units", kFromZero});
     visit("thickened", ignored.thickened,
           {"Parts that are thicker than in the mesh, but too small or too slightly off to lower the grade: "
-           "more than 25 % of the "
-           "points near each are wrong, most of them classified as inside"});
+           "more than 25 % of the points near each are wrong, most of them classified as inside"});
     visit("unmeasured", ignored.unmeasured, {"Parts that were not measured: the smallest of too many"});
 }
 
@@ -346,9 +345,7 @@ void fields(FieldVisitor& visit, const PartReport& report) {
     visit("state", accuracy.state,
           {"kept: at most 10 % of the points near it are wrong; coarse: at most 25 %; lost: more; hidden: "
            "inside other parts; minor: more, but too small to be noticed; unmeasured: not measured because "
-           "there "
-           "are too "
-           "many parts"});
+           "there are too many parts"});
     visit("size", part.size(), {"Longest side of its box", "object units", kFromZero});
     visit("position", part.bounds.center(), {"Center of its box", "object units"});
     visit("triangles", part.triangles, {"Number of triangles"});
