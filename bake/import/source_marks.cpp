@@ -17,10 +17,6 @@ using namespace std::string_view_literals;
 constexpr std::string_view kLodGroup = "LodGroup";
 static_assert(kLodGroupMark.size() == kLodGroup.size());
 
-std::string_view textOf(std::span<const std::byte> document) {
-    return {reinterpret_cast<const char*>(document.data()), document.size()};
-}
-
 bool isBinary(std::string_view text) {
     return text.starts_with("Kaydara");
 }
