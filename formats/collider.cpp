@@ -42,6 +42,11 @@ float Bounds::longestSide() const {
     return std::max({s.x, s.y, s.z});
 }
 
+float Bounds::farthest() const {
+    const glm::vec3 far = glm::max(glm::abs(min), glm::abs(max));
+    return std::max({far.x, far.y, far.z});
+}
+
 bool Bounds::meets(const Bounds& other) const {
     return glm::all(glm::lessThanEqual(min, other.max)) && glm::all(glm::lessThanEqual(other.min, max));
 }

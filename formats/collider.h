@@ -24,6 +24,12 @@ struct Bounds {
     [[nodiscard]] glm::vec3 size() const { return max - min; }
     [[nodiscard]] glm::vec3 center() const { return 0.5F * min + 0.5F * max; }
     [[nodiscard]] float longestSide() const;
+    /// Returns the largest magnitude of a coordinate.
+    [[nodiscard]] float farthest() const;
+    /// Returns a corner. \param i  0 to 7: bits 0, 1 and 2 select the maximum of x, y and z.
+    [[nodiscard]] glm::vec3 corner(unsigned i) const {
+        return {(i & 1U) != 0 ? max.x : min.x, (i & 2U) != 0 ? max.y : min.y, (i & 4U) != 0 ? max.z : min.z};
+    }
     /// Returns whether the boxes share a point; boundaries are included.
     [[nodiscard]] bool meets(const Bounds& other) const;
     [[nodiscard]] bool contains(const glm::vec3& p) const { return meets({p, p}); }

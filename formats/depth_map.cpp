@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/matrix.hpp>
 
 #include "formats/patch_tree.h"
 
@@ -153,6 +154,15 @@ const char* decodeName(Decode decode) {
 glm::vec3 Affine::apply(const glm::vec3& p) const {
     const auto one = [&](const glm::vec4& r) { return r.x * p.x + (r.y * p.y + (r.z * p.z + r.w)); };
     return {one(row[0]), one(row[1]), one(row[2])};
+}
+
+glm::dmat3 Affine::linear() const {
+    // glm takes columns.
+    return glm::transpose(glm::dmat3(glm::vec3(row[0]), glm::vec3(row[1]), glm::vec3(row[2])));
+}
+
+glm::dmat3 Affine::inverse() const {
+    return glm::inverse(linear());
 }
 
 std::span<const std::byte> DepthMap::texelAt(std::uint32_t face, std::uint32_t x, std::uint32_t y) const {

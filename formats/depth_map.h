@@ -18,6 +18,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <optional>
@@ -50,6 +51,10 @@ struct Affine {
     glm::vec4 row[3] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
 
     [[nodiscard]] glm::vec3 apply(const glm::vec3& p) const;
+    /// Returns the matrix that transforms directions; in double precision, like the next function.
+    [[nodiscard]] glm::dmat3 linear() const;
+    /// Returns the inverse of linear(), which must exist.
+    [[nodiscard]] glm::dmat3 inverse() const;
     friend bool operator==(const Affine&, const Affine&) = default;
 };
 

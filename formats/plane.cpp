@@ -2,8 +2,6 @@
 #include "formats/plane.h"
 
 #include <glm/geometric.hpp>
-#include <glm/mat3x3.hpp>
-#include <glm/matrix.hpp>
 
 namespace relief {
 
@@ -12,14 +10,9 @@ TexelRay texelRay(const DepthMap& map, std::uint32_t face, std::uint32_t x, std:
 }
 
 TexelRay rayThrough(const DepthMap& map, std::uint32_t face, double x, double y) {
-    glm::dmat3 rows;  // as columns
-    glm::dvec3 shift;
-    for (int k = 0; k < 3; ++k) {
-        const glm::vec4& r = map.object_to_map.row[k];
-        rows[k] = glm::dvec3(r.x, r.y, r.z);
-        shift[k] = r.w;
-    }
-    const glm::dmat3 object_from_map = glm::inverse(glm::transpose(rows));
+    const glm::vec4* const row = map.object_to_map.row;
+    const glm::dvec3 shift(row[0].w, row[1].w, row[2].w);
+    const glm::dmat3 object_from_map = map.object_to_map.inverse();
     const glm::dvec3 start = -(object_from_map * shift);  // origin of map space
     const double s = x / map.width;
     const double t = y / map.height;

@@ -20,7 +20,6 @@
 #include "bake/report/bake_report.h"
 #include "bake/shape/shape.h"
 #include "bake/verdict/check_report.h"
-#include "bake/verdict/report_text.h"
 #include "bake/views/view.h"
 #include "formats/base/file_io.h"
 #include "formats/base/stopwatch.h"
@@ -33,30 +32,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The result of one mesh, budget and method.
+/// The result of a method for one mesh and budget.
 struct AccuracyEntry {
-    std::string mesh;
-    bool closed = false;
-    std::uint64_t budget = 0;
-    std::string method;  ///< from Arguments
-    std::string what;    ///< the lattice or the maps
+    std::string what;  ///< the lattice or the maps
     std::size_t maps = 0;
     std::uint64_t bytes = 0;
     std::optional<double> build_seconds;  ///< for maps: acceleration structure, rays and fit
-    Json accuracy;                        ///< of jsonFieldAccuracy or jsonColliderAccuracy
+    Json accuracy;                        ///< of FieldAccuracyReport or ColliderAccuracyReport
 };
-
-Json toJson(const AccuracyEntry& entry) {
-    return {{"mesh", entry.mesh},
-            {"closed", entry.closed},
-            {"budget", entry.budget},
-            {"method", entry.method},
-            {"what", entry.what},
-            {"maps", entry.maps},
-            {"bytes", entry.bytes},
-            {"build_seconds", entry.build_seconds ? Json(*entry.build_seconds) : Json()},
-            {"accuracy", entry.accuracy}};
-}
 
 // --- Methods ---
 
@@ -119,49 +102,60 @@ Result<Baked> bakeOurs(const PreparedMesh& mesh, std::uint64_t bytes) {
 
 // --- Measurements ---
 
+/// Keeps the volume with the fewest wrong points.
+class BestVolume {
+  public:
+    /// \param atlas  receives the data of the best; null if not needed
+    BestVolume(const TruthSamples& samples, BrickAtlas* atlas) : samples_(samples), atlas_(atlas) {}
+
+    /// \param volume  DistanceVolume or BrickVolume
+    template <class Volume>
+    void offer(const Volume& volume, const std::string& what, double build_seconds) {
+        const FieldAccuracy accuracy = measureField(samples_, fieldOf(volume));
+        if (wrong_ && accuracy.near.total() >= *wrong_) {
+            return;
+        }
+        wrong_ = accuracy.near.total();
+        entry_ = {what, 0, volume.bytes(), build_seconds,
+                  jsonOf(FieldAccuracyReport{accuracy, samples_.longest_side})};
+        if (atlas_ != nullptr) {
+            *atlas_ = volume.atlas();
+        }
+    }
+    AccuracyEntry take() { return std::move(entry_); }
+
+  private:
+    const TruthSamples& samples_;
+    BrickAtlas* atlas_;
+    std::optional<double> wrong_;  // percent
+    AccuracyEntry entry_;
+};
+
 /// Measures all positions and quantisations of the volume, and returns the best.
-/// \param atlas  receives the data of the best; null if not needed. The same applies below.
 AccuracyEntry measureVolume(const MeshQuery& query, const TruthSamples& samples, std::uint64_t budget,
                             BrickAtlas* atlas) {
-    AccuracyEntry entry;
-    entry.method = "volume";
+    BestVolume best(samples, atlas);
     // Four standard deviations include all but 6 in 100,000 of the points near the surface.
     const double reach = 4.0 * samples.options.sigma_share * samples.longest_side;
-    std::optional<FieldAccuracy> best;
     for (const LatticeFit fit : {LatticeFit::kCentered, LatticeFit::kCorner, LatticeFit::kStretched}) {
         const Stopwatch watch;
         const DistanceGrid grid =
             sampleDistances(query, makeLattice(query.mesh().bounds, budget / sizeof(std::int16_t), fit));
         const double seconds = watch.seconds();
-        for (const bool band : {false, true}) {
-            const DistanceVolume volume(
-                grid, band ? DistanceVolume::bandRange(grid, reach) : DistanceVolume::fullRange(grid));
-            const FieldAccuracy accuracy = measureField(samples, fieldOf(volume));
-            if (!best || accuracy.near.total() < best->near.total()) {
-                best = accuracy;
-                const glm::uvec3 n = grid.lattice.nodes;
-                entry.what = std::to_string(n.x) + "x" + std::to_string(n.y) + "x" + std::to_string(n.z) +
-                             (fit == LatticeFit::kCentered ? " centred"
-                              : fit == LatticeFit::kCorner ? " from a corner"
-                                                           : " stretched") +
-                             (band ? ", band" : "");
-                entry.bytes = volume.bytes();
-                entry.build_seconds = seconds;
-                if (atlas != nullptr) {
-                    *atlas = volume.atlas();
-                }
-            }
-        }
+        const glm::uvec3 n = grid.lattice.nodes;
+        const std::string what = std::to_string(n.x) + "x" + std::to_string(n.y) + "x" + std::to_string(n.z) +
+                                 (fit == LatticeFit::kCentered ? " centred"
+                                  : fit == LatticeFit::kCorner ? " from a corner"
+                                                               : " stretched");
+        best.offer(DistanceVolume(grid, DistanceVolume::fullRange(grid)), what, seconds);
+        best.offer(DistanceVolume(grid, DistanceVolume::bandRange(grid, reach)), what + ", band", seconds);
     }
-    entry.accuracy = jsonOf(FieldAccuracyReport{*best, samples.longest_side});
-    return entry;
+    return best.take();
 }
 
 /// Measures several layouts, and returns the best.
 AccuracyEntry measureBricks(const MeshQuery& query, const TruthSamples& samples, const std::string& method,
                             std::uint64_t budget, BrickAtlas* atlas) {
-    AccuracyEntry entry;
-    entry.method = method;
     // Unreal's band is 2 to 4 voxels; 2 has the finest codes. Bricks of 3³ and an octree of 2³ were the best of 2³ to
     // 8³.
     std::vector<BrickLayout> layouts = {{.cells = 8, .flat_index = true}};
@@ -172,36 +166,23 @@ AccuracyEntry measureBricks(const MeshQuery& query, const TruthSamples& samples,
     if (atlas != nullptr) {
         std::erase_if(layouts, [](const BrickLayout& layout) { return layout.octree; });
     }
-    std::optional<FieldAccuracy> best;
+    BestVolume best(samples, atlas);
     for (const BrickLayout& layout : layouts) {
         const Stopwatch watch;
         const BrickVolume volume = BrickVolume::build(query, layout, budget);
-        const double seconds = watch.seconds();
-        const FieldAccuracy accuracy = measureField(samples, fieldOf(volume));
-        if (!best || accuracy.near.total() < best->near.total()) {
-            best = accuracy;
-            entry.what = volume.text();
-            entry.bytes = volume.bytes();
-            entry.build_seconds = seconds;
-            if (atlas != nullptr) {
-                *atlas = volume.atlas();
-            }
-        }
+        best.offer(volume, volume.text(), watch.seconds());
     }
-    entry.accuracy = jsonOf(FieldAccuracyReport{*best, samples.longest_side});
-    return entry;
+    return best.take();
 }
 
-/// The truth about a mesh.
 struct Truth {
     const MeshQuery& query;  ///< of the baked solid
     const TruthSamples& samples;
     const std::vector<TruthPoint>& sheets;  ///< of SheetTruth::sample
 };
 
-AccuracyEntry measureMaps(const Truth& truth, const std::string& method, const Collider& collider) {
+AccuracyEntry measureMaps(const Truth& truth, const Collider& collider) {
     AccuracyEntry entry;
-    entry.method = method;
     const ColliderAccuracy accuracy = measureCollider(truth.samples, truth.query, collider);
     for (const DepthMap& map : collider.maps) {
         entry.what += (entry.what.empty() ? "" : " ") + std::to_string(map.width) + "x" +
@@ -221,7 +202,7 @@ Result<AccuracyEntry> bakeAndMeasure(const Truth& truth, const std::string& meth
     const PreparedMesh& mesh = truth.query.prepared();
     const Baked baked = RELIEF_TRY(method == "paper" ? bakePaper(mesh, budget) : bakeOurs(mesh, budget));
     const double seconds = watch.seconds();
-    AccuracyEntry entry = measureMaps(truth, method, baked.collider);
+    AccuracyEntry entry = measureMaps(truth, baked.collider);
     entry.build_seconds = seconds;
     return entry;
 }
@@ -234,7 +215,7 @@ Result<AccuracyEntry> loadAndMeasure(const Truth& truth, const std::string& path
         return fail(ErrorCode::kInvalidInput, quotedPath(path) + " was not baked from " + mesh.name +
                                                   "; bake that mesh, or give --collider another file");
     }
-    return measureMaps(truth, "ours", collider);
+    return measureMaps(truth, collider);
 }
 
 // --- Program ---
@@ -319,10 +300,16 @@ Result<void> measureBudget(const PreparedMesh& imported, const Arguments& argume
         } else {
             entry = RELIEF_TRY(bakeAndMeasure(truth, method, budget));
         }
-        entry.mesh = imported->name;
-        entry.closed = shaped.report.solids_with_holes + shaped.report.sheets + shaped.report.terrains == 0;
-        entry.budget = budget;
-        measured.results.push_back(toJson(entry));
+        measured.results.push_back(
+            {{"mesh", imported->name},
+             {"closed", shaped.report.solids_with_holes + shaped.report.sheets + shaped.report.terrains == 0},
+             {"budget", budget},
+             {"method", method},
+             {"what", entry.what},
+             {"maps", entry.maps},
+             {"bytes", entry.bytes},
+             {"build_seconds", entry.build_seconds ? Json(*entry.build_seconds) : Json()},
+             {"accuracy", entry.accuracy}});
     }
     if (wanted != nullptr) {
         RELIEF_TRY(saveBrickAtlas(atlas, arguments.atlas));
@@ -362,8 +349,7 @@ Result<void> run(const Arguments& arguments) {
         }
         std::fprintf(stderr, "%s: %.1f s\n", winding.mesh->name.c_str(), watch.seconds());
     }
-    const std::string text = jsonText({{"meshes", measured.meshes}, {"results", measured.results}});
-    return writeFile("-", std::as_bytes(std::span(text)));
+    return writeText("-", jsonText({{"meshes", measured.meshes}, {"results", measured.results}}));
 }
 
 int report(const Error& error) {

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <optional>
 
 #include <Eigen/Cholesky>
 
+#include "bake/bench/distance_volume.h"
 #include "bake/measure/truth.h"
 #include "bake/mesh/loops.h"
 #include "bake/mesh/mersenne.h"
@@ -25,6 +25,11 @@ constexpr unsigned kFitParts = 3;
 constexpr double kSamplesPerByte = 0.5;
 constexpr std::uint32_t kSamplesMax = 1'500'000;
 
+/// Returns a corner of the unit cube, x fastest.
+glm::uvec3 cornerOf(unsigned i) {
+    return {i & 1U, i >> 1U & 1U, i >> 2U};
+}
+
 /// A cube in object space.
 struct Box {
     glm::dvec3 low{0.0};
@@ -36,39 +41,13 @@ struct Box {
         return glm::all(glm::greaterThanEqual(p, low)) && glm::all(glm::lessThanEqual(p, low + size));
     }
     [[nodiscard]] Box octant(unsigned i) const {
-        return {low + 0.5 * size * glm::dvec3(i & 1U, i >> 1U & 1U, i >> 2U), 0.5 * size};
+        return {low + 0.5 * size * glm::dvec3(cornerOf(i)), 0.5 * size};
     }
     /// Returns the octant of a point in the box.
     [[nodiscard]] unsigned octantOf(const glm::dvec3& p) const {
         const glm::bvec3 upper = glm::greaterThanEqual(p, middle());
         return (upper.x ? 1U : 0U) + (upper.y ? 2U : 0U) + (upper.z ? 4U : 0U);
     }
-};
-
-/// Computes signed distances at a sequence of points, each near the previous one.
-class DistanceWalk {
-  public:
-    explicit DistanceWalk(const MeshQuery& query) : query_(query) {}
-
-    [[nodiscard]] double at(const glm::dvec3& exact) {
-        const glm::vec3 p = exact;
-        const ClosestPoint closest = query_.closest(p, nearby_);
-        // No surface lies between two points if they are closer to each other than one of them is to the surface. The
-        // factor allows for the rounding of p.
-        const bool same_side =
-            nearby_ && query_.watertight() && std::abs(before_) > 1.01 * glm::distance(exact, from_);
-        const bool inside = same_side ? before_ < 0.0 : query_.inside(p);
-        nearby_ = closest.triangle;
-        from_ = exact;
-        before_ = inside ? -closest.distance : closest.distance;
-        return before_;
-    }
-
-  private:
-    const MeshQuery& query_;
-    std::optional<std::uint32_t> nearby_;
-    glm::dvec3 from_{0.0};
-    double before_ = 0.0;
 };
 
 /// Whether a box contains surface. Exact, except for corners of a sixteenth of its side, which count as surface.
@@ -267,10 +246,7 @@ class BrickBuilder {
     };
 
     [[nodiscard]] Box boxOf(std::uint64_t cell) const {
-        const glm::uvec3 n = volume_.roots_count_;
-        return {
-            volume_.origin_ + volume_.root_size_ * glm::dvec3(cell % n.x, cell / n.x % n.y, cell / n.x / n.y),
-            volume_.root_size_};
+        return {volume_.origin_ + volume_.root_size_ * glm::dvec3(volume_.rootOf(cell)), volume_.root_size_};
     }
 
     /// Returns the cells in ascending order.
@@ -287,7 +263,7 @@ class BrickBuilder {
             std::vector<glm::uvec3> finer;
             for (const glm::uvec3& block : blocks) {
                 for (unsigned i = 0; i < 8; ++i) {
-                    const glm::uvec3 at = block + span * glm::uvec3(i & 1U, i >> 1U & 1U, i >> 2U);
+                    const glm::uvec3 at = block + span * cornerOf(i);
                     if (glm::all(glm::lessThan(at, n)) && near(at, span)) {
                         finer.push_back(at);
                     }
@@ -322,7 +298,7 @@ class BrickBuilder {
         }
         if (near(at, span)) {
             for (unsigned i = 0; i < 8; ++i) {
-                descend(at + span / 2 * glm::uvec3(i & 1U, i >> 1U & 1U, i >> 2U), span / 2, found);
+                descend(at + span / 2 * cornerOf(i), span / 2, found);
             }
         }
     }
@@ -525,10 +501,8 @@ std::uint64_t BrickVolume::indexBytes(std::uint64_t bricks) const {
         const glm::uvec3 upper = (roots_count_ + std::uint32_t(k - 1)) / std::uint32_t(k);
         std::vector<std::uint64_t> blocks;
         for (const Root& root : roots_) {
-            const std::uint64_t x = root.cell % roots_count_.x;
-            const std::uint64_t y = root.cell / roots_count_.x % roots_count_.y;
-            const std::uint64_t z = root.cell / roots_count_.x / roots_count_.y;
-            blocks.push_back((z / k * upper.y + y / k) * upper.x + x / k);
+            const glm::uvec3 block = rootOf(root.cell) / std::uint32_t(k);
+            blocks.push_back((std::uint64_t{block.z} * upper.y + block.y) * upper.x + block.x);
         }
         std::ranges::sort(blocks);
         blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
@@ -543,6 +517,16 @@ std::uint64_t BrickVolume::cellAt(const glm::dvec3& p) const {
     const glm::uvec3 at =
         glm::clamp(glm::floor((p - origin_) / root_size_), glm::dvec3(0.0), glm::dvec3(roots_count_) - 1.0);
     return (std::uint64_t{at.z} * roots_count_.y + at.y) * roots_count_.x + at.x;
+}
+
+glm::uvec3 BrickVolume::rootOf(std::uint64_t cell) const {
+    const glm::uvec3& n = roots_count_;
+    return {cell % n.x, cell / n.x % n.y, cell / n.x / n.y};
+}
+
+BrickVolume::Cube BrickVolume::cubeOf(std::uint64_t cell) const {
+    const auto found = std::ranges::lower_bound(roots_, cell, {}, &Root::cell);
+    return found != roots_.end() && found->cell == cell ? found->cube : Cube{};
 }
 
 FieldValue BrickVolume::clamped(bool inside, double cube_size) const {
@@ -579,11 +563,8 @@ FieldValue BrickVolume::at(const glm::vec3& p) const {
     const glm::dvec3 exact = p;
     const glm::dvec3 held = glm::clamp(exact, glm::dvec3(bounds.min), glm::dvec3(bounds.max));
     const std::uint64_t cell = cellAt(held);
-    const glm::dvec3 root(cell % roots_count_.x, cell / roots_count_.x % roots_count_.y,
-                          cell / roots_count_.x / roots_count_.y);
-    Box box{origin_ + root_size_ * root, root_size_};
-    const auto found = std::ranges::lower_bound(roots_, cell, {}, &Root::cell);
-    Cube cube = found != roots_.end() && found->cell == cell ? found->cube : Cube{};
+    Box box{origin_ + root_size_ * glm::dvec3(rootOf(cell)), root_size_};
+    Cube cube = cubeOf(cell);
     while (cube.kind == Kind::kSplit) {
         const unsigned octant = box.octantOf(held);
         cube = cubes_[cube.first + octant];
@@ -617,13 +598,11 @@ BrickAtlas BrickVolume::atlas() const {
     atlas.codes.assign(codes_.begin(), codes_.end());
     atlas.index.resize(std::size_t{roots_count_.x} * roots_count_.y * roots_count_.z);
     forEachIndex(0, atlas.index.size(), 256, [&](std::size_t cell) {
-        const glm::dvec3 cube(cell % roots_count_.x, cell / roots_count_.x % roots_count_.y,
-                              cell / roots_count_.x / roots_count_.y);
-        const auto found = std::ranges::lower_bound(roots_, cell, {}, &Root::cell);
-        const Cube held = found != roots_.end() && found->cell == cell ? found->cube : Cube{};
-        const bool inside = held.kind == Kind::kTruth
-                                ? query_->inside(glm::vec3(origin_ + root_size_ * (cube + 0.5)))
-                                : held.kind == Kind::kInside;
+        const Cube held = cubeOf(cell);
+        const bool inside =
+            held.kind == Kind::kTruth
+                ? query_->inside(glm::vec3(origin_ + root_size_ * (glm::dvec3(rootOf(cell)) + 0.5)))
+                : held.kind == Kind::kInside;
         atlas.index[cell] = held.kind == Kind::kBrick ? BrickAtlas::kFirstBrick + held.first
                             : inside                  ? BrickAtlas::kInside
                                                       : BrickAtlas::kOutside;

@@ -72,6 +72,8 @@ class BrickVolume {
     [[nodiscard]] std::size_t nodesOfBrick() const;
     [[nodiscard]] std::uint64_t indexBytes(std::uint64_t bricks) const;
     [[nodiscard]] std::uint64_t cellAt(const glm::dvec3& p) const;
+    [[nodiscard]] glm::uvec3 rootOf(std::uint64_t cell) const;
+    [[nodiscard]] Cube cubeOf(std::uint64_t cell) const;
     [[nodiscard]] FieldValue inBrick(std::uint32_t brick, const glm::dvec3& in_voxels, double voxel) const;
     [[nodiscard]] FieldValue clamped(bool inside, double cube_size) const;
 

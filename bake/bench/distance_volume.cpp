@@ -26,6 +26,20 @@ glm::uvec3 nodesFor(const glm::dvec3& size, double spacing) {
 
 }  // namespace
 
+double DistanceWalk::at(const glm::dvec3& exact) {
+    const glm::vec3 p = exact;
+    const ClosestPoint closest = query_.closest(p, nearby_);
+    // No surface lies between two points if they are closer to each other than one of them is to the surface. The
+    // factor allows for the rounding of p.
+    const bool same_side =
+        nearby_ && query_.watertight() && std::abs(before_) > 1.01 * glm::distance(exact, from_);
+    const bool inside = same_side ? before_ < 0.0 : query_.inside(p);
+    nearby_ = closest.triangle;
+    from_ = exact;
+    before_ = inside ? -closest.distance : closest.distance;
+    return before_;
+}
+
 Lattice makeLattice(const Bounds& box, std::uint64_t nodes_max, LatticeFit fit) {
     const glm::dvec3 size = glm::dvec3(box.max) - glm::dvec3(box.min);
     const auto fits = [&](double spacing) {
@@ -58,18 +72,10 @@ DistanceGrid sampleDistances(const MeshQuery& query, const Lattice& lattice) {
     tbb::parallel_for(std::uint32_t{0}, nodes.y * nodes.z, [&](std::uint32_t row) {
         const std::uint32_t y = row % nodes.y;
         const std::uint32_t z = row / nodes.y;
-        std::optional<std::uint32_t> nearby;
-        double before = 0.0;  // distance of the previous node
+        DistanceWalk walk(query);
         for (std::uint32_t x = 0; x < nodes.x; ++x) {
-            const glm::vec3 p = lattice.origin + lattice.spacing * glm::dvec3(x, y, z);
-            const ClosestPoint closest = query.closest(p, nearby);
-            nearby = closest.triangle;
-            // No surface lies between this node and the previous one if the previous one is farther from the surface
-            // than from this node. The factor allows for the rounding of p.
-            const bool same_side = query.watertight() && std::abs(before) > 1.01 * lattice.spacing.x;
-            const bool inside = same_side ? before < 0.0 : query.inside(p);
-            before = inside ? -closest.distance : closest.distance;
-            grid.distances[std::size_t{row} * nodes.x + x] = static_cast<float>(before);
+            const double distance = walk.at(lattice.origin + lattice.spacing * glm::dvec3(x, y, z));
+            grid.distances[std::size_t{row} * nodes.x + x] = static_cast<float>(distance);
         }
     });
     return grid;

@@ -16,6 +16,7 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <vector>
 
 #include "bake/measure/accuracy.h"
@@ -23,6 +24,20 @@
 #include "formats/bricks/brick_atlas.h"
 
 namespace relief {
+
+/// Computes signed distances at a sequence of points, each near the previous one.
+class DistanceWalk {
+  public:
+    explicit DistanceWalk(const MeshQuery& query) : query_(query) {}
+
+    [[nodiscard]] double at(const glm::dvec3& exact);
+
+  private:
+    const MeshQuery& query_;
+    std::optional<std::uint32_t> nearby_;
+    glm::dvec3 from_{0.0};
+    double before_ = 0.0;
+};
 
 /// Position of the lattice if the sides of the box are not whole numbers of voxels.
 enum class LatticeFit : std::uint8_t {

@@ -3,7 +3,6 @@
 // thickness of the imported surface. Only the sheets and their thickness are taken from the shape's report.
 #pragma once
 
-#include <cstdint>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <vector>

@@ -66,6 +66,16 @@ Result<void> forEachFile(const std::vector<std::string>& files,
                                 first.message);
 }
 
+void setAction(CLI::App& verb, Action& action, Action run) {
+    onVerb(verb, [&action, run = std::move(run)] { action = run; });
+}
+
+void logWarnings(const std::vector<std::string>& warnings) {
+    for (const std::string& warning : warnings) {
+        spdlog::warn(warning);
+    }
+}
+
 std::string shownInput(const std::string& file) {
     return file == "-" ? "standard input" : quotedPath(file);
 }

@@ -9,7 +9,8 @@
 
 #include "formats/base/file_guard.h"
 #include "formats/base/result.h"
-#include "formats/container.h"
+#include "formats/collider.h"
+#include "formats/container_limits.h"
 #include "formats/fields/generated.h"
 
 namespace CLI {
@@ -37,6 +38,11 @@ CLI::App& addVerb(CLI::App& app, CommonOptions& common, const std::string& name,
 /// Errors: that of the only file; for several, the code of the first failure, and the number of failures.
 [[nodiscard]] Result<void> forEachFile(const std::vector<std::string>& files,
                                        const std::function<Result<void>(const std::string& file)>& each);
+
+/// Makes a verb set `action` to `run` when it is called.
+void setAction(CLI::App& verb, Action& action, Action run);
+
+void logWarnings(const std::vector<std::string>& warnings);
 
 /// For messages: "standard input" for "-", otherwise the quoted path.
 [[nodiscard]] std::string shownInput(const std::string& file);

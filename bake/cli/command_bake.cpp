@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief bake: bakes a mesh into a collider.
+#include "bake/cli/command_bake.h"
+
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <span>
 
-#include "bake/cli/command.h"
-#include "bake/cli/command_ground.h"
-#include "bake/cli/command_recipe.h"
-#include "bake/cli/command_world.h"
 #include "bake/cli/option_details.h"
 #include "bake/pipeline/bake.h"
 #include "bake/report/bake_report.h"
@@ -24,15 +20,6 @@
 
 namespace relief {
 namespace {
-
-struct BakeCommand {
-    CommonOptions common;
-    BakeRequest request;
-    std::string output;
-    BakeOutputs outputs;
-    BakeRecipeOptions recipe;
-    std::string world;  // folder
-};
 
 /// Shows the stages of a bake on the terminal.
 BakeWatcher watcherOf(Progress& progress, FileGuard& files) {
@@ -70,34 +57,7 @@ void showNotices(BakeResult& result, std::size_t file_size) {
     for (const std::string& notice : result.notices) {
         spdlog::info(notice);
     }
-    for (const std::string& warning : warnings) {
-        spdlog::warn(warning);
-    }
-}
-
-/// Writes the collider and its depfile.
-Result<void> writeOutputs(const BakeCommand& command, const BakeResult& result,
-                          std::span<const std::byte> bytes) {
-    RELIEF_TRY(writeFile(command.output, bytes));
-    if (command.outputs.depfile.empty()) {
-        return {};
-    }
-    std::vector<std::string> names;
-    for (const InputFile& input : result.inputs) {
-        names.push_back(input.path);
-    }
-    return writeDepfile(command.outputs.depfile, {command.output}, names);
-}
-
-Result<void> report(const BakeCommand& command, const BakeResult& result, std::span<const std::byte> bytes) {
-    if (command.outputs.json) {
-        const ContainerInfo info = RELIEF_TRY(readContainerInfo(bytes));
-        return printOut(jsonTextOf(BakeJson{result, info, command.output, command.outputs.compress}));
-    }
-    if (!command.common.quiet) {
-        std::fputs(bakeText(result, command.output, bytes.size(), command.common.verbose).c_str(), stderr);
-    }
-    return {};
+    logWarnings(warnings);
 }
 
 /// Bakes a mesh, animated or not.
@@ -108,7 +68,7 @@ Result<void> runMeshCommand(BakeCommand& command, FileGuard& files) {
     const Stopwatch total;
     Progress progress({quotedPath(command.request.mesh), !command.common.quiet, command.request.timeout});
     static_cast<void>(RELIEF_TRY(settingsOf(command.request)));
-    RELIEF_TRY(preflightBake(command.request, command.output, command.outputs, files));
+    RELIEF_TRY(preflightBake(command, files));
     command.request.repair.examine = command.outputs.json || !command.common.quiet;
     BakeResult result = RELIEF_TRY(bake(command.request, watcherOf(progress, files)));
     Stopwatch writing;
@@ -117,31 +77,70 @@ Result<void> runMeshCommand(BakeCommand& command, FileGuard& files) {
         RELIEF_TRY(writeContainer(result.baked.collider, {static_cast<int>(command.outputs.compress)}));
     progress.finish();
     showNotices(result, bytes.size());
-    RELIEF_TRY(writeOutputs(command, result, bytes));
+    RELIEF_TRY(writeFile(command.output, bytes));
+    RELIEF_TRY(writeDepfile(command, command.output, result.inputs));
     result.times.write_ms = writing.ms();
     result.times.total_ms = total.ms();
-    return report(command, result, bytes);
+    const ContainerInfo info = command.outputs.json ? RELIEF_TRY(readContainerInfo(bytes)) : ContainerInfo();
+    return printReport(command, BakeJson{result, info, command.output, command.outputs.compress},
+                       bakeText(result, command.output, bytes.size(), command.common.verbose));
 }
 
 /// Bakes a recipe, a height map, a level or a mesh.
 Result<void> runBake(BakeCommand& command, const CLI::App& verb, FileGuard& files) {
     if (!command.recipe.recipe.empty()) {
-        return runRecipeCommand(command.recipe,
-                                {verb, command.common, command.output, command.request.threads,
-                                 command.outputs.depfile, command.outputs.json, files});
+        return runRecipeCommand(command, verb, files);
     }
     if (command.output.empty() && command.world.empty()) {
         // A folder has no file name: bakes reject it.
         const std::filesystem::path mesh(command.request.mesh);
         command.output = mesh.filename().replace_extension(kColliderExtension).string();
     }
-    const WorldCall call{command.request, command.outputs, command.common, command.output, files};
-    return !command.request.heights.empty() ? runGroundCommand(command.world, call)
-           : !command.world.empty()         ? runWorldCommand(command.world, call)
+    return !command.request.heights.empty() ? runGroundCommand(command, files)
+           : !command.world.empty()         ? runWorldCommand(command, files)
                                             : runMeshCommand(command, files);
 }
 
 }  // namespace
+
+Result<void> preflightBake(const BakeCommand& command, FileGuard& files) {
+    const BakeOutputs& outputs = command.outputs;
+    if (!outputs.depfile.empty() && (outputs.depfile == "-" || command.output == "-")) {
+        return fail(ErrorCode::kUsage,
+                    "--depfile cannot be used with standard output; name files for --output and --depfile");
+    }
+    RELIEF_TRY(files.reads(command.request.mesh));
+    for (const std::string& clips : command.request.clips) {
+        RELIEF_TRY(files.reads(clips));
+    }
+    if (outputs.json) {
+        RELIEF_TRY(files.writes("-", "--json"));
+    }
+    RELIEF_TRY(files.writes(command.output, "-o"));
+    return files.writes(outputs.depfile, "--depfile");
+}
+
+Result<void> writeDepfile(const BakeCommand& command, const std::string& target,
+                          const std::vector<InputFile>& inputs) {
+    if (command.outputs.depfile.empty()) {
+        return {};
+    }
+    std::vector<std::string> names;
+    for (const InputFile& input : inputs) {
+        names.push_back(input.path);
+    }
+    return writeDepfile(command.outputs.depfile, {target}, names);
+}
+
+Result<void> printReport(const BakeCommand& command, FieldRef json, const std::string& text) {
+    if (command.outputs.json) {
+        return printOut(jsonTextOf(json));
+    }
+    if (!command.common.quiet) {
+        std::fputs(text.c_str(), stderr);
+    }
+    return {};
+}
 
 void addBake(CLI::App& app, Action& action) {
     auto command = std::make_shared<BakeCommand>();
@@ -177,12 +176,29 @@ void addBake(CLI::App& app, Action& action) {
     addFields(verb, command->request);
     addFields(verb, command->outputs);
     addRecipeOptions(verb, command->recipe);
-    addWorldOption(verb, command->world);
+    addOption(verb, "--world", command->world,
+              withDetails("Bake a level into this folder: a collider for each distinct mesh, and world.json, "
+                          "which places them",
+                          "Each distinct mesh is baked once, however many nodes place it. Only what has "
+                          "changed is baked again. Options that choose maps, such as --map, --holes keep and "
+                          "--max-error, are for one mesh; the others apply to every mesh."))
+        ->valueText("DIR")
+        ->excludes("--recipe");
     addKeyDetails(verb);
     groupBakeOptions(verb);
-    onVerb(verb, [command, &verb, &action] {
-        action = [command, &verb](FileGuard& files) { return runBake(*command, verb, files); };
-    });
+    setAction(verb, action, [command, &verb](FileGuard& files) { return runBake(*command, verb, files); });
+}
+
+void fields(FieldVisitor& visit, BakeOutputs& outputs) {
+    visit("compress", outputs.compress,
+          {.help = "zstd compression level of the texels, from 0 (none) to 19",
+           .range = {0.0, 19.0},
+           .value = "LEVEL",
+           .must = "0 (none) to 19 (smallest)"});
+    visit("json", outputs.json, {.help = "Print a report as JSON to standard output"});
+    visit("depfile", outputs.depfile,
+          {.help = "Also write a dependency file for Make and Ninja, which lists every file read",
+           .value = "FILE"});
 }
 
 }  // namespace relief

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // relief check: validates containers, and measures colliders against their meshes.
-#include <span>
+#include "bake/cli/command_check.h"
+
 #include <tuple>
 
-#include "bake/cli/command.h"
-#include "bake/cli/command_ground.h"
 #include "bake/cli/command_view.h"
-#include "bake/cli/command_world.h"
 #include "bake/cli/option_details.h"
 #include "bake/report/bake_report.h"
 #include "bake/report/inspect_report.h"
@@ -25,18 +23,6 @@
 
 namespace relief {
 namespace {
-
-struct CheckCommand {
-    CommonOptions common;
-    std::vector<std::string> files;
-    CheckRequest request;
-    ContainerLimits limits;
-    std::string heights;
-    std::optional<float> within;     // world units
-    std::optional<float> max_error;  // percent
-    std::string html;
-    bool json = false;
-};
 
 /// Checks the animation of a valid container, which the inspection does not read.
 Result<void> checkAnimation(const std::vector<std::byte>& bytes, const ContainerLimits& limits) {
@@ -83,14 +69,6 @@ void addAdvice(const CheckCommand& command, const std::string& file, MeshCheck& 
     run.advice = adviceFor(run, command.request.mesh, file == "-" ? "out.relief" : file);
 }
 
-Result<void> writePage(const CheckCommand& command, std::size_t bytes, const MeshCheckReport& report) {
-    if (command.html.empty()) {
-        return {};
-    }
-    const std::string page = RELIEF_TRY(makeCheckPage(report.file, bytes, report.run, report.max_error));
-    return writeFile(command.html, std::as_bytes(std::span(page)));
-}
-
 std::string checkText(const MeshCheckReport& report) {
     const MeshCheck& run = report.run;
     const auto& [samples, accuracy] = run.judged();
@@ -124,13 +102,11 @@ std::string checkText(const MeshCheckReport& report) {
 }
 
 Result<void> runCheck(const CheckCommand& command, const std::string& file, FileGuard& files) {
-    const WorldCheckCall world{command.request, command.within, command.limits, command.max_error,
-                               command.html,    command.json,   files};
     if (!command.heights.empty() || namesHeightMap(command.request.mesh)) {
-        return runGroundCheck(file, {world, command.heights, command.common.quiet});
+        return runGroundCheck(command, file);
     }
     if (namesWorld(file)) {
-        return runWorldCheck(file, world);
+        return runWorldCheck(command, file, files);
     }
     if (command.within) {
         return fail(ErrorCode::kUsage, "--within applies only to worlds and ground; remove it");
@@ -148,7 +124,10 @@ Result<void> runCheck(const CheckCommand& command, const std::string& file, File
     }
     addAdvice(command, file, run);
     const MeshCheckReport report{run, inputName(file), command.max_error};
-    RELIEF_TRY(writePage(command, container.size(), report));
+    if (!command.html.empty()) {
+        RELIEF_TRY(writeText(command.html, RELIEF_TRY(makeCheckPage(report.file, container.size(), report.run,
+                                                                    report.max_error))));
+    }
     RELIEF_TRY(printOut(command.json ? jsonTextOf(report) : checkText(report)));
     const bool passed = run.passes(command.max_error);
     if (!passed && run.original.accuracy.field.near.total() <= double{*command.max_error}) {
@@ -176,16 +155,14 @@ void addCheck(CLI::App& app, Action& action) {
         withDetails(
             "Check a container, or measure a collider against its mesh\n\n"
             "Without --mesh, it lists the issues of each file, with their codes, and the sections of a "
-            "damaged "
-            "file that are usable. With --mesh, it prints a verdict, the three worst places with their "
-            "causes, and commands that may help.",
+            "damaged file that are usable. With --mesh, it prints a verdict, the three worst places with "
+            "their causes, and commands that may help.",
             "formats/README.md lists the codes.\n"
             "With --mesh, the report also contains the percentage of wrong points near the surface and in "
             "the whole box, the errors of distance and normal, and the fraction of the surface that no map "
             "sees. Most commands were tried in memory; others are marked \"not tried\". Truth is the parity "
-            "of rays through the "
-            "mesh, independent of the maps; for a collider baked with --repair, also through the repaired "
-            "mesh.\n"
+            "of rays through the mesh, independent of the maps; for a collider baked with --repair, also "
+            "through the repaired mesh.\n"
             "For a world.json of relief bake --world, it checks that all containers are present and correct. "
             "With --mesh, it prints the percentage of wrong points near each body, the ten worst places, and "
             "the meshes that lose parts.\n"
@@ -236,14 +213,12 @@ void addCheck(CLI::App& app, Action& action) {
         verb, {{"Comparison with the mesh",
                 {"--mesh", "--max-error", "--samples", "--seed", "--min-part", "--heights", "--within"}},
                {"Output", {"--page", "--json"}}});
-    onVerb(verb, [command, &action] {
-        action = [command](FileGuard& files) -> Result<void> {
-            if (command->files.size() > 1 && !command->request.mesh.empty()) {
-                return fail(ErrorCode::kUsage, "--mesh needs a single FILE; check each collider separately");
-            }
-            return forEachFile(command->files,
-                               [&](const std::string& file) { return runCheck(*command, file, files); });
-        };
+    setAction(verb, action, [command](FileGuard& files) -> Result<void> {
+        if (command->files.size() > 1 && !command->request.mesh.empty()) {
+            return fail(ErrorCode::kUsage, "--mesh needs a single FILE; check each collider separately");
+        }
+        return forEachFile(command->files,
+                           [&](const std::string& file) { return runCheck(*command, file, files); });
     });
 }
 

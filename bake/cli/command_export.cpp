@@ -3,10 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <array>
 #include <functional>
-#include <span>
-#include <string_view>
 
 #include "bake/cli/command.h"
 #include "bake/cli/option_details.h"
@@ -257,9 +254,7 @@ void addExport(CLI::App& app, Action& action) {
     addMemoryOption(verb, command->limits);
     groupVerbOptions(verb, {{"Output", {"--output", "--engine", "--vdb", "--mesh"}},
                             {"Quality", {"--resolution", "--voxels"}}});
-    onVerb(verb, [command, &action] {
-        action = [command](FileGuard& files) { return runExport(*command, files); };
-    });
+    setAction(verb, action, [command](FileGuard& files) { return runExport(*command, files); });
 }
 
 }  // namespace relief

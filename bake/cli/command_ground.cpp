@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/cli/command_ground.h"
-
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <array>
-#include <cstdio>
 
+#include "bake/cli/command_bake.h"
+#include "bake/cli/command_check.h"
 #include "bake/import/import_format.h"
 #include "bake/report/ground_report.h"
 #include "formats/base/file_io.h"
@@ -19,23 +16,14 @@
 namespace relief {
 namespace {
 
-Result<void> preflightGround(const std::string& folder, const WorldCall& call) {
-    if (!folder.empty()) {
-        return preflightWorld(folder, call);
+Result<void> preflightGround(const BakeCommand& command, FileGuard& files) {
+    if (!command.world.empty()) {
+        return preflightWorld(command, files);
     }
-    if (call.request.mesh.empty()) {
+    if (command.request.mesh.empty()) {
         return fail(ErrorCode::kUsage, "MESH is required; name a height map, or see relief bake --help");
     }
-    return preflightBake(call.request, call.output, call.outputs, call.files);
-}
-
-Result<void> writeOutputs(const std::string& written, const std::string& folder, const WorldCall& call,
-                          const GroundResult& result) {
-    if (folder.empty()) {
-        RELIEF_TRY(writeFile(call.output, result.container));
-    }
-    return call.outputs.depfile.empty() ? Result<void>()
-                                        : writeDepfile(call.outputs.depfile, {written}, {call.request.mesh});
+    return preflightBake(command, files);
 }
 
 /// The field of a world, or of a collider as the only body of a world.
@@ -50,17 +38,17 @@ Result<WorldField> fieldOf(const std::string& file, const ContainerLimits& limit
     return WorldField(std::move(single));
 }
 
-Result<void> checkOptions(const std::string& file, const WorldCheckCall& call) {
+Result<void> checkOptions(const std::string& file, const CheckCommand& command) {
     ImportLimits of_mesh;
-    of_mesh.triangles = call.request.import_limits.triangles;
-    const std::string of_import = importOptionOf(call.request.import, of_mesh);
-    const std::string option = !call.html.empty()      ? "--page"
-                               : call.request.min_part ? "--min-part"
-                                                       : of_import;
+    of_mesh.triangles = command.request.import_limits.triangles;
+    const std::string of_import = importOptionOf(command.request.import, of_mesh);
+    const std::string option = !command.html.empty()      ? "--page"
+                               : command.request.min_part ? "--min-part"
+                                                          : of_import;
     if (!option.empty()) {
         return fail(ErrorCode::kUsage, option + " has no effect with a height map; remove it");
     }
-    if (file == "-" && call.request.mesh == "-") {
+    if (file == "-" && command.request.mesh == "-") {
         return fail(ErrorCode::kUsage,
                     "the collider and the height map cannot both be standard input; name a file for one");
     }
@@ -93,64 +81,60 @@ bool namesHeightMap(const std::string& file) {
            (file == "-" || isHeightMapExtension(extension) || std::filesystem::is_regular_file(file, error));
 }
 
-Result<void> runGroundCheck(const std::string& file, const GroundCheckCall& call) {
-    const WorldCheckCall& world = call.world;
-    RELIEF_TRY(checkOptions(file, world));
+Result<void> runGroundCheck(const CheckCommand& command, const std::string& file) {
+    RELIEF_TRY(checkOptions(file, command));
+    const CheckRequest& check = command.request;
     const std::string name = inputName(file);
     std::optional<HeightsSpec> heights;
-    if (!call.heights.empty()) {
-        heights = RELIEF_TRY(parseHeightsSpec(call.heights));
+    if (!command.heights.empty()) {
+        heights = RELIEF_TRY(parseHeightsSpec(command.heights));
     }
-    const WorldField field = RELIEF_TRY(fieldOf(file, world.limits));
+    const WorldField field = RELIEF_TRY(fieldOf(file, command.limits));
     if (!heights) {
-        heights = RELIEF_TRY(recorded(field, name, world.request.mesh));
+        heights = RELIEF_TRY(recorded(field, name, check.mesh));
     }
-    Progress progress({quotedPath(world.request.mesh), !call.quiet, {}});
+    Progress progress({quotedPath(check.mesh), !command.common.quiet, {}});
     progress.begin("measuring the ground");
-    GroundCheckRequest request{world.request.mesh, *heights, world.request.samples, world.request.seed, {}};
-    request.within = world.within;
-    request.limits = world.request.import_limits;
+    GroundCheckRequest request{check.mesh, *heights, check.samples, check.seed, {}};
+    request.within = command.within;
+    request.limits = check.import_limits;
     request.progress = [&](double share) { progress.set(share); };
     const GroundAccuracy accuracy = RELIEF_TRY(checkGround(request, field, name));
     progress.finish();
-    for (const std::string& warning : accuracy.warnings) {
-        spdlog::warn(warning);
-    }
-    RELIEF_TRY(printOut(world.json
-                            ? jsonTextOf(GroundCheckJson{accuracy, name, toString(*heights), world.max_error})
-                            : groundCheckText(accuracy, name)));
-    if (world.max_error && accuracy.near.wrong.total() > double{*world.max_error}) {
+    logWarnings(accuracy.warnings);
+    RELIEF_TRY(printOut(
+        command.json ? jsonTextOf(GroundCheckJson{accuracy, name, toString(*heights), command.max_error})
+                     : groundCheckText(accuracy, name)));
+    const double wrong = accuracy.near.wrong.total();
+    if (command.max_error && wrong > double{*command.max_error}) {
         return fail(ErrorCode::kDifference,
-                    shortNumber(accuracy.near.wrong.total()) +
+                    shortNumber(wrong) +
                         " % of the points near the surface are on the wrong side, more than --max-error " +
-                        shortest(*world.max_error) + " %; bake this height map again");
+                        shortest(*command.max_error) + " %; bake this height map again");
     }
     return {};
 }
 
-Result<void> runGroundCommand(const std::string& folder, const WorldCall& call) {
+Result<void> runGroundCommand(const BakeCommand& command, FileGuard& files) {
     const Stopwatch total;
-    static_cast<void>(RELIEF_TRY(settingsOf(call.request)));
-    RELIEF_TRY(preflightGround(folder, call));
-    Progress progress({quotedPath(call.request.mesh), !call.common.quiet, call.request.timeout});
+    const std::string& folder = command.world;
+    static_cast<void>(RELIEF_TRY(settingsOf(command.request)));
+    RELIEF_TRY(preflightGround(command, files));
+    Progress progress({quotedPath(command.request.mesh), !command.common.quiet, command.request.timeout});
     progress.begin("baking the ground");
     const GroundResult result = RELIEF_TRY(bakeGroundOf(
-        call.request, {{}, folder, call.outputs.compress, [&](double share) { progress.set(share); }}));
+        command.request, {{}, folder, command.outputs.compress, [&](double share) { progress.set(share); }}));
     progress.finish();
-    const std::string written =
-        folder.empty() ? call.output : (std::filesystem::path(folder) / kWorldFileName).string();
-    RELIEF_TRY(writeOutputs(written, folder, call, result));
-    for (const std::string& warning : result.warnings) {
-        spdlog::warn(warning);
+    if (folder.empty()) {
+        RELIEF_TRY(writeFile(command.output, result.container));
     }
-    const std::string& output = folder.empty() ? call.output : folder;
-    if (call.outputs.json) {
-        return printOut(jsonTextOf(GroundJson{result, output, toString(result.heights), total.ms()}));
-    }
-    if (!call.common.quiet) {
-        std::fputs(groundText(result, cleanUtf8(output), total.ms()).c_str(), stderr);
-    }
-    return {};
+    RELIEF_TRY(writeDepfile(
+        command, folder.empty() ? command.output : (std::filesystem::path(folder) / kWorldFileName).string(),
+        result.inputs));
+    logWarnings(result.warnings);
+    const std::string& output = folder.empty() ? command.output : folder;
+    return printReport(command, GroundJson{result, output, toString(result.heights), total.ms()},
+                       groundText(result, cleanUtf8(output), total.ms()));
 }
 
 }  // namespace relief

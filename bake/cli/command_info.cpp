@@ -2,7 +2,6 @@
 // relief info: shows the contents of containers and worlds.
 
 #include "bake/cli/command.h"
-#include "bake/cli/command_world.h"
 #include "bake/cli/option_details.h"
 #include "bake/cli/world_info.h"
 #include "bake/report/collider_report.h"
@@ -101,8 +100,7 @@ Result<void> runInfo(const InfoCommand& command, const std::string& file) {
         mesh = RELIEF_TRY(withPrefix(shownInput(file), readAnimatedMesh(shown.collider.animation)));
     }
     const AnimatedMesh* const animated = mesh ? &*mesh : nullptr;
-    ColliderReport<ColliderMapReport> report = infoReport(shown.collider, info, animated);
-    report.file = several ? inputName(file) : "";
+    const ColliderJson report{shown.collider, info, animated, several ? inputName(file) : ""};
     return printOut(command.json ? jsonTextOf(report) : humanReport(shown.collider, info, animated));
 }
 
@@ -126,11 +124,8 @@ void addInfo(CLI::App& app, Action& action) {
     addMemoryOption(verb, command->limits);
     addFlag(verb, "--json", command->json, "Print the report as JSON");
     groupVerbOptions(verb, {{"Output", {"--json"}}});
-    onVerb(verb, [command, &action] {
-        action = [command](FileGuard&) {
-            return forEachFile(command->files,
-                               [&](const std::string& file) { return runInfo(*command, file); });
-        };
+    setAction(verb, action, [command](FileGuard&) {
+        return forEachFile(command->files, [&](const std::string& file) { return runInfo(*command, file); });
     });
 }
 

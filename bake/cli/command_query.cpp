@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // relief query: evaluates the field at points.
-#include <spdlog/spdlog.h>
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
 #include <optional>
 
 #include "bake/cli/command.h"
 #include "bake/cli/option_details.h"
 #include "bake/report/points_csv.h"
 #include "formats/base/file_io.h"
+#include "formats/base/text.h"
 #include "formats/container.h"
 #include "formats/nearest_surface.h"
 #include "formats/world/world_field.h"
@@ -79,13 +78,11 @@ Result<void> runQuery(const QueryCommand& command, FileGuard& files) {
     const Collider collider = world ? Collider() : RELIEF_TRY(loadCollider(command.file, command.limits));
     const std::vector<std::byte> text = RELIEF_TRY(readFile(command.points));
     const std::vector<glm::vec3> points =
-        RELIEF_TRY(parsePoints({reinterpret_cast<const char*>(text.data()), text.size()},
-                               command.points == "-" ? "standard input" : command.points));
+        RELIEF_TRY(parsePoints(textOf(text), command.points == "-" ? "standard input" : command.points));
     const std::vector<FieldSample> samples =
         world ? RELIEF_TRY(sampledWorld(command, points, files))
               : sampled(collider, points, command.distance == DistanceTo::kPlane);
-    const std::string csv = formatSamples(points, samples, world ? "body" : "map");
-    return writeFile(command.output, std::as_bytes(std::span(csv)));
+    return writeText(command.output, formatSamples(points, samples, world ? "body" : "map"));
 }
 
 }  // namespace
@@ -120,9 +117,7 @@ void addQuery(CLI::App& app, Action& action) {
         "Distance to the nearest surface, or to the plane with which particles collide (default: nearest)");
     addMemoryOption(verb, command->limits);
     groupVerbOptions(verb, {{"Input and output", {"--points", "--output", "--distance"}}});
-    onVerb(verb, [command, &action] {
-        action = [command](FileGuard& files) { return runQuery(*command, files); };
-    });
+    setAction(verb, action, [command](FileGuard& files) { return runQuery(*command, files); });
 }
 
 }  // namespace relief

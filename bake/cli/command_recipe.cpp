@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/cli/command_recipe.h"
-
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <map>
 #include <set>
 #include <thread>
+#include <tuple>
 
+#include "bake/cli/command_bake.h"
 #include "bake/import/animated_import.h"
 #include "bake/import/import_format.h"
 #include "bake/import/level.h"
 #include "bake/import/mesh_import.h"
-#include "bake/pipeline/bake_request.h"
 #include "bake/recipe/bake_cache.h"
 #include "bake/recipe/child_process.h"
 #include "bake/recipe/recipe_run.h"
@@ -53,9 +53,9 @@ std::vector<FieldWords> fieldsOfAsset() {
 }
 
 /// Returns an error if an option is set that belongs in the recipe.
-Result<void> checkOptions(const RecipeCall& call) {
+Result<void> checkOptions(const CLI::App& verb) {
     const std::vector<RecipeKey> keys = recipeKeys();
-    for (const GivenOption& option : givenOptions(call.verb)) {
+    for (const GivenOption& option : givenOptions(verb)) {
         const std::vector<std::string>& names = option.long_names;
         if (names.empty()) {
             return fail(ErrorCode::kUsage, option.name + " and --recipe both name meshes; remove one");
@@ -117,13 +117,13 @@ std::optional<Shard> parseShard(const std::string& text) {
     return Shard{*index, *count};
 }
 
-Result<RecipeRun> runOf(const BakeRecipeOptions& options, const RecipeCall& call) {
+Result<RecipeRun> runOf(const BakeCommand& command) {
     RecipeRun run;
-    run.recipe = options.recipe;
-    run.output_folder = call.output.empty() ? recipeFolder(options.recipe) : fs::path(call.output);
-    run.dry_run = options.dry_run;
-    run.jobs = call.threads.value_or(std::max(1U, std::thread::hardware_concurrency()));
-    if (call.output == "-") {
+    run.recipe = command.recipe.recipe;
+    run.output_folder = command.output.empty() ? recipeFolder(run.recipe) : fs::path(command.output);
+    run.dry_run = command.recipe.dry_run;
+    run.jobs = command.request.threads.value_or(std::max(1U, std::thread::hardware_concurrency()));
+    if (command.output == "-") {
         return fail(ErrorCode::kUsage,
                     "--output is a folder with --recipe, and cannot be standard output; name a folder");
     }
@@ -131,20 +131,21 @@ Result<RecipeRun> runOf(const BakeRecipeOptions& options, const RecipeCall& call
 }
 
 /// Checks the files that are written in addition to the outputs.
-Result<void> preflight(const BakeRecipeOptions& options, const RecipeCall& call, const RecipeRun& run,
-                       FileGuard& files) {
-    for (const std::string& file : {options.stamp, call.depfile}) {
+Result<void> preflight(const BakeCommand& command, const RecipeRun& run, FileGuard& files) {
+    const BakeRecipeOptions& options = command.recipe;
+    const BakeOutputs& outputs = command.outputs;
+    for (const std::string& file : {options.stamp, outputs.depfile}) {
         if (file == "-") {
             return fail(ErrorCode::kUsage, "--stamp and --depfile cannot be standard output; name a file");
         }
     }
     const fs::path made = run.dry_run ? fs::path() : run.output_folder;
     RELIEF_TRY(files.keeps(run.output_folder / kBakeCacheName, "--output (the recipe's cache)"));
-    if (call.json || (run.dry_run && options.events != "-")) {
-        RELIEF_TRY(files.writes("-", call.json ? "--json" : "the list of --dry-run"));
+    if (outputs.json || (run.dry_run && options.events != "-")) {
+        RELIEF_TRY(files.writes("-", outputs.json ? "--json" : "the list of --dry-run"));
     }
     RELIEF_TRY(files.writes(options.stamp, "--stamp", made));
-    RELIEF_TRY(files.writes(call.depfile, "--depfile", made));
+    RELIEF_TRY(files.writes(outputs.depfile, "--depfile", made));
     RELIEF_TRY(files.writes(options.events, "--events", made));
     return run.dry_run ? Result<void>() : preflightFolder(run.output_folder, "--output");
 }
@@ -171,7 +172,6 @@ Result<void> verdict(const std::vector<AssetResult>& assets, const RecipeCounts&
     return {};
 }
 
-/// The work of a run of a recipe.
 struct RecipeWork {
     RecipeRun run;
     std::vector<RecipeJob> jobs;    ///< jobs of the shard
@@ -180,19 +180,19 @@ struct RecipeWork {
 };
 
 /// Reads the recipe and plans the run, without writing anything.
-Result<RecipeWork> plan(const BakeRecipeOptions& options, const RecipeCall& call) {
+Result<RecipeWork> plan(const BakeCommand& command, const CLI::App& verb, const FileGuard& files) {
     RecipeWork work;
-    RELIEF_TRY(checkOptions(call));
-    work.run = RELIEF_TRY(runOf(options, call));
-    const std::vector<RecipeAsset> assets = RELIEF_TRY(loadRecipe(options.recipe, recipeKeys()));
+    RELIEF_TRY(checkOptions(verb));
+    work.run = RELIEF_TRY(runOf(command));
+    const std::vector<RecipeAsset> assets = RELIEF_TRY(loadRecipe(work.run.recipe, recipeKeys()));
     RELIEF_TRY(checkAssets(assets));
-    RecipeJobs all = RELIEF_TRY(recipeJobs(assets, options.recipe, work.run.output_folder, call.files));
+    RecipeJobs all = RELIEF_TRY(recipeJobs(assets, work.run.recipe, work.run.output_folder, files));
     work.folders = std::move(all.folders);
     work.files = std::move(all.files);
-    const Shard shard = options.shard.value_or(Shard{});
+    const Shard shard = command.recipe.shard.value_or(Shard{});
     std::ranges::copy_if(all.jobs, std::back_inserter(work.jobs),
                          [&](const RecipeJob& job) { return inShard(job.output, shard); });
-    RELIEF_TRY(preflight(options, call, work.run, work.files));
+    RELIEF_TRY(preflight(command, work.run, work.files));
     const auto cores = std::max(1U, std::thread::hardware_concurrency());
     work.run.threads =
         std::max(1U, cores / std::max(1U, std::min(work.run.jobs, static_cast<unsigned>(work.jobs.size()))));
@@ -219,18 +219,10 @@ Result<RecipeResult> bakeAll(RecipeWork& work, bool shown, RecipeEvents& events)
     };
     run.warn = [](const std::string& warning) { spdlog::warn(warning); };
     Result<RecipeResult> result = runRecipe(std::move(work.jobs), run);
-    for (const std::string& line : result ? warningLines(result->assets) : std::vector<std::string>()) {
-        spdlog::warn(line);
+    if (result) {
+        logWarnings(warningLines(result->assets));
     }
     return result;
-}
-
-/// Adds the file that `from` was read from, and the files that it refers to.
-/// \param from  an import with dependencies and their hashes
-void addFiles(const auto& from, const fs::path& folder, std::vector<InputFile>& files) {
-    for (std::size_t i = 0; i < from.dependencies.size(); ++i) {
-        files.push_back({nameInRecipe(from.dependencies[i], folder), from.dependency_hashes[i]});
-    }
 }
 
 /// Returns whether a bake reads only this file: a height map, or a mesh that refers to no other file.
@@ -243,67 +235,77 @@ bool isWhole(const RecipeJob& job) {
     return !job.mesh_is_folder && format != nullptr && format->whole;
 }
 
-/// The mesh and all files that it refers to; nullopt if they cannot be read.
-std::optional<std::vector<InputFile>> filesOfMesh(const RecipeJob& job, const fs::path& folder) {
+/// Returns the file that was read, and the files that it refers to; empty if `from` is null.
+/// \param from  an import with dependencies and their hashes
+std::vector<InputFile> filesOf(const auto* from, const fs::path& folder) {
     std::vector<InputFile> files;
-    if (isWhole(job) || job.mesh_is_folder) {
-        const std::optional<std::string> hash = hashOfInput(job.mesh_path);
-        if (!hash) {
-            return std::nullopt;
-        }
-        files.push_back({job.mesh, *hash});
+    for (std::size_t i = 0; from != nullptr && i < from->dependencies.size(); ++i) {
+        files.push_back({nameInRecipe(from->dependencies[i], folder), from->dependency_hashes[i]});
     }
-    if (isWhole(job)) {
-        return files;
+    return files;
+}
+
+/// Returns the mesh and all files that it refers to; empty if they cannot be read.
+std::vector<InputFile> filesOfMesh(const RecipeJob& job, const fs::path& folder) {
+    const bool whole = isWhole(job);
+    const std::optional<std::string> hash =
+        whole || job.mesh_is_folder ? hashOfInput(job.mesh_path) : std::nullopt;
+    if (whole) {
+        return hash ? std::vector<InputFile>{{job.mesh, *hash}} : std::vector<InputFile>();
     }
-    const auto add = [&](const auto& from) {
-        const bool named = !files.empty();
-        addFiles(from, folder, files);
-        if (!named && !files.empty()) {
-            files.front().path = job.mesh;
-        }
-        return files;
-    };
+    std::vector<InputFile> files;
     if (job.world) {
         const Result<Level> level = importLevel(job.mesh_path);
-        return level ? std::optional(add(*level)) : std::nullopt;
+        files = filesOf(level ? &*level : nullptr, folder);
+    } else {
+        const Result<TriangleMesh> mesh = importMeshInWorker(job.mesh_path);
+        files = filesOf(mesh ? &*mesh : nullptr, folder);
     }
-    const Result<TriangleMesh> mesh = importMeshInWorker(job.mesh_path);
-    return mesh ? std::optional(add(*mesh)) : std::nullopt;
+    if (files.empty() || (job.mesh_is_folder && !hash)) {
+        return {};
+    }
+    if (job.mesh_is_folder) {
+        files.insert(files.begin(), {job.mesh, *hash});
+    }
+    files.front().path = job.mesh;
+    return files;
 }
 
-std::optional<std::string> assetKeyOf(const RecipeJob& job, const std::string& tool, const fs::path& folder) {
-    std::optional<std::vector<InputFile>> files = filesOfMesh(job, folder);
-    for (const std::string& argument : job.arguments) {
-        if (files && argument.starts_with(kClips)) {
-            const Result<AnimatedImport> clips = importAnimatedFileInWorker(
-                argument.substr(kClips.size()), ImportKind::kClips, {}, ImportLimits());
-            if (!clips) {
-                return std::nullopt;
-            }
-            addFiles(clips->rest, folder, *files);
-        }
-    }
-    return files ? std::optional(assetKey(tool, job.options, std::move(*files))) : std::nullopt;
-}
-
-/// Computes the keys of the assets of a dry run. It reads meshes that may refer to other files. An asset has no key if
-/// its mesh cannot be read.
+/// Computes the keys of the assets of a dry run. It reads each mesh that may refer to other files once. An asset has no
+/// key if its mesh cannot be read.
 Result<void> addKeys(std::vector<AssetResult>& assets, const RecipeRun& run) {
     const std::string tool = RELIEF_TRY(toolIdentity());
     const fs::path folder = recipeFolder(run.recipe);
+    std::map<std::tuple<std::string, bool, bool>, std::vector<InputFile>> known;
     for (AssetResult& asset : assets) {
-        if (asset.key.empty()) {
-            asset.key = assetKeyOf(asset.job, tool, folder).value_or("");
+        const RecipeJob& job = asset.job;
+        if (!asset.key.empty()) {
+            continue;
         }
+        const auto [mesh, is_new] = known.try_emplace({job.mesh, job.world, isWhole(job)});
+        if (is_new) {
+            mesh->second = filesOfMesh(job, folder);
+        }
+        std::vector<InputFile> files = mesh->second;
+        bool all_read = !files.empty();
+        for (const std::string& argument : job.arguments) {
+            if (all_read && argument.starts_with(kClips)) {
+                const Result<AnimatedImport> clips = importAnimatedFileInWorker(
+                    argument.substr(kClips.size()), ImportKind::kClips, {}, ImportLimits());
+                std::ranges::move(filesOf(clips ? &clips->rest : nullptr, folder), std::back_inserter(files));
+                all_read = clips.has_value();
+            }
+        }
+        asset.key = all_read ? assetKey(tool, job.options, std::move(files)) : "";
     }
     return {};
 }
 
 /// Prints the report or list of the run to standard output.
-Result<void> printResult(const BakeRecipeOptions& options, const RecipeCall& call, const RecipeRun& run,
-                         const RecipeResult& result, double ms) {
-    if (!call.json) {
+Result<void> printResult(const BakeCommand& command, const RecipeRun& run, const RecipeResult& result,
+                         double ms) {
+    const BakeRecipeOptions& options = command.recipe;
+    if (!command.outputs.json) {
         return options.dry_run && options.events != "-" ? printDryRun(result.assets) : Result<void>();
     }
     RecipeJson report{options.recipe, run.output_folder.string(), options.shard, countAssets(result.assets),
@@ -313,9 +315,11 @@ Result<void> printResult(const BakeRecipeOptions& options, const RecipeCall& cal
 }
 
 /// Writes the files for build systems, after everything is up to date.
-Result<void> writeFiles(const BakeRecipeOptions& options, const RecipeCall& call, RecipeWork& work,
+Result<void> writeFiles(const BakeCommand& command, RecipeWork& work,
                         const std::vector<AssetResult>& assets) {
-    if (call.depfile.empty() && options.stamp.empty()) {
+    const BakeRecipeOptions& options = command.recipe;
+    const std::string& depfile = command.outputs.depfile;
+    if (depfile.empty() && options.stamp.empty()) {
         return {};
     }
     // Only the bakes find the files that the meshes refer to.
@@ -324,31 +328,14 @@ Result<void> writeFiles(const BakeRecipeOptions& options, const RecipeCall& call
             RELIEF_TRY(work.files.reads(recipeFolder(options.recipe) / input.path));
         }
     }
-    if (!call.depfile.empty()) {
-        const std::vector<std::string> beside = {options.stamp, call.depfile, options.events};
-        RELIEF_TRY(writeRecipeDepfile(call.depfile, options.stamp, beside, work.run, work.folders, assets));
+    if (!depfile.empty()) {
+        const std::vector<std::string> beside = {options.stamp, depfile, options.events};
+        RELIEF_TRY(writeRecipeDepfile(depfile, options.stamp, beside, work.run, work.folders, assets));
     }
     return options.stamp.empty() ? Result<void>() : writeRecipeStamp(options.stamp, assets);
 }
 
 }  // namespace
-
-Result<void> preflightBake(const BakeRequest& request, const std::string& output, const BakeOutputs& outputs,
-                           FileGuard& files) {
-    if (!outputs.depfile.empty() && (outputs.depfile == "-" || output == "-")) {
-        return fail(ErrorCode::kUsage,
-                    "--depfile cannot be used with standard output; name files for --output and --depfile");
-    }
-    RELIEF_TRY(files.reads(request.mesh));
-    for (const std::string& clips : request.clips) {
-        RELIEF_TRY(files.reads(clips));
-    }
-    if (outputs.json) {
-        RELIEF_TRY(files.writes("-", "--json"));
-    }
-    RELIEF_TRY(files.writes(output, "-o"));
-    return files.writes(outputs.depfile, "--depfile");
-}
 
 std::vector<RecipeKey> recipeKeys() {
     std::vector<RecipeKey> keys;
@@ -381,46 +368,35 @@ void addRecipeOptions(CLI::App& verb, BakeRecipeOptions& options) {
         ->needs(recipe);
 }
 
-Result<void> runRecipeCommand(const BakeRecipeOptions& options, const RecipeCall& call) {
+Result<void> runRecipeCommand(const BakeCommand& command, const CLI::App& verb, FileGuard& files) {
     const Stopwatch watch;
-    RecipeWork work = RELIEF_TRY(plan(options, call));
+    const BakeRecipeOptions& options = command.recipe;
+    RecipeWork work = RELIEF_TRY(plan(command, verb, files));
     RecipeEvents events;
     if (!options.events.empty()) {
         RELIEF_TRY(events.open(options.events));
     }
     events.write(RecipeStart{options.recipe, work.jobs.size(), options.shard, work.run.jobs});
-    RecipeResult result = RELIEF_TRY(bakeAll(work, !call.common.quiet && !options.dry_run, events));
-    if (options.dry_run && call.json) {
+    RecipeResult result = RELIEF_TRY(bakeAll(work, !command.common.quiet && !options.dry_run, events));
+    if (options.dry_run && command.outputs.json) {
         RELIEF_TRY(addKeys(result.assets, work.run));
     }
     const RecipeCounts counts = countAssets(result.assets);
     const double ms = watch.ms();
     events.write(RecipeEnd{counts, ms, result.signal});
-    if (!call.common.quiet) {
+    if (!command.common.quiet) {
         std::fputs((recipeSummary(counts, ms) + "\n").c_str(), stderr);
     }
     if (result.signal != 0) {
         ChildProcesses::endBySignal(result.signal);
     }
-    RELIEF_TRY(printResult(options, call, work.run, result, ms));
+    RELIEF_TRY(printResult(command, work.run, result, ms));
     RELIEF_TRY(verdict(result.assets, counts));
     if (options.dry_run) {
         return {};
     }
-    RELIEF_TRY(writeFiles(options, call, work, result.assets));
+    RELIEF_TRY(writeFiles(command, work, result.assets));
     return events.finish();
-}
-
-void fields(FieldVisitor& visit, BakeOutputs& outputs) {
-    visit("compress", outputs.compress,
-          {.help = "zstd compression level of the texels, from 0 (none) to 19",
-           .range = {0.0, 19.0},
-           .value = "LEVEL",
-           .must = "0 (none) to 19 (smallest)"});
-    visit("json", outputs.json, {.help = "Print a report as JSON to standard output"});
-    visit("depfile", outputs.depfile,
-          {.help = "Also write a dependency file for Make and Ninja, which lists every file read",
-           .value = "FILE"});
 }
 
 }  // namespace relief

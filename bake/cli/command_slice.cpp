@@ -108,9 +108,7 @@ void addSlice(CLI::App& app, Action& action) {
         ->required();
     addMemoryOption(verb, command->limits);
     groupVerbOptions(verb, {{"Output", {"--output", "--size"}}, {"Plane", {"--axis", "--at"}}});
-    onVerb(verb, [command, &action] {
-        action = [command](FileGuard& files) { return runSlice(*command, files); };
-    });
+    setAction(verb, action, [command](FileGuard& files) { return runSlice(*command, files); });
 }
 
 }  // namespace relief

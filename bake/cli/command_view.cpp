@@ -109,9 +109,7 @@ Result<std::string> worldPage(const ViewCommand& command, FileGuard& files) {
         return worldPage(command.file, field.world(), nullptr, player, files);
     }
     const WorldAccuracy accuracy = RELIEF_TRY(checkWorld({command.check, {}, true}, field));
-    for (const std::string& warning : accuracy.warnings) {
-        spdlog::warn(warning);
-    }
+    logWarnings(accuracy.warnings);
     return makeWorldPage(command.file, {inputName(command.file), &field, &accuracy, {}}, player, files);
 }
 
@@ -144,7 +142,7 @@ Result<void> runView(const ViewCommand& command, FileGuard& files) {
     RELIEF_TRY(files.reads(command.check.mesh));
     RELIEF_TRY(files.writes(output, "-o"));
     const std::string html = RELIEF_TRY(world ? worldPage(command, files) : colliderPage(command, files));
-    return writeFile(output, std::as_bytes(std::span(html)));
+    return writeText(output, html);
 }
 
 }  // namespace
@@ -186,9 +184,7 @@ OptionRef addMeshOptions(CLI::App& verb, CheckRequest& request) {
 }
 
 void showCheckWarnings(const MeshCheck& check) {
-    for (const std::string& warning : check.warnings) {
-        spdlog::warn(warning);
-    }
+    logWarnings(check.warnings);
     spdlog::debug("truth {:.2f} s, field {:.2f} s", check.original.samples.seconds,
                   check.original.accuracy.field.seconds);
 }
@@ -221,8 +217,7 @@ void addView(CLI::App& app, Action& action) {
         ->valueText("OUT");
     groupVerbOptions(verb, {{"Output", {"--output"}},
                             {"Comparison with the mesh", {"--mesh", "--samples", "--seed", "--min-part"}}});
-    onVerb(verb,
-           [command, &action] { action = [command](FileGuard& files) { return runView(*command, files); }; });
+    setAction(verb, action, [command](FileGuard& files) { return runView(*command, files); });
 }
 
 }  // namespace relief

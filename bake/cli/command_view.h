@@ -4,7 +4,6 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "bake/pipeline/mesh_check.h"
 #include "bake/report/world_report.h"

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/cli/command_world.h"
-
-#include <spdlog/spdlog.h>
-
-#include <cstdio>
-#include <span>
-
+#include "bake/cli/command_bake.h"
+#include "bake/cli/command_check.h"
 #include "bake/cli/command_view.h"
 #include "bake/recipe/recipe_jobs.h"
 #include "bake/report/recipe_report.h"
@@ -24,27 +19,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Result<void> writeWorldDepfile(const fs::path& folder, const WorldCall& call, const WorldBakeResult& result) {
-    std::vector<std::string> names;
-    for (const InputFile& input : result.inputs) {
-        names.push_back(input.path);
-    }
-    return call.outputs.depfile.empty()
-               ? Result<void>()
-               : writeDepfile(call.outputs.depfile, {(folder / kWorldFileName).string()}, names);
-}
-
 void showMessages(const WorldBakeResult& result) {
-    for (const std::string& warning : result.warnings) {
-        spdlog::warn(warning);
-    }
+    logWarnings(result.warnings);
     std::vector<OwnWarnings> all;
     for (const WorldColliderResult& collider : result.colliders) {
         all.push_back({collider.mesh, collider.mesh, collider.warnings});
     }
-    for (const std::string& warning : warningLines(all, "meshes", true)) {
-        spdlog::warn(warning);
-    }
+    logWarnings(warningLines(all, "meshes", true));
 }
 
 /// The error of the whole run, if any collider failed.
@@ -76,113 +57,85 @@ Result<void> checkCoarse(const World& world, const std::string& file, const Cont
 
 }  // namespace
 
-Result<void> preflightWorld(const fs::path& folder, const WorldCall& call) {
-    if (!call.output.empty()) {
+Result<void> preflightWorld(const BakeCommand& command, FileGuard& files) {
+    const fs::path folder = command.world;
+    const BakeOutputs& outputs = command.outputs;
+    if (!command.output.empty()) {
         return fail(ErrorCode::kUsage, "--output and --world both name the output; remove one");
     }
-    if (call.request.mesh.empty()) {
+    if (command.request.mesh.empty()) {
         return fail(ErrorCode::kUsage, "MESH is required; name a level, or see relief bake --help");
     }
-    if (folder == "-" || call.outputs.depfile == "-") {
+    if (folder == "-" || outputs.depfile == "-") {
         return fail(ErrorCode::kUsage,
                     "--world needs a folder and --depfile a file, not standard output; name them");
     }
-    RELIEF_TRY(call.files.reads(call.request.mesh));
-    if (call.outputs.json) {
-        RELIEF_TRY(call.files.writes("-", "--json"));
+    RELIEF_TRY(files.reads(command.request.mesh));
+    if (outputs.json) {
+        RELIEF_TRY(files.writes("-", "--json"));
     }
-    RELIEF_TRY(call.files.writes(folder / kWorldFileName, "--world", folder));
-    RELIEF_TRY(ownWorldFolder(folder, "--world", call.files));
-    RELIEF_TRY(call.files.writes(call.outputs.depfile, "--depfile", folder));
-    return call.files.makes(folder, "--world");  // created only if all checks pass
+    RELIEF_TRY(files.writes(folder / kWorldFileName, "--world", folder));
+    RELIEF_TRY(ownWorldFolder(folder, "--world", files));
+    RELIEF_TRY(files.writes(outputs.depfile, "--depfile", folder));
+    return files.makes(folder, "--world");  // created only if all checks pass
 }
 
-void addWorldOption(CLI::App& verb, std::string& folder) {
-    addOption(verb, "--world", folder,
-              withDetails("Bake a level into this folder: a collider for each distinct mesh, and world.json, "
-                          "which places them",
-                          "Each distinct mesh is baked once, however many nodes place it. Only what has "
-                          "changed is baked again. Options that choose maps, such as --map, --holes keep and "
-                          "--max-error, are for one mesh; the others apply to every mesh."))
-        ->valueText("DIR")
-        ->excludes("--recipe");
-}
-
-Result<void> runWorldCommand(const std::string& folder_name, const WorldCall& call) {
+Result<void> runWorldCommand(const BakeCommand& command, FileGuard& files) {
     const Stopwatch total;
-    const fs::path folder = folder_name;
-    RELIEF_TRY(checkWorldRequest(call.request));
-    RELIEF_TRY(preflightWorld(folder, call));
-    Progress progress({quotedPath(call.request.mesh), !call.common.quiet, call.request.timeout});
+    const fs::path folder = command.world;
+    RELIEF_TRY(checkWorldRequest(command.request));
+    RELIEF_TRY(preflightWorld(command, files));
+    Progress progress({quotedPath(command.request.mesh), !command.common.quiet, command.request.timeout});
     WorldWatcher watcher;
     watcher.begin = [&](const char* stage) { progress.begin(stage); };
     watcher.ended = [&](std::size_t done, std::size_t all) {
         progress.set(static_cast<double>(done) / static_cast<double>(all));
     };
-    watcher.files = &call.files;
+    watcher.files = &files;
     const WorldBakeResult result =
-        RELIEF_TRY(bakeWorld({call.request, folder, call.outputs.compress}, watcher));
+        RELIEF_TRY(bakeWorld({command.request, folder, command.outputs.compress}, watcher));
     progress.finish();
     RELIEF_TRY(verdict(folder, result));
     showMessages(result);
-    RELIEF_TRY(writeWorldDepfile(folder, call, result));
-    if (call.outputs.json) {
-        return printOut(jsonTextOf(WorldBakeJson{result, folder_name, total.ms()}));
-    }
-    if (!call.common.quiet) {
-        std::fputs(worldBakeText(result, cleanUtf8(folder_name), total.ms(), call.common.verbose).c_str(),
-                   stderr);
-    }
-    return {};
+    RELIEF_TRY(writeDepfile(command, (folder / kWorldFileName).string(), result.inputs));
+    return printReport(command, WorldBakeJson{result, command.world, total.ms()},
+                       worldBakeText(result, cleanUtf8(command.world), total.ms(), command.common.verbose));
 }
 
-namespace {
-
-Result<void> writePage(const std::string& file, const WorldCheckCall& call, const WorldField& field,
-                       const WorldAccuracy& accuracy, const std::string& player) {
-    const std::string page = RELIEF_TRY(
-        makeWorldPage(file, {inputName(file), &field, &accuracy, call.max_error}, player, call.files));
-    return writeFile(call.html, std::as_bytes(std::span(page)));
-}
-
-}  // namespace
-
-Result<void> runWorldCheck(const std::string& file, const WorldCheckCall& call) {
-    if (call.request.min_part) {
+Result<void> runWorldCheck(const CheckCommand& command, const std::string& file, FileGuard& files) {
+    const CheckRequest& request = command.request;
+    if (request.min_part) {
         return fail(ErrorCode::kUsage, "--min-part has no effect on worlds; remove it");
     }
-    const std::string player = RELIEF_TRY(preflightPage(file, call.request.mesh, call.html, call.files));
-    const WorldField field(RELIEF_TRY(loadWorld(file, call.limits)));
-    RELIEF_TRY(checkCoarse(field.world(), file, call.limits));
+    const std::string player = RELIEF_TRY(preflightPage(file, request.mesh, command.html, files));
+    const WorldField field(RELIEF_TRY(loadWorld(file, command.limits)));
+    RELIEF_TRY(checkCoarse(field.world(), file, command.limits));
     std::optional<WorldAccuracy> accuracy;
-    if (!call.request.mesh.empty()) {
-        accuracy = RELIEF_TRY(checkWorld({call.request, call.within, !call.html.empty()}, field));
-        for (const std::string& warning : accuracy->warnings) {
-            spdlog::warn(warning);
-        }
+    if (!request.mesh.empty()) {
+        accuracy = RELIEF_TRY(checkWorld({request, command.within, !command.html.empty()}, field));
+        logWarnings(accuracy->warnings);
     }
-    if (!call.html.empty()) {
-        RELIEF_TRY(writePage(file, call, field, *accuracy, player));
-    }
-    const std::string name = inputName(file);
     const WorldAccuracy* const measured = accuracy ? &*accuracy : nullptr;
-    RELIEF_TRY(printOut(call.json ? jsonTextOf(WorldCheckJson{name, &field, measured, call.max_error})
-                                  : worldCheckText(field, name, measured)));
-    if (accuracy && !accuracy->passes(call.max_error)) {
-        if (accuracy->all.total() <= double{*call.max_error}) {
-            const LostParts& first = accuracy->lost.front();
-            return fail(ErrorCode::kDifference, "mesh '" + first.mesh + "': " + first.text);
-        }
-        const bool floats = accuracy->places.front().cause == WorldCause::kPrecision;  // at the worst body
-        return fail(ErrorCode::kDifference,
-                    shortNumber(accuracy->all.total()) +
-                        " % of the points near the surface are on the wrong side, more than "
-                        "--max-error " +
-                        shortest(*call.max_error) +
-                        (floats ? " %; move its meshes to their origins"
-                                : " %; bake the level with a larger --budget"));
+    const WorldCheckJson report{inputName(file), &field, measured, command.max_error};
+    if (!command.html.empty()) {
+        const std::string page = RELIEF_TRY(makeWorldPage(file, report, player, files));
+        RELIEF_TRY(writeText(command.html, page));
     }
-    return {};
+    RELIEF_TRY(printOut(command.json ? jsonTextOf(report) : worldCheckText(field, report.file, measured)));
+    if (!accuracy || accuracy->passes(command.max_error)) {
+        return {};
+    }
+    if (accuracy->all.total() <= double{*command.max_error}) {
+        const LostParts& first = accuracy->lost.front();
+        return fail(ErrorCode::kDifference, "mesh '" + first.mesh + "': " + first.text);
+    }
+    const bool floats = accuracy->places.front().cause == WorldCause::kPrecision;  // at the worst body
+    return fail(
+        ErrorCode::kDifference,
+        shortNumber(accuracy->all.total()) +
+            " % of the points near the surface are on the wrong side, more than --max-error " +
+            shortest(*command.max_error) +
+            (floats ? " %; move its meshes to their origins" : " %; bake the level with a larger --budget"));
 }
 
 }  // namespace relief

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bake/cli/command.h"
-#include "bake/cli/command_recipe.h"
+#include "bake/cli/command_bake.h"
 #include "bake/cli/world_info.h"
 #include "bake/report/bake_report.h"
 #include "bake/report/collider_report.h"
@@ -58,8 +58,7 @@ GeneratedTexts bakeTexts() {
         schemaFile("check-file", "relief check FILE --json",
                    "Issues of a container, and its usable sections. formats/README.md lists the codes.",
                    InspectionReport{}),
-        schemaFile("info", "relief info --json", "The contents of a collider.",
-                   ColliderReport<ColliderMapReport>{}),
+        schemaFile("info", "relief info --json", "The contents of a collider.", ColliderJson{}),
         schemaFile("world", "world.json of relief bake --world", "Placed colliders.", World{}),
         schemaFile("world-bake", "relief bake --world --json", "A bake of a level.", WorldBakeJson{}),
         schemaFile("world-info", "relief info world.json --json", "The contents of a world.", WorldInfo{}),

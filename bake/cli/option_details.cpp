@@ -2,37 +2,13 @@
 #include "bake/cli/option_details.h"
 
 #include <algorithm>
-#include <array>
-#include <utility>
 
 #include "bake/height_map/heights_spec.h"
+#include "bake/views/map_spec.h"
 #include "formats/fields/text.h"
 
 namespace relief {
 namespace {
-
-struct MapKey {
-    std::string_view key;
-    std::string_view formats;
-    std::string_view text;
-};
-
-constexpr std::array kMapKeys = std::to_array<MapKey>({
-    {"budget", "patches", "size limit on the GPU as in --budget, 1MB by default"},
-    {"texel", "patches", "texel length as in --texel; budget is then an upper limit"},
-    {"dir", "float, fixed8, front-back", "view direction: +x, -x, +y, -y, +z, -z or a vector a/b/c"},
-    {"up", "float, fixed8, front-back", "up direction of the image, as in dir"},
-    {"size", "all but patches", "texels: N, or WxH for all but cube"},
-    {"compare", "float, fixed8, cube",
-     "less (default) keeps the nearest surface, greater the farthest; a cube whose centre is inside the mesh "
-     "defaults to greater"},
-    {"center", "cube", "viewpoint a/b/c, by default the middle of the box"},
-    {"depth", "front-back", "unorm16 (default): 16-bit fixed point; half: half floats, as in the paper"},
-    {"decode", "all but patches",
-     "plane (default): distance to a plane fitted to the whole texel; projected: along the ray to a flat "
-     "texel, as in the paper"},
-    {"box", "all but patches", "region to cover: tight (default) or x0/y0/z0/x1/y1/z1"},
-});
 
 /// A line of the manual: a key, and what it means.
 std::string keyLine(std::string_view key, const std::string& text) {

@@ -5,7 +5,6 @@
 #include <system_error>
 
 #include "bake/verdict/report_text.h"
-#include "formats/base/file_io.h"
 #include "formats/base/text.h"
 
 namespace relief {

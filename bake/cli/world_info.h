@@ -11,7 +11,6 @@
 
 namespace relief {
 
-/// A collider of the world.
 struct WorldColliderInfo {
     WorldCollider named;
     std::size_t bodies = 0;  ///< bodies that place it

@@ -33,10 +33,6 @@ constexpr MeshFormat kRows[] = {
     {.extension = "smd"},
 };
 
-std::string_view textOf(std::span<const std::byte> bytes) {
-    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 /// Compares the length with the header's count; the rest of the header may have any contents.
 bool isBinaryStl(std::string_view extension, std::span<const std::byte> bytes) {
     std::uint32_t count = 0;

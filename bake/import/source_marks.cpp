@@ -19,10 +19,6 @@ constexpr std::size_t kQuotedMax = 40;  // limit for quotes from the file, in by
 constexpr std::string_view kLodGroup = "LodGroup";
 static_assert(kLodGroupMark.size() == kLodGroup.size());
 
-std::string_view textOf(std::span<const std::byte> document) {
-    return {reinterpret_cast<const char*>(document.data()), document.size()};
-}
-
 bool isBinary(std::string_view text) {
     return text.starts_with("Kaydara");
 }

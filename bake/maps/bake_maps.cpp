@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 #include <limits>
 #include <mutex>
 #include <optional>
@@ -32,8 +31,6 @@
 namespace relief {
 namespace {
 
-/// Texels between two calls of the progress function.
-constexpr std::uint64_t kStripeTexels = std::uint64_t{1} << 20;
 /// Texels that a task traces and then encodes: few enough that their hits stay in the cache and need no new pages (the
 /// first touch of 12 MB takes 8 ms).
 constexpr std::uint64_t kBlockTexels = std::uint64_t{1} << 13;
@@ -115,21 +112,19 @@ void warnAbout(const PreparedMesh& mesh, const std::vector<Job>& jobs, BakeRepor
         report.warnings.push_back(*warning);
     }
     for (std::size_t i = 0; i < jobs.size(); ++i) {
-        const View& view = jobs[i].view;
-        if (view.centre_on_surface) {
-            report.warnings.push_back(
-                "map " + std::to_string(i) + " (" + toString(jobs[i].spec) +
-                ") has its centre on the surface of the mesh; move the center into free space");
+        const auto warn = [&](const char* fault) {
+            report.warnings.push_back("map " + std::to_string(i) + " (" + toString(jobs[i].spec) + ") " +
+                                      fault);
+        };
+        if (jobs[i].view.centre_on_surface) {
+            warn("has its centre on the surface of the mesh; move the center into free space");
         } else if (jobs[i].centre_inside) {
-            report.warnings.push_back(
-                "map " + std::to_string(i) + " (" + toString(jobs[i].spec) +
-                ") has compare=less, but its centre seems to be inside the mesh; move the center, or "
-                "use compare=greater");
+            warn(
+                "has compare=less, but its centre seems to be inside the mesh; move the center, or use "
+                "compare=greater");
         }
         if (report.maps[i].covered == 0) {
-            report.warnings.push_back(
-                "map " + std::to_string(i) + " (" + toString(jobs[i].spec) +
-                ") is empty: its rays hit no outer side of the mesh; change its dir, box or size");
+            warn("is empty: its rays hit no outer side of the mesh; change its dir, box or size");
         }
     }
 }
@@ -169,83 +164,55 @@ PatchOptions patchOptions(const BakeOptions& bake, const MapSpec& spec) {
     return options;
 }
 
-/// Bakes maps that store the surface at the centre of each texel.
-class MapBaker {
-  public:
-    MapBaker(const RayScene& scene, const NormalTable& normals) : scene_(scene), normals_(normals) {}
-
-    /// \param stripeDone  called with the number of finished texels.
-    /// \param scan  of the view.
-    DepthMap bake(const View& view, const ScanConverter& scan, BakeReport& report, std::uint64_t& covered,
-                  const std::function<void(std::uint64_t)>& stripeDone) const {
-        DepthMap map = view.emptyMap();
-        const auto rows_of = [&](std::uint64_t texels) {
-            return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(texels / view.width, 4, view.height));
-        };
-        const std::uint32_t stripe_rows = rows_of(kStripeTexels);
-        for (std::uint32_t face = 0; face < view.faceCount(); ++face) {
-            for (std::uint32_t y = 0; y < view.height; y += stripe_rows) {
-                const RowRange stripe{face, y, std::min(y + stripe_rows, view.height)};
-                covered += bakeStripe(view, scan, stripe, rows_of(kBlockTexels), report, map);
-                stripeDone(std::uint64_t{stripe.end - stripe.begin} * view.width);
-            }
-        }
-        return map;
-    }
-
-  private:
-    /// Buffers and totals of a thread.
+/// Bakes a map that stores the surface at the centre of each texel.
+/// \param scan  of the view. \param rowsDone  called with the number of finished texel rows, from several threads.
+DepthMap bakeSurfaces(const RayScene& scene, const NormalTable& normals, const View& view,
+                      const ScanConverter& scan, BakeReport& report, std::uint64_t& covered,
+                      const std::function<void(std::uint32_t)>& rowsDone) {
     struct Worker {
         std::vector<Hit> hits[2];
         std::uint64_t covered = 0;
         double trace_ms = 0.0;
         double encode_ms = 0.0;
     };
-
-    std::uint64_t bakeStripe(const View& view, const ScanConverter& scan, const RowRange& stripe,
-                             std::uint32_t block_rows, BakeReport& report, DepthMap& map) const {
-        double stripe_ms = 0.0;
-        tbb::enumerable_thread_specific<Worker> workers;
+    DepthMap map = view.emptyMap();
+    const auto block_rows =
+        static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kBlockTexels / view.width, 4, view.height));
+    const std::uint32_t blocks = (view.height + block_rows - 1) / block_rows;  // per face
+    tbb::enumerable_thread_specific<Worker> workers;
+    const Stopwatch watch;
+    tbb::parallel_for(std::uint32_t{0}, view.faceCount() * blocks, [&](std::uint32_t block) {
+        const std::uint32_t begin = block % blocks * block_rows;
+        const RowRange rows{block / blocks, begin, std::min(begin + block_rows, view.height)};
+        Worker& worker = workers.local();
         {
-            const TimeAdder watch(stripe_ms);
-            const std::uint32_t blocks = (stripe.end - stripe.begin + block_rows - 1) / block_rows;
-            tbb::parallel_for(std::uint32_t{0}, blocks, [&](std::uint32_t block) {
-                const std::uint32_t begin = stripe.begin + block * block_rows;
-                const RowRange rows{stripe.face, begin, std::min(begin + block_rows, stripe.end)};
-                Worker& worker = workers.local();
-                {
-                    const TimeAdder watch_trace(worker.trace_ms);
-                    trace(view, scan, rows, worker);
-                }
-                const TimeAdder watch_encode(worker.encode_ms);
-                worker.covered +=
-                    encodeRows(scene_, normals_, view, rows, worker.hits[0], worker.hits[1], map);
-            });
+            const TimeAdder watch_trace(worker.trace_ms);
+            for (const RayEnd end : {RayEnd::kNear, RayEnd::kFar}) {
+                worker.hits[static_cast<std::size_t>(end)].resize(
+                    view.keeps(end) ? std::size_t{rows.end - rows.begin} * view.width : 0);
+            }
+            scan.scan(rows, worker.hits[0], worker.hits[1]);
         }
-        Worker all;
-        for (const Worker& worker : workers) {
-            all.covered += worker.covered;
-            all.trace_ms += worker.trace_ms;
-            all.encode_ms += worker.encode_ms;
+        {
+            const TimeAdder watch_encode(worker.encode_ms);
+            worker.covered += encodeRows(scene, normals, view, rows, worker.hits[0], worker.hits[1], map);
         }
-        // Times of the threads, scaled to elapsed time.
-        const double share = stripe_ms / std::max(all.trace_ms + all.encode_ms, 1e-9);
-        report.trace_ms += share * all.trace_ms;
-        report.encode_ms += share * all.encode_ms;
-        return all.covered;
+        rowsDone(rows.end - rows.begin);
+    });
+    const double elapsed_ms = watch.ms();
+    double trace_ms = 0.0;
+    double encode_ms = 0.0;
+    for (const Worker& worker : workers) {
+        covered += worker.covered;
+        trace_ms += worker.trace_ms;
+        encode_ms += worker.encode_ms;
     }
-
-    static void trace(const View& view, const ScanConverter& scan, const RowRange& rows, Worker& worker) {
-        for (const RayEnd end : {RayEnd::kNear, RayEnd::kFar}) {
-            worker.hits[static_cast<std::size_t>(end)].resize(
-                view.keeps(end) ? std::size_t{rows.end - rows.begin} * view.width : 0);
-        }
-        scan.scan(rows, worker.hits[0], worker.hits[1]);
-    }
-
-    const RayScene& scene_;
-    const NormalTable& normals_;
-};
+    // Times of the threads, scaled to elapsed time.
+    const double share = elapsed_ms / std::max(trace_ms + encode_ms, 1e-9);
+    report.trace_ms += share * trace_ms;
+    report.encode_ms += share * encode_ms;
+    return map;
+}
 
 class Bake {
   public:
@@ -306,7 +273,7 @@ class Bake {
                     const TimeAdder watch(baked_.report.encode_ms);
                     packed_normals.emplace(*mesh_, scene->winding(), texels_);
                 }
-                traceMaps(*scene, MapBaker(*scene, *packed_normals), jobs);
+                traceMaps(*scene, *packed_normals, jobs);
                 continue;
             }
             const TimeAdder watch(baked_.report.fit_ms);
@@ -332,7 +299,7 @@ class Bake {
                                            std::max<std::size_t>(mesh_->triangles.size(), 1)));
     }
 
-    void traceMaps(const RayScene& scene, const MapBaker& baker, std::span<const Job> jobs) {
+    void traceMaps(const RayScene& scene, const NormalTable& normals, std::span<const Job> jobs) {
         std::vector<std::optional<ScanConverter>> scans(jobs.size());
         {
             const TimeAdder watch(baked_.report.trace_ms);
@@ -342,8 +309,8 @@ class Bake {
         for (std::size_t i = 0; i < jobs.size(); ++i) {
             const Job& job = jobs[i];
             MapReport report{job.spec, 0, job.texels()};
-            DepthMap map = baker.bake(job.view, *scans[i], baked_.report, report.covered,
-                                      [this](std::uint64_t texels) { finish(texels); });
+            DepthMap map = bakeSurfaces(scene, normals, job.view, *scans[i], baked_.report, report.covered,
+                                        rowsDone(job.view));
             add(std::move(map), std::move(report));
             scans[i].reset();
         }
@@ -449,27 +416,20 @@ namespace {
 /// Measured with a house at (4e5, 0, 8e5) m and a ball there.
 constexpr double kWrongPerStep = 0.1;
 
-/// Returns the largest magnitude of a coordinate of the mesh's bounds.
-float farthestOf(const TriangleMesh& mesh) {
-    const glm::vec3 corner = glm::max(glm::abs(mesh.bounds.min), glm::abs(mesh.bounds.max));
-    return std::max({corner.x, corner.y, corner.z});
-}
-
 }  // namespace
 
 double wrongByFloats(const TriangleMesh& mesh) {
-    const double step = std::ldexp(1.0, std::ilogb(farthestOf(mesh)) - 23);
+    const double step = std::ldexp(1.0, std::ilogb(mesh.bounds.farthest()) - 23);
     const double sigma = AccuracyOptions().sigma_share * double{mesh.bounds.longestSide()};
     return std::min(50.0, 100.0 * kWrongPerStep * step / sigma);
 }
 
 std::optional<std::string> coarseFloatsWarning(const TriangleMesh& mesh) {
-    if (mesh.bounds.longestSide() >= 1e-3F * farthestOf(mesh)) {
+    if (mesh.bounds.longestSide() >= 1e-3F * mesh.bounds.farthest()) {
         return std::nullopt;
     }
     return mesh.name +
-           " is more than 1000 times its size away from the origin, where floats are coarse; move it to "
-           "the "
+           " is more than 1000 times its size away from the origin, where floats are coarse; move it to the "
            "origin";
 }
 

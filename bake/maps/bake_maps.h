@@ -11,11 +11,25 @@
 #include "bake/mesh/prepared_mesh.h"
 #include "bake/patches/patch_planner.h"
 #include "bake/views/map_spec.h"
-#include "bake/views/prefer.h"
+#include "formats/base/enum_words.h"
 #include "formats/base/result.h"
 #include "formats/collider.h"
 
 namespace relief {
+
+/// How to classify doubtful space, for maps whose decode is plane. kInside: as solid, so that no particle enters a
+/// wall. kOutside: as free, so that no free volume is lost.
+enum class Prefer : std::uint8_t { kNeither, kInside, kOutside };
+
+template <>
+inline constexpr std::array<std::string_view, 3> kWordsOf<Prefer>{"neither", "inside", "outside"};
+
+/// The effort per texel for maps whose decode is plane: rays along each side of a texel's footprint, and rounds of
+/// search among neighbouring normals.
+enum class Quality : std::uint8_t { kFast, kNormal, kBest };
+
+template <>
+inline constexpr std::array<std::string_view, 3> kWordsOf<Quality>{"fast", "normal", "best"};
 
 struct BakeOptions {
     std::vector<MapSpec> maps;       ///< empty: paperMapSpecs()
@@ -23,8 +37,8 @@ struct BakeOptions {
     Quality quality = Quality::kNormal;
     Prefer prefer = Prefer::kNeither;
     std::uint64_t budget = 0;  ///< of patches, bytes, recorded in the collider; 0: none
-    float texel =
-        0.0F;  ///< of patches baked for a budget, object units: MapSpec::texel; 0: limited by the budget
+    /// For patches baked for a budget, object units: MapSpec::texel. 0: limited by the budget.
+    float texel = 0.0F;
     std::optional<Bounds> roots_hold{};  ///< PatchOptions::roots_hold
     unsigned threads = 0;                ///< 0: all cores; the result does not depend on it
     /// Called periodically with the fraction of the work done, in [0, 1]; from any thread, never concurrently. Its
@@ -36,6 +50,11 @@ struct MapReport {
     MapSpec spec;               ///< complete
     std::uint64_t covered = 0;  ///< texels with a surface
     std::uint64_t texels = 0;
+
+    /// Returns the fraction of the texels that store a surface.
+    [[nodiscard]] double coverage() const {
+        return static_cast<double>(covered) / static_cast<double>(texels);
+    }
 };
 
 struct BakeReport {

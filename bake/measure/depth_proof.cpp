@@ -7,7 +7,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
-#include <glm/matrix.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -196,14 +195,10 @@ class Prover {
           collider_(collider),
           texels_(collider.maps.front().texels),
           cells_(std::move(cells)) {
-        for (int i = 0; i < 3; ++i) {
-            const glm::dvec4 row = collider.maps.front().object_to_map.row[i];
-            offset_[i] = row.w;
-            for (int k = 0; k < 3; ++k) {
-                to_map_[k][i] = row[k];
-            }
-        }
-        to_object_ = glm::inverse(to_map_);
+        const Affine& frame = collider.maps.front().object_to_map;
+        offset_ = {frame.row[0].w, frame.row[1].w, frame.row[2].w};
+        to_map_ = frame.linear();
+        to_object_ = frame.inverse();
         for (int corner = 0; corner < 4; ++corner) {
             const glm::dvec3 way(1.0, (corner & 1) != 0 ? -1.0 : 1.0, (corner & 2) != 0 ? -1.0 : 1.0);
             radius_ = std::max(radius_, glm::length(to_object_ * way));
@@ -239,11 +234,8 @@ class Prover {
         const glm::dvec3 roots(patchTreeSize(texels_).roots);
         const Bounds& box = query_.mesh().bounds;
         bool hold = true;
-        for (int corner = 0; corner < 8; ++corner) {
-            const glm::dvec3 p((corner & 1) != 0 ? box.max.x : box.min.x,
-                               (corner & 2) != 0 ? box.max.y : box.min.y,
-                               (corner & 4) != 0 ? box.max.z : box.min.z);
-            const glm::dvec3 q = to_map_ * p + offset_;
+        for (unsigned i = 0; i < 8; ++i) {
+            const glm::dvec3 q = to_map_ * glm::dvec3(box.corner(i)) + offset_;
             hold = hold && glm::all(glm::greaterThanEqual(q, glm::dvec3(0.0))) &&
                    glm::all(glm::lessThanEqual(q, roots));
         }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 
 #include "bake/measure/percent.h"
 #include "bake/mesh/loops.h"
@@ -18,8 +17,7 @@ Sight::Sight(const DepthMap& map, const MeshQuery& query)
         rows_[i] = {t.row[i].x, t.row[i].y, t.row[i].z};
         offset_[i] = t.row[i].w;
     }
-    // glm takes columns.
-    to_object_ = glm::inverse(glm::transpose(glm::dmat3(rows_[0], rows_[1], rows_[2])));
+    to_object_ = t.inverse();
 }
 
 glm::dvec3 Sight::inMap(const glm::dvec3& p) const {

@@ -8,7 +8,6 @@
 
 #include "bake/mesh/mesh.h"
 #include "bake/named_maps/ray_scene.h"
-#include "bake/named_maps/scan_convert.h"
 #include "bake/views/view.h"
 #include "formats/depth_map.h"
 

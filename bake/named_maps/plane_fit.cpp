@@ -9,7 +9,6 @@
 
 #include "bake/mesh/triangle_plane.h"
 #include "bake/named_maps/highest_below.h"
-#include "formats/plane.h"
 #include "formats/texel.h"
 
 namespace relief {
@@ -183,7 +182,6 @@ class PointTable {
     std::array<Block, (kFootprintRaysMax + kLanes - 1) / kLanes> table_;
 };
 
-/// Searches for the plane of one texel.
 class PlaneSearch {
   public:
     PlaneSearch(std::span<const FootprintRay> rays, const AroundRays& around,

@@ -23,11 +23,9 @@
 #include "bake/named_maps/deep_solid.h"
 #include "bake/views/view.h"
 #include "formats/normal_index.h"
-#include "formats/texel.h"
 
 namespace relief {
 
-/// A ray of a footprint.
 struct FootprintRay {
     /// From the viewer: the point at u is origin + u · direction, with u in units of map depth.
     glm::dvec3 origin{0.0};

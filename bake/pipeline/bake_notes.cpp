@@ -63,34 +63,29 @@ std::vector<std::string> warningsOf(const BakeRequest& request, const SolidMesh&
 std::vector<std::string> noticesOf(const SolidMesh& solid, std::size_t nodes) {
     const TriangleMesh& mesh = *solid.mesh.mesh;
     std::vector<std::string> notices;
+    const auto note = [&](const std::string& text) { notices.push_back(mesh.name + ": " + text); };
+    const auto noteParts = [&](std::uint64_t count, const char* what, const char* text) {
+        if (count > 0) {
+            note(countText(count, what) + text);
+        }
+    };
     if (mesh.closed_holes > 0) {
-        notices.push_back("closed " + countText(mesh.closed_holes, "hole") +
-                          " for baking: the mesh is nearly closed");
+        note("closed " + countText(mesh.closed_holes, "hole") + " for baking: the mesh is nearly closed");
     }
     if (nodes >= kLevelNodes && !solid.animated) {
-        notices.push_back(std::to_string(nodes) +
-                          " nodes become one collider; if it is a level, bake it with --world DIR: each mesh "
-                          "once, with more detail for the same bytes");
+        note(std::to_string(nodes) +
+             " nodes become one collider; if it is a level, bake it with --world DIR: each mesh once, with "
+             "more "
+             "detail for the same bytes");
     }
-    if (const std::uint64_t shells = solid.shape.unjoined_shells; shells > 0) {
-        notices.push_back(countText(shells, "open shell") +
-                          " inside another one, with rims too far apart to join: the space inside is solid; "
-                          "to make it hollow, close the gap between the rims in the mesh");
-    }
-    if (const std::uint64_t walls = solid.shape.ambiguous_walls; walls > 0) {
-        notices.push_back(
-            countText(walls, "wall") +
-            " made of two open shells; their winding does not distinguish a lining from a body: the "
-            "space inside is free; bake clothed bodies with --as solid");
-    }
-    if (const std::uint64_t sheets = solid.shape.closable_sheets; sheets > 0) {
-        notices.push_back(countText(sheets, "sheet") +
-                          " would be solid with closed holes; bake with --as solid unless a vessel must stay "
-                          "open");
-    }
-    for (std::string& notice : notices) {
-        notice.insert(0, mesh.name + ": ");
-    }
+    noteParts(solid.shape.unjoined_shells, "open shell",
+              " inside another one, with rims too far apart to join: the space inside is solid; to make it "
+              "hollow, close the gap between the rims in the mesh");
+    noteParts(solid.shape.ambiguous_walls, "wall",
+              " made of two open shells; their winding does not distinguish a lining from a body: the space "
+              "inside is free; bake clothed bodies with --as solid");
+    noteParts(solid.shape.closable_sheets, "sheet",
+              " would be solid with closed holes; bake with --as solid unless a vessel must stay open");
     return notices;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <string_view>
 
 #include "bake/height_map/heights_spec.h"
@@ -18,6 +19,14 @@ constexpr std::array<const char*, 3> kAxisMaps = {"front-back:dir=+x,up=+y", "fr
                                                   "front-back:dir=-z,up=+y"};
 constexpr std::uint32_t kAxisResolution = 256;
 
+/// Returns the first option that sets the size of patches; null if none is set.
+const char* sizeOption(const BakeRequest& request) {
+    return request.budget      ? "--budget"
+           : request.texel     ? "--texel"
+           : request.max_error ? "--max-error"
+                               : nullptr;
+}
+
 /// Returns the option that chooses the maps. Errors: kUsage if there are several.
 Result<MapSource> sourceOf(const BakeRequest& request) {
     struct Chooser {
@@ -25,13 +34,10 @@ Result<MapSource> sourceOf(const BakeRequest& request) {
         bool given;
         MapSource source;
     };
-    const std::array<Chooser, 3> choosers = {
-        {{"--map", !request.map.empty(), MapSource::kMaps},
-         {"--paper", request.paper, MapSource::kPaper},
-         {request.budget  ? "--budget"
-          : request.texel ? "--texel"
-                          : "--max-error",
-          request.budget || request.texel || request.max_error, MapSource::kPatches}}};
+    const char* const size = sizeOption(request);
+    const std::array<Chooser, 3> choosers = {{{"--map", !request.map.empty(), MapSource::kMaps},
+                                              {"--paper", request.paper, MapSource::kPaper},
+                                              {size, size != nullptr, MapSource::kPatches}}};
     const Chooser* chosen = nullptr;
     for (const Chooser& chooser : choosers) {
         if (!chooser.given) {
@@ -46,26 +52,19 @@ Result<MapSource> sourceOf(const BakeRequest& request) {
     return chosen == nullptr ? MapSource::kPatches : chosen->source;
 }
 
-/// Returns an error if an option for meshes is set.
-std::string otherThanHeights(const BakeRequest& request) {
-    constexpr std::array<std::string_view, 5> kAllowed = {"heights", "threads", "timeout",
+/// The options that have an effect with --heights, and with --animated.
+constexpr std::array<std::string_view, 5> kWithHeights = {"heights", "threads", "timeout",
                                                           "max_import_memory", "import_timeout"};
-    for (const FieldWords& field : changedFields(request)) {
-        if (std::ranges::find(kAllowed, field.name) == kAllowed.end()) {
-            return optionName(field.name) + " has no effect with --heights; remove it";
-        }
-    }
-    return {};
-}
+constexpr std::array<std::string_view, 12> kWithAnimated = {
+    "animated", "clips", "resolution",        "quality",        "prefer",        "threads",
+    "unit",     "up",    "max_import_memory", "import_timeout", "max_triangles", "timeout"};
 
-/// Returns an error if an option is set that --animated does not support.
-std::string otherThanAnimated(const BakeRequest& request) {
-    constexpr std::array<std::string_view, 12> kAllowed = {
-        "animated", "clips", "resolution",        "quality",        "prefer",        "threads",
-        "unit",     "up",    "max_import_memory", "import_timeout", "max_triangles", "timeout"};
+/// Returns an error if another option is set.
+std::string otherThan(std::span<const std::string_view> allowed, const BakeRequest& request,
+                      const char* error) {
     for (const FieldWords& field : changedFields(request)) {
-        if (std::ranges::find(kAllowed, field.name) == kAllowed.end()) {
-            return optionName(field.name) + " has no effect with --animated; remove one of them";
+        if (std::ranges::find(allowed, field.name) == allowed.end()) {
+            return optionName(field.name) + error;
         }
     }
     return {};
@@ -74,10 +73,10 @@ std::string otherThanAnimated(const BakeRequest& request) {
 /// Returns an error if options have no effect together; empty: there is none.
 std::string conflictOf(const BakeRequest& request, const BakeSettings& settings) {
     if (!request.heights.empty()) {
-        return otherThanHeights(request);
+        return otherThan(kWithHeights, request, " has no effect with --heights; remove it");
     }
     if (request.animated) {
-        return otherThanAnimated(request);
+        return otherThan(kWithAnimated, request, " has no effect with --animated; remove one of them");
     }
     if (!request.clips.empty()) {
         return "--clips has no effect without --animated; add --animated";
@@ -91,12 +90,11 @@ std::string conflictOf(const BakeRequest& request, const BakeSettings& settings)
         return "--resolution has no effect on patches; set --budget instead, or add --map, --paper or "
                "--holes keep";
     }
-    if (axis_maps && (request.budget || request.texel || request.max_error)) {
-        return std::string(request.budget  ? "--budget"
-                           : request.texel ? "--texel"
-                                           : "--max-error") +
-               " has no effect with --holes keep, because an open surface has no inside for patches; set "
-               "--resolution";
+    if (axis_maps && sizeOption(request) != nullptr) {
+        return sizeOption(request) +
+               std::string(
+                   " has no effect with --holes keep, because an open surface has no inside for patches; set "
+                   "--resolution");
     }
     if (request.texel && request.max_error) {
         return "--texel and --max-error both choose the size; remove one";
@@ -347,9 +345,8 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
          .recorded = true,
          .details =
              "The runtime poses the collider. Three front-back maps along the axes, with --resolution texels "
-             "a side, "
-             "store its rest pose. Besides the options of its output, only --clips, --resolution, --quality, "
-             "--prefer, --unit, --up and limits apply."});
+             "a side, store its rest pose. Besides the options of its output, only --clips, --resolution, "
+             "--quality, --prefer, --unit, --up and limits apply."});
     visit("clips", request.clips,
           {.help = "With --animated: add the animations of this glTF file, matched by node name; repeatable",
            .value = "FILE"});

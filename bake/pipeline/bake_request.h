@@ -13,7 +13,6 @@
 #include "bake/repair/repair.h"
 #include "bake/shape/shape.h"
 #include "bake/views/map_spec.h"
-#include "bake/views/prefer.h"
 #include "formats/base/result.h"
 #include "formats/container_limits.h"
 #include "formats/fields/text.h"

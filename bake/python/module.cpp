@@ -19,66 +19,18 @@
 #include "bake/measure/worst_places.h"
 #include "bake/pipeline/bake.h"
 #include "bake/pipeline/mesh_check.h"
+#include "bake/python/convert.h"
 #include "bake/python/interruptible.h"
 #include "bake/verdict/parts_report.h"
-#include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
 #include "formats/container.h"
 #include "formats/fields/field.h"
 #include "formats/nearest_surface.h"
 #include "formats/validate.h"
 #include "formats/world/world_field.h"
-#include "runtime/bodies/world_bodies.h"
-#include "runtime/gl/gl_context.h"
-#include "runtime/player/simulation.h"
-#include "runtime/scene/loaded_scene.h"
-
-namespace py = pybind11;
 
 namespace relief {
 namespace {
-
-using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
-using Indices = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>;
-
-/// relief.Error and its subclasses, by ErrorCode; created by the module.
-std::map<ErrorCode, py::object>* g_errors = nullptr;
-
-/// Converts a message, which may contain bytes of a file name, to a Python string with surrogate escapes.
-py::object textOf(const std::string& message) {
-    return py::reinterpret_steal<py::object>(
-        PyUnicode_DecodeUTF8(message.data(), static_cast<py::ssize_t>(message.size()), "surrogateescape"));
-}
-
-py::list textsOf(const std::vector<std::string>& messages) {
-    py::list texts;
-    for (const std::string& message : messages) {
-        texts.append(textOf(message));
-    }
-    return texts;
-}
-
-[[noreturn]] void raise(const Error& error) {
-    const auto found = g_errors->find(error.code);
-    const py::object& type = found == g_errors->end() ? g_errors->at(ErrorCode::kFailure) : found->second;
-    PyErr_SetObject(type.ptr(), textOf(error.message).ptr());
-    throw py::error_already_set();
-}
-
-/// Returns the value, or throws the Python exception. Requires the GIL.
-template <class T>
-T need(Result<T> result) {
-    if (!result) {
-        raise(result.error());
-    }
-    return std::move(*result);
-}
-
-void need(const Result<void>& done) {
-    if (!done) {
-        raise(done.error());
-    }
-}
 
 /// \param points  shape (n, 3); validated by the package.
 std::span<const glm::vec3> pointsOf(const Floats& points) {
@@ -146,17 +98,6 @@ py::tuple queryWorld(const WorldField& field, const Floats& points) {
         return FieldSample{sample.body < 0 ? kFarOutside : sample.distance, sample.normal, sample.body};
     });
     return py::make_tuple(s.distance, s.normal, s.map);
-}
-
-/// Returns `kParts` floats per body.
-template <std::size_t kParts, class Value>
-Floats ofBodies(const WorldField& field, const Value& value) {
-    const std::vector<WorldBody>& bodies = field.world().bodies;
-    Floats out({static_cast<py::ssize_t>(bodies.size()), static_cast<py::ssize_t>(kParts)});
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        std::copy_n(value(bodies[i]), kParts, out.mutable_data() + kParts * i);
-    }
-    return out;
 }
 
 Floats cornersOf(const Bounds& bounds) {
@@ -339,129 +280,6 @@ py::tuple check(const SharedCollider& collider, const CheckRequest& request,
     return py::make_tuple(measured, textsOf(run.warnings));
 }
 
-// --- Simulate
-
-struct Hit : ParticleEvent {
-    std::uint64_t step = 0;  ///< number of the step
-};
-
-/// Collects one member of all items into an array: (n,), or (n, 3) for vectors.
-template <class T, class Class, class Item>
-auto column(const std::vector<Item>& items, T Class::*member) {
-    const auto count = static_cast<py::ssize_t>(items.size());
-    if constexpr (std::is_same_v<T, glm::vec3>) {
-        Floats array({count, py::ssize_t{3}});
-        for (std::size_t i = 0; i < items.size(); ++i) {
-            std::copy_n(&(items[i].*member).x, 3, array.mutable_data() + 3 * i);
-        }
-        return array;
-    } else {
-        py::array_t<T> array(count);
-        std::ranges::transform(items, array.mutable_data(), [&](const Item& item) { return item.*member; });
-        return array;
-    }
-}
-
-/// A scene without a window. Only one simulation at a time has its context current on a thread.
-class HeadlessSimulation {
-  public:
-    /// \param root  SceneOverrides::root.
-    /// \param hits  stores hits for takeHits().
-    HeadlessSimulation(const std::filesystem::path& scene, std::optional<std::uint64_t> seed,
-                       const std::filesystem::path& root, bool hits)
-        : context_(need(GlContext::create())) {
-        SceneOverrides overrides;
-        overrides.seed = seed;
-        overrides.root = root;
-        loaded_ = std::make_unique<LoadedScene>(need(released([&] { return loadAll(scene, overrides); })));
-        simulation_ = std::make_unique<Simulation>(need(released([&] {
-            return Simulation::create(*loaded_, {.checkpoint = [] {
-                const py::gil_scoped_acquire held;
-                raiseSignals();
-            }});
-        })));
-        if (hits) {
-            hits_ = std::make_unique<std::vector<Hit>>();
-            need(simulation_->listHits(0.0F, [to = hits_.get()](const StepEvents& step) {
-                for (const ParticleEvent& event : step.events) {
-                    if (event.hit && !event.lasts) {
-                        to->push_back({event, step.tag});
-                    }
-                }
-                return Result<void>();
-            }));
-        }
-    }
-    ~HeadlessSimulation() {
-        // If another thread collects this object, it must not free the objects of the context: only the thread that has
-        // the context may.
-        if (simulation_ && !context_->makeCurrent()) {
-            static_cast<void>(simulation_.release());
-            static_cast<void>(loaded_.release());
-        }
-    }
-    HeadlessSimulation(const HeadlessSimulation&) = delete;
-    HeadlessSimulation& operator=(const HeadlessSimulation&) = delete;
-
-    void step(std::uint32_t count) {
-        need(context_->makeCurrent());
-        for (std::uint32_t i = 0; i < count; raiseSignals()) {
-            need(released([&]() -> Result<void> {
-                const Stopwatch watch;
-                do {
-                    RELIEF_TRY(simulation_->step());
-                } while (++i < count && watch.ms() < static_cast<double>(kSignalInterval.count()));
-                return {};
-            }));
-        }
-    }
-
-    [[nodiscard]] py::dict read() const {
-        need(context_->makeCurrent());
-        const auto states = need(simulation_->particles().readState());
-        using State = ParticleState;
-        return py::dict(py::arg("positions") = column(states, &State::position),
-                        py::arg("velocities") = column(states, &State::velocity),
-                        py::arg("ages") = column(states, &State::age),
-                        py::arg("lifetimes") = column(states, &State::lifetime),
-                        py::arg("ids") = column(states, &State::id),
-                        py::arg("types") = column(states, &State::type),
-                        py::arg("collisions") = column(states, &State::collisions));
-    }
-
-    [[nodiscard]] py::list takeWarnings() { return textsOf(simulation_->takeWarnings()); }
-
-    /// Returns the hits of all steps since the last call; waits for the GPU.
-    [[nodiscard]] py::dict takeHits() {
-        if (!hits_) {
-            raise({ErrorCode::kUsage, "this simulation stores no hits; create it with hits=True"});
-        }
-        need(context_->makeCurrent());
-        need(simulation_->finishEvents());
-        const std::vector<Hit> hits = std::exchange(*hits_, {});
-        return py::dict(
-            py::arg("step") = column(hits, &Hit::step), py::arg("time") = column(hits, &Hit::time),
-            py::arg("id") = column(hits, &Hit::id), py::arg("type") = column(hits, &Hit::type),
-            py::arg("body") = column(hits, &Hit::body), py::arg("material") = column(hits, &Hit::material),
-            py::arg("position") = column(hits, &Hit::position),
-            py::arg("normal") = column(hits, &Hit::normal),
-            py::arg("velocity") = column(hits, &Hit::velocity), py::arg("speed") = column(hits, &Hit::speed));
-    }
-
-    [[nodiscard]] std::vector<std::string> materials() const {
-        const auto names = simulation_->textures().materialNames();
-        return {names.begin(), names.end()};
-    }
-    [[nodiscard]] double time() const { return simulation_->particles().time(); }
-    [[nodiscard]] std::uint32_t alive() const { return simulation_->particles().counts().alive; }
-
-  private:
-    std::unique_ptr<GlContext> context_;
-    std::unique_ptr<LoadedScene> loaded_;
-    std::unique_ptr<std::vector<Hit>> hits_;  // null if hits are not stored
-    std::unique_ptr<Simulation> simulation_;
-};
-
 }  // namespace
 }  // namespace relief
 
@@ -509,16 +327,10 @@ PYBIND11_MODULE(_relief, m) {
                                    }
                                    return nodes;
                                })
-        .def_property_readonly("positions",
-                               [](const WorldField& f) {
-                                   return ofBodies<3>(f,
-                                                      [](const WorldBody& body) { return &body.position.x; });
-                               })
-        .def_property_readonly("rotations",
-                               [](const WorldField& f) {
-                                   return ofBodies<4>(
-                                       f, [](const WorldBody& body) { return body.rotation.data(); });
-                               })
+        .def_property_readonly(
+            "positions", [](const WorldField& f) { return column(f.world().bodies, &WorldBody::position); })
+        .def_property_readonly(
+            "rotations", [](const WorldField& f) { return column(f.world().bodies, &WorldBody::rotation); })
         .def_property_readonly(
             "scales", [](const WorldField& f) { return column(f.world().bodies, &WorldBody::scale); })
         .def_property_readonly(
@@ -564,14 +376,5 @@ PYBIND11_MODULE(_relief, m) {
         request.mesh = file.value_or("");
         return check(collider, request, meshOf(file, vertices, triangles, name));
     });
-    py::class_<HeadlessSimulation>(m, "Simulation")
-        .def(py::init<const std::filesystem::path&, std::optional<std::uint64_t>,
-                      const std::filesystem::path&, bool>())
-        .def("step", &HeadlessSimulation::step)
-        .def("take_hits", &HeadlessSimulation::takeHits)
-        .def("take_warnings", &HeadlessSimulation::takeWarnings)
-        .def("read", &HeadlessSimulation::read)
-        .def_property_readonly("materials", &HeadlessSimulation::materials)
-        .def_property_readonly("time", &HeadlessSimulation::time)
-        .def_property_readonly("alive", &HeadlessSimulation::alive);
+    addSimulation(m);
 }

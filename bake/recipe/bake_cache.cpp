@@ -144,19 +144,32 @@ std::string bakeCacheText(const BakeCacheEntries& entries) {
     return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-Result<BakeCacheEntries> loadBakeCache(const fs::path& output_folder) {
-    const fs::path path = output_folder / kBakeCacheName;
+Result<std::optional<std::vector<std::byte>>> readCacheFile(const fs::path& path) {
     std::error_code error;
-    if (!fs::exists(fs::symlink_status(path, error))) {
-        return BakeCacheEntries{};
+    const fs::file_status status = fs::symlink_status(path, error);
+    if (!fs::exists(status)) {
+        return std::nullopt;
     }
     // A link could lead out of the folder.
-    if (!fs::is_regular_file(fs::symlink_status(path, error))) {
+    if (!fs::is_regular_file(status)) {
         return fail(ErrorCode::kInvalidInput, quotedPath(path) + ": not a regular file");
     }
-    const auto bytes = RELIEF_TRY(readFile(path, kCacheBytesMax));
-    return withPrefix(quotedPath(path),
-                      parseBakeCache({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
+    return RELIEF_TRY(readFile(path, kCacheBytesMax));
+}
+
+Result<void> writeCacheFile(const fs::path& path, std::string_view text) {
+    std::error_code error;
+    if (fs::is_symlink(fs::symlink_status(path, error)) && !fs::remove(path, error)) {
+        return fail(ErrorCode::kIo,
+                    "cannot replace the link " + quotedPath(path) + ": " + error.message() + "; remove it");
+    }
+    return writeText(path, text);
+}
+
+Result<BakeCacheEntries> loadBakeCache(const fs::path& output_folder) {
+    const fs::path path = output_folder / kBakeCacheName;
+    const auto bytes = RELIEF_TRY(readCacheFile(path));
+    return bytes ? withPrefix(quotedPath(path), parseBakeCache(textOf(*bytes))) : BakeCacheEntries{};
 }
 
 Result<void> updateBakeCache(const fs::path& output_folder, const BakeCacheEntries& entries) {
@@ -170,14 +183,7 @@ Result<void> updateBakeCache(const fs::path& output_folder, const BakeCacheEntri
         std::error_code error;
         return !fs::exists(output_folder / named.first, error);
     });
-    const std::string text = bakeCacheText(all);
-    const fs::path path = output_folder / kBakeCacheName;
-    std::error_code error;
-    if (fs::is_symlink(fs::symlink_status(path, error)) && !fs::remove(path, error)) {
-        return fail(ErrorCode::kIo,
-                    "cannot replace the link " + quotedPath(path) + ": " + error.message() + "; remove it");
-    }
-    return writeFile(path, std::as_bytes(std::span(text)));
+    return writeCacheFile(output_folder / kBakeCacheName, bakeCacheText(all));
 }
 
 std::string assetKey(const std::string& tool, const std::vector<std::string>& options,

@@ -44,6 +44,12 @@ using BakeCacheEntries = std::map<std::string, BakeCacheEntry>;
 /// that bakes write.
 [[nodiscard]] std::optional<std::string> hashOfInput(const std::filesystem::path& path);
 
+/// Reads a cache file; nullopt if there is none. Does not follow a symbolic link in its place.
+/// Errors: kInvalidInput (not a regular file), kIo, kLimit.
+[[nodiscard]] Result<std::optional<std::vector<std::byte>>> readCacheFile(const std::filesystem::path& path);
+/// Replaces a cache file, or a symbolic link in its place. Errors: kIo.
+[[nodiscard]] Result<void> writeCacheFile(const std::filesystem::path& path, std::string_view text);
+
 /// Parses the text of a cache file. Errors: kInvalidInput (not a cache file of this version).
 [[nodiscard]] Result<BakeCacheEntries> parseBakeCache(std::string_view text);
 [[nodiscard]] std::string bakeCacheText(const BakeCacheEntries& entries);

@@ -16,7 +16,6 @@
 
 namespace relief {
 
-/// How a child ended.
 struct ChildEnd {
     std::size_t tag = 0;  ///< as passed to start()
     pid_t pid = 0;

@@ -2,7 +2,6 @@
 #include "bake/recipe/depfile.h"
 
 #include <set>
-#include <span>
 
 #include "formats/base/file_io.h"
 
@@ -74,7 +73,7 @@ Result<std::string> depfileText(const std::vector<std::string>& targets,
 Result<void> writeDepfile(const std::filesystem::path& path, const std::vector<std::string>& targets,
                           const std::vector<std::string>& inputs) {
     const std::string text = RELIEF_TRY(depfileText(targets, inputs));
-    return writeFile(path, std::as_bytes(std::span(text)));
+    return writeText(path, text);
 }
 
 }  // namespace relief

@@ -9,7 +9,7 @@
 
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
-#include "formats/config/toml_reader.h"
+#include "formats/config/toml_value.h"
 #include "formats/world/world.h"
 
 namespace relief {
@@ -37,11 +37,9 @@ struct BeyondLimit {
 void refuseUnknown(const TomlValue& table, std::span<const std::string_view> known) {
     for (const toml::key* key : keysInOrder(*table.node().as_table())) {
         if (std::ranges::find(known, key->str()) == known.end()) {
-            const toml::source_position& at = key->source().begin;
             const std::string guess = didYouMean(key->str(), known);
-            throw TomlError{table.file().name + ":" + std::to_string(at.line) + ":" +
-                            std::to_string(at.column) + ": unknown key '" + cleanUtf8(key->str(), 80) + "'" +
-                            (guess.empty() ? "; use one of " + listed(known) : guess)};
+            table.failAt(*key, "unknown key '" + cleanUtf8(key->str(), 80) + "'" +
+                                   (guess.empty() ? "; use one of " + listed(known) : guess));
         }
     }
 }
@@ -221,7 +219,7 @@ Result<std::vector<RecipeAsset>> parseRecipe(std::string_view text, const std::v
 
 Result<std::vector<RecipeAsset>> loadRecipe(const fs::path& path, const std::vector<RecipeKey>& keys) {
     const auto bytes = RELIEF_TRY(readFile(path, kRecipeBytesMax));
-    return parseRecipe({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, keys, path);
+    return parseRecipe(textOf(bytes), keys, path);
 }
 
 std::vector<std::string> recipeArguments(const RecipeOptions& options) {

@@ -2,7 +2,6 @@
 #include "bake/recipe/recipe_jobs.h"
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <optional>
 #include <set>
@@ -156,33 +155,35 @@ class Expander {
 
     static std::string bakeOf(const RecipeJob& job) { return "the bake of " + inQuotes(job.mesh); }
 
+    /// \param key  of the pattern in the recipe
+    static Result<GlobPattern> patternOf(const std::string& key, const std::string& text,
+                                         const RecipePlace& place) {
+        Result<GlobPattern> pattern = GlobPattern::parse(text);
+        if (!pattern) {
+            return at(place, key + " " + inQuotes(text) + " " + pattern.error().message,
+                      pattern.error().code);
+        }
+        return pattern;
+    }
+
     /// Returns the files that match the patterns, without duplicates and excluded files.
     Result<std::vector<std::string>> meshesOf(const RecipeAsset& asset) {
         std::vector<GlobPattern> excluded;
         for (const std::string& text : asset.exclude) {
-            Result<GlobPattern> pattern = GlobPattern::parse(text);
-            if (!pattern) {
-                return at(asset.place, "exclude " + inQuotes(text) + " " + pattern.error().message,
-                          pattern.error().code);
-            }
-            excluded.push_back(std::move(*pattern));
+            excluded.push_back(RELIEF_TRY(patternOf("exclude", text, asset.place)));
         }
         std::vector<std::string> meshes;
         bool of_folders = false;
         std::set<std::string> seen;
         for (const std::string& text : asset.meshes) {
-            const Result<GlobPattern> pattern = GlobPattern::parse(text);
-            if (!pattern) {
-                return at(asset.mesh_place, "mesh " + inQuotes(text) + " " + pattern.error().message,
-                          pattern.error().code);
-            }
-            const Result<GlobResult> found = globFiles(folder_, *pattern);
+            const GlobPattern pattern = RELIEF_TRY(patternOf("mesh", text, asset.mesh_place));
+            const Result<GlobResult> found = globFiles(folder_, pattern);
             if (!found) {
                 return at(asset.mesh_place, "mesh " + inQuotes(text) + ": " + found.error().message,
                           found.error().code);
             }
-            of_folders = of_folders || pattern->ofFolders();
-            if (pattern->ofFolders() && !asset.isWorld()) {
+            of_folders = of_folders || pattern.ofFolders();
+            if (pattern.ofFolders() && !asset.isWorld()) {
                 return at(asset.mesh_place,
                           "mesh " + inQuotes(text) +
                               " matches folders, which are levels; write */* for the files in "
@@ -190,9 +191,9 @@ class Expander {
             }
             if (found->files.empty() && !asset.optional) {
                 std::error_code error;
-                const bool folder = !pattern->ofFolders() && fs::is_directory(folder_ / text, error);
+                const bool folder = !pattern.ofFolders() && fs::is_directory(folder_ / text, error);
                 return at(asset.mesh_place, "mesh " + inQuotes(text) + " matches no " +
-                                                (pattern->ofFolders() ? "folder" : "file") + " in " +
+                                                (pattern.ofFolders() ? "folder" : "file") + " in " +
                                                 quotedPath(folder_) +
                                                 (folder ? "; it is a folder: append / to bake it as a level"
                                                         : "; correct it, or set optional = true"));
@@ -204,7 +205,7 @@ class Expander {
                     meshes.push_back(mesh);
                 }
             }
-            if (pattern->wild()) {
+            if (pattern.wild()) {
                 for (const std::string& folder : found->folders) {
                     result_.folders.push_back(folder.empty() ? folder_ : folder_ / folder);
                 }

@@ -376,7 +376,7 @@ Result<void> writeRecipeStamp(const fs::path& path, const std::vector<AssetResul
     for (const AssetResult& asset : assets) {
         text += asset.hash + "  " + cleanUtf8(asset.job.output) + "\n";
     }
-    return writeFile(path, std::as_bytes(std::span(text)));
+    return writeText(path, text);
 }
 
 }  // namespace relief

@@ -161,11 +161,10 @@ std::string bakeText(const BakeResult& result, const std::string& output, std::s
     for (std::size_t i = 0; i < baked.collider.maps.size(); ++i) {
         const DepthMap& map = baked.collider.maps[i];
         const MapReport& report = baked.report.maps[i];
-        rows.push_back(
-            {std::to_string(i), mapFormatName(map.format), projectionText(map), keepsText(map), sizeText(map),
-             bytesText(map.texelBytes()),
-             map.format == MapFormat::kPatches ? "-" : shareText(BakedMapReport{.baked = report}.coverage()),
-             toString(report.spec)});
+        rows.push_back({std::to_string(i), mapFormatName(map.format), projectionText(map), keepsText(map),
+                        sizeText(map), bytesText(map.texelBytes()),
+                        map.format == MapFormat::kPatches ? "-" : shareText(report.coverage()),
+                        toString(report.spec)});
     }
     text += table(rows);
     const BakeTimes& times = result.times;
@@ -178,11 +177,6 @@ std::string bakeText(const BakeResult& result, const std::string& output, std::s
     }
     return text + (output == "-" ? "standard output" : quotedPath(output)) + ": " + bytesText(file_size) +
            "\n";
-}
-
-void fields(FieldVisitor& visit, const BakedMapReport& report) {
-    fields(visit, report.map);
-    visit("coverage", report.coverage(), {"Fraction of the texels that store a surface", {}, kShareRange});
 }
 
 void fields(FieldVisitor& visit, const PatchesReport& report) {
@@ -227,9 +221,20 @@ void folderFields(FieldVisitor& visit, const std::vector<std::string>& removed, 
     visit("warnings", warnings, {"Warnings, one line each"});
 }
 
-void fields(FieldVisitor& visit, const ColliderReport<BakedMapReport>& report) {
-    colliderFields(visit, report.collider, report.info, report.maps, report.animated);
+namespace {
+
+struct BakedMapReport {
+    ColliderMapReport map = {};
+    MapReport baked = {};
+};
+
+void fields(FieldVisitor& visit, const BakedMapReport& report) {
+    fields(visit, report.map);
+    visit("coverage", report.baked.coverage(),
+          {"Fraction of the texels that store a surface", {}, kShareRange});
 }
+
+}  // namespace
 
 void fields(FieldVisitor& visit, const BakeJson& report) {
     const BakeResult& result = report.result;
@@ -237,16 +242,20 @@ void fields(FieldVisitor& visit, const BakeJson& report) {
     const BakeOptions& options = result.settings.bake;
     const TriangleMesh& mesh = *result.mesh.mesh;
     const Baked& baked = result.baked;
-    fields(visit, report.collider());
+    std::vector<BakedMapReport> maps;
+    for (const ColliderMapReport& map : mapReports(baked.collider, report.info)) {
+        maps.push_back({map, baked.report.maps[map.index]});
+    }
+    colliderFields(visit, baked.collider, report.info, maps, result.animated ? &*result.animated : nullptr);
     const auto settings = [&](FieldVisitor& visit_setting) {
         const MapSource source = result.settings.source;
-        std::vector<std::string> maps;
+        std::vector<std::string> specs;
         for (const MapReport& map : baked.report.maps) {
-            maps.push_back(toString(map.spec));
+            specs.push_back(toString(map.spec));
         }
         visit_setting("mesh", request.mesh, {"Mesh, as on the command line"});
         visit_setting("output", report.output, {"--output, as on the command line"});
-        visit_setting("maps", maps, {"Baked maps, in the syntax of --map"});
+        visit_setting("maps", specs, {"Baked maps, in the syntax of --map"});
         visit_setting("resolution",
                       onlyIf(source == MapSource::kMaps || source == MapSource::kPaper, options.resolution),
                       {"--resolution; null where it has no effect", "texels"});
@@ -277,8 +286,7 @@ void fields(FieldVisitor& visit, const BakeJson& report) {
               ? std::optional(PartsReport{*result.part_accuracy, result.parts, baked.collider})
               : std::nullopt,
           {"Accuracy of each part of the mesh relative to its size; null if the bake was not measured or the "
-           "mesh has one "
-           "part"});
+           "mesh has one part"});
     visit("closed_holes", mesh.closed_holes, {"Holes of the mesh that were closed"});
     visit("cap_triangles", mesh.cap_triangles,
           {"Triangles added to close holes, for the rims of shells, and for the ground below terrains"});

@@ -22,23 +22,6 @@ namespace relief {
 
 // --- The same data as fields.
 
-struct BakedMapReport {
-    ColliderMapReport map = {};
-    MapReport baked = {};
-
-    /// Fraction of the texels that store a surface.
-    [[nodiscard]] double coverage() const {
-        return static_cast<double>(baked.covered) / static_cast<double>(baked.texels);
-    }
-};
-
-void fields(FieldVisitor& visit, const BakedMapReport& report);
-void fields(FieldVisitor& visit, const ColliderReport<BakedMapReport>& report);
-
-void fields(FieldVisitor& visit, const PatchesReport& report);
-
-void fields(FieldVisitor& visit, const RepairReport& care);
-
 void fields(FieldVisitor& visit, const InputFile& input);
 
 /// The report of `relief bake --json`.
@@ -47,16 +30,6 @@ struct BakeJson {
     const ContainerInfo& info = kNone<ContainerInfo>;
     std::string output = {};     ///< as on the command line
     std::uint32_t compress = 0;  ///< zstd level
-
-    [[nodiscard]] ColliderReport<BakedMapReport> collider() const {
-        const Baked& baked = result.baked;
-        ColliderReport<BakedMapReport> report{
-            baked.collider, info, {}, result.animated ? &*result.animated : nullptr};
-        for (std::size_t i = 0; i < baked.collider.maps.size(); ++i) {
-            report.maps.push_back({{i, baked.collider.maps[i], info.payloads[i]}, baked.report.maps[i]});
-        }
-        return report;
-    }
 };
 
 void fields(FieldVisitor& visit, const BakeJson& report);

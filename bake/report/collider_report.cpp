@@ -122,11 +122,21 @@ void colliderFields(FieldVisitor& visit, const Collider& collider, const Contain
           {"Animation; null for a static mesh"});
     visit("provenance", collider.provenance, {"Origin of the collider"});
 }
-void fields(FieldVisitor& visit, const ColliderReport<ColliderMapReport>& report) {
+
+std::vector<ColliderMapReport> mapReports(const Collider& collider, const ContainerInfo& info) {
+    std::vector<ColliderMapReport> reports;
+    for (std::size_t i = 0; i < collider.maps.size(); ++i) {
+        reports.push_back({i, collider.maps[i], info.payloads[i]});
+    }
+    return reports;
+}
+
+void fields(FieldVisitor& visit, const ColliderJson& report) {
     visit("file", report.file,
           {.help = "File name without its folder, if there are several files",
            .left_out = report.file.empty()});
-    colliderFields(visit, report.collider, report.info, report.maps, report.animated);
+    colliderFields(visit, report.collider, report.info, mapReports(report.collider, report.info),
+                   report.animated);
 }
 
 }  // namespace relief

@@ -4,7 +4,6 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "bake/ground/ground_bake.h"
 #include "bake/ground/ground_check.h"
@@ -16,8 +15,6 @@ namespace relief {
 
 /// Returns one line. \param output  the file or folder, for the message.
 [[nodiscard]] std::string groundText(const GroundResult& result, const std::string& output, double ms);
-
-void fields(FieldVisitor& visit, const GroundTile& tile);
 
 /// `relief bake --heights --json`
 struct GroundJson {
@@ -31,10 +28,6 @@ void fields(FieldVisitor& visit, const GroundJson& report);
 
 /// Returns the report as text. \param name  of the collider or world.
 [[nodiscard]] std::string groundCheckText(const GroundAccuracy& accuracy, const std::string& name);
-
-void fields(FieldVisitor& visit, const GroundNear& near);
-
-void fields(FieldVisitor& visit, const GroundWorstPlace& place);
 
 /// `relief check --heights --json`
 struct GroundCheckJson {

@@ -29,11 +29,12 @@ std::string trustText(const Inspection& inspection) {
                       : "Usable: the description of the maps, and maps" + maps + ".\n";
 }
 
-}  // namespace
-
+/// Returns "sound", "suspicious" or "damaged".
 std::string_view inspectionVerdict(const Inspection& inspection) {
     return inspection.damaged() ? "damaged" : inspection.issues.empty() ? "sound" : "suspicious";
 }
+
+}  // namespace
 
 std::string inspectionText(const Inspection& inspection, const std::string& name) {
     std::string text = name + ": ";
@@ -70,14 +71,6 @@ std::string inspectionText(const Inspection& inspection, const std::string& name
     return text + trustText(inspection);
 }
 
-std::vector<MapInspectionReport> InspectionReport::maps() const {
-    std::vector<MapInspectionReport> rows;
-    for (std::size_t i = 0; i < inspection.maps.size(); ++i) {
-        rows.push_back({i, inspection.maps[i]});
-    }
-    return rows;
-}
-
 void fields(FieldVisitor& visit, const Issue& issue) {
     visit("code", issue.id(),
           {.help = "Code of the issue; codes keep their meaning", .pattern = "^RLF-[0-9]{4}$"});
@@ -87,6 +80,13 @@ void fields(FieldVisitor& visit, const Issue& issue) {
     visit("offset", issue.offset, {"Byte offset in the file; null if not applicable"});
     visit("message", issue.message, {"Message in one line"});
 }
+
+namespace {
+
+struct MapInspectionReport {
+    std::size_t index = 0;
+    const MapInspection& map = kNone<MapInspection>;
+};
 
 void fields(FieldVisitor& visit, const MapInspectionReport& report) {
     const std::optional<DepthMap>& frame = report.map.frame;
@@ -107,8 +107,14 @@ void fields(FieldVisitor& visit, const MapInspectionReport& report) {
           {"Fraction of the texels that store a surface; null if they could not be read", {}, kShareRange});
 }
 
+}  // namespace
+
 void fields(FieldVisitor& visit, const InspectionReport& report) {
     const Inspection& all = report.inspection;
+    std::vector<MapInspectionReport> maps;
+    for (std::size_t i = 0; i < all.maps.size(); ++i) {
+        maps.push_back({i, all.maps[i]});
+    }
     visit("file", report.name, {"File name without its folder, or standard input"});
     visit("file_bytes", all.file_size, {"Size of the file", "bytes"});
     visit("version", onlyIf(all.major != 0, std::to_string(all.major) + "." + std::to_string(all.minor)),
@@ -123,7 +129,7 @@ void fields(FieldVisitor& visit, const InspectionReport& report) {
     visit("header", all.header, {"State of the first 64 bytes"});
     visit("metadata", all.metadata, {"State of the description of the maps"});
     visit("issues", all.issues, {"Issues, in the order of the file"});
-    visit("maps", report.maps(), {"Maps listed in the metadata"});
+    visit("maps", maps, {"Maps listed in the metadata"});
 }
 
 }  // namespace relief

@@ -10,30 +10,16 @@
 
 namespace relief {
 
-/// Returns "sound", "suspicious" or "damaged".
-[[nodiscard]] std::string_view inspectionVerdict(const Inspection& inspection);
-
 /// Returns a line for the verdict, a line per issue, a table of the maps, and the intact sections.
 /// \param name  of the file, as shown to people
 [[nodiscard]] std::string inspectionText(const Inspection& inspection, const std::string& name);
 
 // --- The same data as fields.
 
-void fields(FieldVisitor& visit, const Issue& issue);
-
-struct MapInspectionReport {
-    std::size_t index = 0;
-    const MapInspection& map = kNone<MapInspection>;
-};
-
-void fields(FieldVisitor& visit, const MapInspectionReport& report);
-
 /// The report of `relief check FILE --json`.
 struct InspectionReport {
     const Inspection& inspection = kNone<Inspection>;
     std::string name;  ///< of the file
-
-    [[nodiscard]] std::vector<MapInspectionReport> maps() const;
 };
 
 void fields(FieldVisitor& visit, const InspectionReport& report);

@@ -44,6 +44,13 @@ Result<void> checkOlderLog(const std::string& path) {
                                        "give --events another file");
 }
 
+void shardField(FieldVisitor& visit, const std::optional<Shard>& shard) {
+    visit("shard",
+          shard ? std::optional(std::to_string(shard->index) + "/" + std::to_string(shard->count))
+                : std::nullopt,
+          {.help = "--shard; null without it", .pattern = "^[0-9]+/[0-9]+$"});
+}
+
 }  // namespace
 
 std::size_t RecipeCounts::all() const {
@@ -81,11 +88,6 @@ std::string recipeSummary(const RecipeCounts& counts, double ms) {
     add(AssetState::kFailed, "failed");
     add(AssetState::kCanceled, "not baked");
     return assets + text + "; " + bytesText(counts.bytes) + "; " + seconds(ms);
-}
-
-std::optional<std::string> shardText(const std::optional<Shard>& shard) {
-    return shard ? std::optional(std::to_string(shard->index) + "/" + std::to_string(shard->count))
-                 : std::nullopt;
 }
 
 std::vector<AssetReport> AssetReport::kinds() {
@@ -265,7 +267,7 @@ void fields(FieldVisitor& visit, const RecipeCounts& counts) {
 void fields(FieldVisitor& visit, const RecipeJson& report) {
     visit("recipe", report.recipe, {"Recipe, as on the command line"});
     visit("output", report.output, {"Output folder"});
-    visit("shard", shardText(report.shard), kShardField);
+    shardField(visit, report.shard);
     visit("counts", report.counts, {"Assets by state"});
     visit("ms", report.ms, {"Time of the whole run", "ms", kFromZero});
     visit("assets", report.assets, {"Assets, in the order of the recipe"});
@@ -276,7 +278,7 @@ void fields(FieldVisitor& visit, const RecipeStart& start) {
     toolField(visit);
     visit("recipe", start.recipe, {"Recipe, as on the command line"});
     visit("assets", start.assets, {"Number of assets"});
-    visit("shard", shardText(start.shard), kShardField);
+    shardField(visit, start.shard);
     visit("jobs", start.jobs, {"Assets baked at the same time", {}, kFromOne});
 }
 

@@ -45,10 +45,6 @@ void fields(FieldVisitor& visit, const AssetReport& report);
 
 void fields(FieldVisitor& visit, const RecipeCounts& counts);
 
-/// Returns "2/4"; null without --shard.
-[[nodiscard]] std::optional<std::string> shardText(const std::optional<Shard>& shard);
-inline constexpr FieldInfo kShardField{.help = "--shard; null without it", .pattern = "^[0-9]+/[0-9]+$"};
-
 /// The report of `relief bake --recipe --json`.
 struct RecipeJson {
     std::string recipe;

@@ -15,11 +15,43 @@ std::string wrongText(const WorldColliderResult& collider) {
     return collider.wrong ? percentText(collider.wrong->total()) : "-";
 }
 
+std::uint64_t gpuBytesOf(const WorldField& field) {
+    std::uint64_t bytes = 0;
+    for (const Collider& collider : field.colliders()) {
+        bytes += collider.texelBytes();
+    }
+    return bytes;
+}
+
+/// Returns advice in one sentence; empty if the body is good anyway.
+std::string adviceFor(const WorldField& field, const BodyAccuracy& body, WorldCause cause) {
+    if (body.wrong.total() <= kGoodPercent) {
+        return "";
+    }
+    switch (cause) {
+        case WorldCause::kMoved:
+            return "its pose in the world differs from the level: bake the level again";
+        case WorldCause::kPrecision:
+            return "floats are coarse this far from the origin of its mesh: move the mesh to the origin, and "
+                   "its node back";
+        case WorldCause::kTexel:
+            return "its details are finer than the texels: bake with --budget " +
+                   bytesWord(roundBudget(2 * gpuBytesOf(field))) +
+                   ", which makes them about 0.7 times as wide";
+        case WorldCause::kMesh:
+            break;
+    }
+    return "the error exceeds the texels: its mesh may be open or intersect itself there; repair it, or set "
+           "its kind with --as " +
+           shellQuoted((body.node.empty() ? body.mesh : body.node) + "=solid") + ", shell or terrain";
+}
+
 /// Returns each distinct advice once, after the bodies that it applies to.
 std::string adviceLines(const WorldField& field, const WorldAccuracy& accuracy) {
     std::vector<std::pair<std::string, std::string>> lines;  // advice, then bodies
     for (std::size_t i = 0; i < accuracy.places.size(); ++i) {
-        const std::string advice = WorldPlaceReport{&field, accuracy, i}.advice();
+        const std::string advice =
+            adviceFor(field, accuracy.bodies[accuracy.worst[i]], accuracy.places[i].cause);
         if (advice.empty()) {
             continue;
         }
@@ -71,8 +103,7 @@ std::string worldBakeText(const WorldBakeResult& result, const std::string& fold
     return text;
 }
 
-void fields(FieldVisitor& visit, const WorldColliderReport& report) {
-    const WorldColliderResult& c = report.collider;
+void fields(FieldVisitor& visit, const WorldColliderResult& c) {
     const bool failed = c.state == WorldColliderState::kFailed;
     visit("mesh", c.mesh, {"Name of its mesh in the level"});
     visit("tile", c.tile, {"Position among the tiles of its mesh, such as 0-1-0; empty for the whole mesh"});
@@ -90,8 +121,7 @@ void fields(FieldVisitor& visit, const WorldColliderReport& report) {
     visit("hash", c.hash, {.help = "XXH3-128 of the container; empty if it failed", .pattern = kHashPattern});
     visit("wrong_percent", c.wrong ? std::optional(c.wrong->total()) : std::nullopt,
           {"Points near the mesh's surface that are on the wrong side; null unless it was baked "
-           "and "
-           "measured",
+           "and measured",
            "%", kPercentRange});
     visit("verdict", c.verdict, {"Summary; null unless it was baked and measured"});
     visit("ignored_parts", c.ignored,
@@ -118,15 +148,7 @@ void fields(FieldVisitor& visit, const WorldBakeJson& report) {
     visit("up_to_date", r.countOf(WorldColliderState::kUpToDate), {"Colliders that were already up to date"});
     visit("failed", r.countOf(WorldColliderState::kFailed), {"Colliders that failed"});
     folderFields(visit, r.removed, report.ms, r.inputs, r.warnings);
-    visit("colliders", viewsOf<WorldColliderReport>(r.colliders), {"Colliders, in the order of the world"});
-}
-
-std::uint64_t gpuBytesOf(const WorldField& field) {
-    std::uint64_t bytes = 0;
-    for (const Collider& collider : field.colliders()) {
-        bytes += collider.texelBytes();
-    }
-    return bytes;
+    visit("colliders", r.colliders, {"Colliders, in the order of the world"});
 }
 
 Verdict verdictOf(const WorldAccuracy& accuracy, const std::string& unit) {
@@ -135,28 +157,6 @@ Verdict verdictOf(const WorldAccuracy& accuracy, const std::string& unit) {
     const std::string but = countText(lost ? accuracy.lost.size() : accuracy.coarse, "mesh", "meshes") +
                             (lost ? " lost parts" : " with coarse parts");
     return verdictOf(accuracy.all.total(), grade, but, accuracy.ignored, unit);
-}
-
-std::string WorldPlaceReport::advice() const {
-    if (body().wrong.total() <= kGoodPercent) {
-        return "";
-    }
-    switch (place().cause) {
-        case WorldCause::kMoved:
-            return "its pose in the world differs from the level: bake the level again";
-        case WorldCause::kPrecision:
-            return "floats are coarse this far from the origin of its mesh: move the mesh to the origin, and "
-                   "its node back";
-        case WorldCause::kTexel:
-            return "its details are finer than the texels: bake with --budget " +
-                   bytesWord(roundBudget(2 * gpuBytesOf(*field))) +
-                   ", which makes them about 0.7 times as wide";
-        case WorldCause::kMesh:
-            break;
-    }
-    return "the error exceeds the texels: its mesh may be open or intersect itself there; repair it, or set "
-           "its kind with --as " +
-           shellQuoted((body().node.empty() ? body().mesh : body().node) + "=solid") + ", shell or terrain";
 }
 
 std::string worldCheckText(const WorldField& field, const std::string& name, const WorldAccuracy* accuracy) {
@@ -195,28 +195,6 @@ std::string worldCheckText(const WorldField& field, const std::string& name, con
     return text + "\n" + table(rows) + adviceLines(field, *accuracy);
 }
 
-void fields(FieldVisitor& visit, const WorldPlaceReport& report) {
-    const bool schema = report.field == nullptr;
-    const WorldPlace& place = schema ? kNone<WorldPlace> : report.place();
-    const BodyAccuracy& body = schema ? kNone<BodyAccuracy> : report.body();
-    visit("body", schema ? std::size_t{0} : report.accuracy.worst[report.number],
-          {"Index of the body in bodies"});
-    visit("node", body.node, {"Name of its node in the level"});
-    visit("mesh", body.mesh, {"Name of its mesh"});
-    visit("wrong_percent", body.wrong.total(),
-          {"Points near it that are on the wrong side", "%", kPercentRange});
-    visit("position", body.position, {"A typical point on the wrong side, world space", "[x, y, z]"});
-    visit("normal", place.normal, {"Normal of the nearest surface, outwards", "[x, y, z]"});
-    visit("distance", place.distance, {"Distance from that surface", "world units", kFromZero});
-    visit("texel", place.texel,
-          {"Side of the texels of the body that decides there; 0 if none decides", "world units", kFromZero});
-    visit("cause", place.cause,
-          {"moved: the node has another pose in the world; texel: the point is less than 1.5 texels from the "
-           "surface; mesh: it is farther away"});
-    visit("advice", schema ? std::string() : report.advice(),
-          {"Advice in one sentence; empty if at most 1 % is wrong"});
-}
-
 void fields(FieldVisitor& visit, const LostParts& parts) {
     visit("mesh", parts.mesh, {"Name of the mesh"});
     visit("lost", parts.lost,
@@ -236,6 +214,47 @@ void fields(FieldVisitor& visit, const BodyAccuracy& body) {
           {"A typical point on the wrong side, world space; the body's position if there is none",
            "[x, y, z]"});
 }
+
+namespace {
+
+/// One of the worst places.
+struct WorldPlaceReport {
+    std::size_t number = 0;  ///< index of the body
+    const BodyAccuracy& body = kNone<BodyAccuracy>;
+    const WorldPlace& place = kNone<WorldPlace>;
+    std::string advice = {};
+};
+
+void fields(FieldVisitor& visit, const WorldPlaceReport& report) {
+    const auto& [number, body, place, advice] = report;
+    visit("body", number, {"Index of the body in bodies"});
+    visit("node", body.node, {"Name of its node in the level"});
+    visit("mesh", body.mesh, {"Name of its mesh"});
+    visit("wrong_percent", body.wrong.total(),
+          {"Points near it that are on the wrong side", "%", kPercentRange});
+    visit("position", body.position, {"A typical point on the wrong side, world space", "[x, y, z]"});
+    visit("normal", place.normal, {"Normal of the nearest surface, outwards", "[x, y, z]"});
+    visit("distance", place.distance, {"Distance from that surface", "world units", kFromZero});
+    visit("texel", place.texel,
+          {"Side of the texels of the body that decides there; 0 if none decides", "world units", kFromZero});
+    visit("cause", place.cause,
+          {"moved: the node has another pose in the world; texel: the point is less than 1.5 texels from the "
+           "surface; mesh: it is farther away"});
+    visit("advice", advice, {"Advice in one sentence; empty if at most 1 % is wrong"});
+}
+
+std::vector<WorldPlaceReport> placesOf(const WorldCheckJson& report) {
+    std::vector<WorldPlaceReport> places;
+    for (std::size_t i = 0; report.accuracy != nullptr && i < report.accuracy->places.size(); ++i) {
+        const std::size_t number = report.accuracy->worst[i];
+        const BodyAccuracy& body = report.accuracy->bodies[number];
+        const WorldPlace& place = report.accuracy->places[i];
+        places.push_back({number, body, place, adviceFor(*report.field, body, place.cause)});
+    }
+    return places;
+}
+
+}  // namespace
 
 void fields(FieldVisitor& visit, const WorldCheckJson& report) {
     const World& world = report.field != nullptr ? report.field->world() : kNone<World>;

@@ -20,12 +20,6 @@ namespace relief {
 [[nodiscard]] std::string worldBakeText(const WorldBakeResult& result, const std::string& folder, double ms,
                                         bool verbose);
 
-struct WorldColliderReport {
-    const WorldColliderResult& collider = kNone<WorldColliderResult>;
-};
-
-void fields(FieldVisitor& visit, const WorldColliderReport& report);
-
 /// The report of `relief bake --world --json`.
 struct WorldBakeJson {
     const WorldBakeResult& result = kNone<WorldBakeResult>;
@@ -44,25 +38,6 @@ void fields(FieldVisitor& visit, const WorldBakeJson& report);
 [[nodiscard]] std::string worldCheckText(const WorldField& field, const std::string& name,
                                          const WorldAccuracy* accuracy);
 
-[[nodiscard]] std::uint64_t gpuBytesOf(const WorldField& field);
-
-/// One of the worst places, and advice.
-struct WorldPlaceReport {
-    const WorldField* field = nullptr;
-    const WorldAccuracy& accuracy = kNone<WorldAccuracy>;
-    std::size_t number = 0;  ///< index in accuracy.places
-
-    [[nodiscard]] const BodyAccuracy& body() const { return accuracy.bodies[accuracy.worst[number]]; }
-    [[nodiscard]] const WorldPlace& place() const { return accuracy.places[number]; }
-    /// Returns one sentence; empty if the body is good anyway.
-    [[nodiscard]] std::string advice() const;
-};
-
-void fields(FieldVisitor& visit, const WorldPlaceReport& report);
-
-void fields(FieldVisitor& visit, const BodyAccuracy& body);
-void fields(FieldVisitor& visit, const LostParts& parts);
-
 /// The report of `relief check world.json --json`.
 struct WorldCheckJson {
     std::string file{};
@@ -70,14 +45,6 @@ struct WorldCheckJson {
     const WorldAccuracy* accuracy = nullptr;  ///< null without --mesh
     std::optional<float> max_error{};
 };
-
-[[nodiscard]] inline std::vector<WorldPlaceReport> placesOf(const WorldCheckJson& report) {
-    std::vector<WorldPlaceReport> places;
-    for (std::size_t i = 0; report.accuracy != nullptr && i < report.accuracy->places.size(); ++i) {
-        places.push_back({report.field, *report.accuracy, i});
-    }
-    return places;
-}
 
 void fields(FieldVisitor& visit, const WorldCheckJson& report);
 

@@ -22,6 +22,61 @@ std::string sideText(double inside_percent) {
                                  : percentText(inside_percent) + " of them classified as inside";
 }
 
+/// Returns "0.41 m across: 4.5 % of the wrong points, 86 % of them classified as inside".
+std::string placeText(const WorstPlace& place, const std::string& unit) {
+    return lengthText(place.size(), unit) + " across: " + percentText(place.contribution_percent) +
+           " of the wrong points, " + sideText(place.false_inside_percent);
+}
+
+/// Returns "map 2 (front-back along 0/0/-1)", or "no map" for −1.
+std::string mapWords(const Collider& collider, int map) {
+    if (map < 0) {
+        return "no map";
+    }
+    const DepthMap& of = collider.maps[static_cast<std::size_t>(map)];
+    const std::string name = "map " + std::to_string(map) + " (" + mapFormatName(of.format);
+    const auto row = [&](int i) { return glm::dvec3(of.object_to_map.row[i]); };
+    if (of.projection() == Projection::kOrthographic) {
+        const glm::dvec3 d = row(2) / glm::length(row(2)) + 0.0;
+        return name + " along " + roughly(d.x) + "/" + roughly(d.y) + "/" + roughly(d.z) + ")";
+    }
+    if (of.projection() == Projection::kLocal) {
+        return name + ")";
+    }
+    // The rows of a cube are parallel to the axes.
+    glm::vec3 center;
+    for (int i = 0; i < 3; ++i) {
+        center[i] = -of.object_to_map.row[i].w / of.object_to_map.row[i][i] + 0.0F;
+    }
+    return name + " around " + positionText(center) + ")";
+}
+
+/// Returns "below the texel size: map 2 (…) decides, whose texels are 0.02 wide".
+std::string causeText(const WorstPlace& place, const Collider& collider) {
+    const std::string map = mapWords(collider, place.map);
+    const std::string decides = place.map < 0 ? "no map votes" : map + " decides";
+    const std::string texels = "texels are " + lengthText(place.texel, collider.unit) + " wide";
+    switch (place.cause) {
+        case WrongCause::kSheet:
+            return "a sheet: the surface has no inside here; " + decides;
+        case WrongCause::kOpen:
+            return "an open mesh: " + (place.map < 0 ? "a map" : map) +
+                   " looks into the object through an opening";
+        case WrongCause::kUnseen:
+            return "unseen by any map; " + decides;
+        case WrongCause::kSilhouette:
+            return "behind a silhouette: " + decides + ", and another part occludes the surface";
+        case WrongCause::kTexel:
+            break;
+    }
+    if (place.map >= 0 &&
+        collider.maps[static_cast<std::size_t>(place.map)].projection() == Projection::kLocal) {
+        return "finer than the patches: " + decides + ", whose heights are " +
+               lengthText(place.texel, collider.unit) + " apart here";
+    }
+    return "below the texel size: " + decides + ", whose " + texels;
+}
+
 }  // namespace
 
 std::string gradeOf(double wrong_percent) {
@@ -101,58 +156,6 @@ std::string proofText(const DepthProof& proof, double longest_side, const std::s
            (proof.deepest > 0.0 ? "The deepest error found is " + length(proof.deepest) + " from them, at " +
                                       positionText(proof.place) + ".\n"
                                 : "");
-}
-
-std::string placeText(const WorstPlace& place, const std::string& unit) {
-    return lengthText(place.size(), unit) + " across: " + percentText(place.contribution_percent) +
-           " of the wrong points, " + sideText(place.false_inside_percent);
-}
-
-std::string mapWords(const Collider& collider, int map) {
-    if (map < 0) {
-        return "no map";
-    }
-    const DepthMap& of = collider.maps[static_cast<std::size_t>(map)];
-    const std::string name = "map " + std::to_string(map) + " (" + mapFormatName(of.format);
-    const auto row = [&](int i) { return glm::dvec3(of.object_to_map.row[i]); };
-    if (of.projection() == Projection::kOrthographic) {
-        const glm::dvec3 d = row(2) / glm::length(row(2)) + 0.0;
-        return name + " along " + roughly(d.x) + "/" + roughly(d.y) + "/" + roughly(d.z) + ")";
-    }
-    if (of.projection() == Projection::kLocal) {
-        return name + ")";
-    }
-    // The rows of a cube are parallel to the axes.
-    glm::vec3 center;
-    for (int i = 0; i < 3; ++i) {
-        center[i] = -of.object_to_map.row[i].w / of.object_to_map.row[i][i] + 0.0F;
-    }
-    return name + " around " + positionText(center) + ")";
-}
-
-std::string causeText(const WorstPlace& place, const Collider& collider) {
-    const std::string map = mapWords(collider, place.map);
-    const std::string decides = place.map < 0 ? "no map votes" : map + " decides";
-    const std::string texels = "texels are " + lengthText(place.texel, collider.unit) + " wide";
-    switch (place.cause) {
-        case WrongCause::kSheet:
-            return "a sheet: the surface has no inside here; " + decides;
-        case WrongCause::kOpen:
-            return "an open mesh: " + (place.map < 0 ? "a map" : map) +
-                   " looks into the object through an opening";
-        case WrongCause::kUnseen:
-            return "unseen by any map; " + decides;
-        case WrongCause::kSilhouette:
-            return "behind a silhouette: " + decides + ", and another part occludes the surface";
-        case WrongCause::kTexel:
-            break;
-    }
-    if (place.map >= 0 &&
-        collider.maps[static_cast<std::size_t>(place.map)].projection() == Projection::kLocal) {
-        return "finer than the patches: " + decides + ", whose heights are " +
-               lengthText(place.texel, collider.unit) + " apart here";
-    }
-    return "below the texel size: " + decides + ", whose " + texels;
 }
 
 std::string placesText(std::span<const WorstPlace> places, const Collider& collider) {

@@ -37,12 +37,6 @@ namespace relief {
 /// \param longest_side  of the mesh, object units
 [[nodiscard]] std::string proofText(const DepthProof& proof, double longest_side, const std::string& unit);
 
-/// Returns "map 2 (front-back along 0/0/-1)", or "no map" for −1.
-[[nodiscard]] std::string mapWords(const Collider& collider, int map);
-/// Returns "0.41 m across: 4.5 % of the wrong points, 86 % of them classified as inside".
-[[nodiscard]] std::string placeText(const WorstPlace& place, const std::string& unit);
-/// Returns "below the texel size: map 2 (…) decides, whose texels are 0.02 wide".
-[[nodiscard]] std::string causeText(const WorstPlace& place, const Collider& collider);
 /// Returns a few lines per place; "" without places.
 [[nodiscard]] std::string placesText(std::span<const WorstPlace> places, const Collider& collider);
 

@@ -16,9 +16,9 @@ namespace {
 
 constexpr std::size_t kShownParts = 5;
 constexpr std::size_t kShownGroups = 5;
+constexpr std::size_t kListedPartsMax = 100;
 /// A part is kept by texels of this fraction of its middle extent: three across a pillar.
 constexpr double kTexelsAcross = 1.0 / 3.0;
-/// Maximum budget suggested for a part.
 constexpr double kBudgetAdvisedMax = 1e9;
 /// Factor on the bytes of patches that is suggested for a lost part.
 constexpr double kMorePatches = 4.0;
@@ -102,6 +102,40 @@ std::string groupsText(const PartsAccuracy& accuracy, bool materials, const std:
     return text.empty() ? "" : (materials ? "The worst materials:\n" : "The worst nodes:\n") + text;
 }
 
+/// Returns "pillar_17 (stone)", "part 17 of wood" or "part 17". \param index  into SurfaceParts::parts; the text counts
+/// from 1.
+std::string partName(const SurfacePart& part, std::size_t index) {
+    const std::string number = "part " + std::to_string(index + 1);
+    const std::string node = cleanUtf8(part.node, kNameBytesMax);
+    const std::string material = cleanUtf8(part.material, kNameBytesMax);
+    if (node.empty()) {
+        return material.empty() ? number : number + " of " + material;
+    }
+    return material.empty() ? node : node + " (" + material + ")";
+}
+
+/// Returns the side of the finest texels at the centre of a part, or of patches in its bounds, object units; 0 without
+/// maps.
+double partTexel(const SurfacePart& part, const Collider& collider) {
+    double texel = 0.0;
+    for (const DepthMap& map : collider.maps) {
+        const double here = map.projection() == Projection::kLocal ? finestIn(part.bounds, map)
+                                                                   : texelAt(map, part.bounds.center());
+        texel = here > 0.0 && (texel == 0.0 || here < texel) ? here : texel;
+    }
+    return texel;
+}
+
+/// Returns "9 m long at (1, 2, 3): 48 % of the points near it are on the wrong side, classified as outside; …", then
+/// partCure().
+std::string partText(const PartAccuracy& accuracy, const SurfaceParts& parts, const Collider& collider) {
+    const SurfacePart& part = parts.parts[accuracy.part];
+    const std::string cure = partCure(part, collider);
+    return lengthText(part.size(), collider.unit) + " long at " + positionText(part.bounds.center()) + ": " +
+           percentText(accuracy.wrong.total()) + " of the points near it are on the wrong side, " +
+           partSideText(accuracy) + (cure.empty() ? "" : "; " + cure);
+}
+
 }  // namespace
 
 std::string ignoredText(const IgnoredParts& ignored, const std::string& unit) {
@@ -143,26 +177,6 @@ Verdict verdictOf(double wrong_percent, const PartsAccuracy& accuracy, const std
         accuracy.ignored, unit);
 }
 
-std::string partName(const SurfacePart& part, std::size_t index) {
-    const std::string number = "part " + std::to_string(index + 1);
-    const std::string node = cleanUtf8(part.node, kNameBytesMax);
-    const std::string material = cleanUtf8(part.material, kNameBytesMax);
-    if (node.empty()) {
-        return material.empty() ? number : number + " of " + material;
-    }
-    return material.empty() ? node : node + " (" + material + ")";
-}
-
-double partTexel(const SurfacePart& part, const Collider& collider) {
-    double texel = 0.0;
-    for (const DepthMap& map : collider.maps) {
-        const double here = map.projection() == Projection::kLocal ? finestIn(part.bounds, map)
-                                                                   : texelAt(map, part.bounds.center());
-        texel = here > 0.0 && (texel == 0.0 || here < texel) ? here : texel;
-    }
-    return texel;
-}
-
 std::string partCure(const SurfacePart& part, const Collider& collider) {
     std::string cure;
     if (part.right_thickness < part.thickness) {
@@ -199,14 +213,6 @@ std::string partCure(const SurfacePart& part, const Collider& collider) {
     return cure + (part.node.empty() ? "a separate bake of this part" : "a separate bake of its node");
 }
 
-std::string partText(const PartAccuracy& accuracy, const SurfaceParts& parts, const Collider& collider) {
-    const SurfacePart& part = parts.parts[accuracy.part];
-    const std::string cure = partCure(part, collider);
-    return lengthText(part.size(), collider.unit) + " long at " + positionText(part.bounds.center()) + ": " +
-           percentText(accuracy.wrong.total()) + " of the points near it are on the wrong side, " +
-           partSideText(accuracy) + (cure.empty() ? "" : "; " + cure);
-}
-
 std::string partsText(const PartsAccuracy& accuracy, const SurfaceParts& parts, const Collider& collider) {
     std::string text;
     std::size_t shown = 0;
@@ -230,26 +236,6 @@ std::string partsText(const PartsAccuracy& accuracy, const SurfaceParts& parts, 
                 ", do not lower the grade; --min-part LENGTH changes that\n";
     }
     return text;
-}
-
-std::vector<PartReport> PartsReport::worst() const {
-    std::vector<PartReport> rows;
-    for (const PartAccuracy& one :
-         std::span(accuracy.parts).first(std::min(accuracy.parts.size(), kListedPartsMax))) {
-        rows.push_back({one, parts.parts[one.part], collider});
-    }
-    return rows;
-}
-
-std::vector<GroupAccuracy> PartsReport::groups() const {
-    std::vector<GroupAccuracy> rows;
-    std::array<std::size_t, 2> listed{};
-    for (const GroupAccuracy& group : accuracy.groups) {
-        if (listed[group.is_material ? 1 : 0]++ < kListedPartsMax) {
-            rows.push_back(group);
-        }
-    }
-    return rows;
 }
 
 std::optional<std::string> lostPartsWarning(const PartsAccuracy& accuracy, const SurfaceParts& parts,
@@ -324,10 +310,29 @@ void fields(FieldVisitor& visit, const IgnoredParts& ignored) {
     visit("size", ignored.size, {"Longest side of the largest ignored part", "object units", kFromZero});
     visit("thickened", ignored.thickened,
           {"Parts that are thicker than in the mesh, but too small or too slightly off to lower the grade: "
-           "more than 25 % of the "
-           "points near each are wrong, most of them classified as inside"});
+           "more than 25 % of the points near each are wrong, most of them classified as inside"});
     visit("unmeasured", ignored.unmeasured, {"Parts that were not measured: the smallest of too many"});
 }
+
+void fields(FieldVisitor& visit, const GroupAccuracy& group) {
+    visit("name", group.name, {"Name in the file"});
+    visit("of", group.is_material ? "material" : "node",
+          {.help = "Owner of the name", .words = kWords<"node", "material">});
+    visit("parts", group.parts, {"Measured parts"});
+    visit("lost", group.lost, {"Lost parts"});
+    visit("size", double{group.bounds.longestSide()},
+          {"Longest side of the box of its parts", "object units", kFromZero});
+    visit("position", group.bounds.center(), {"Center of that box", "object units"});
+    fields(visit, group.wrong);
+}
+
+namespace {
+
+struct PartReport {
+    const PartAccuracy& accuracy = kNone<PartAccuracy>;
+    const SurfacePart& part = kNone<SurfacePart>;
+    const Collider& collider = kNone<Collider>;
+};
 
 void fields(FieldVisitor& visit, const PartReport& report) {
     const auto& [accuracy, part, collider] = report;
@@ -340,9 +345,7 @@ void fields(FieldVisitor& visit, const PartReport& report) {
     visit("state", accuracy.state,
           {"kept: at most 10 % of the points near it are wrong; coarse: at most 25 %; lost: more; hidden: "
            "inside other parts; minor: more, but too small to be noticed; unmeasured: not measured because "
-           "there "
-           "are too "
-           "many parts"});
+           "there are too many parts"});
     visit("size", part.size(), {"Longest side of its box", "object units", kFromZero});
     visit("position", part.bounds.center(), {"Center of its box", "object units"});
     visit("triangles", part.triangles, {"Number of triangles"});
@@ -359,17 +362,29 @@ void fields(FieldVisitor& visit, const PartReport& report) {
           {"How to keep the part; null unless coarse, lost or minor"});
 }
 
-void fields(FieldVisitor& visit, const GroupAccuracy& group) {
-    visit("name", group.name, {"Name in the file"});
-    visit("of", group.is_material ? "material" : "node",
-          {.help = "Owner of the name", .words = kWords<"node", "material">});
-    visit("parts", group.parts, {"Measured parts"});
-    visit("lost", group.lost, {"Lost parts"});
-    visit("size", double{group.bounds.longestSide()},
-          {"Longest side of the box of its parts", "object units", kFromZero});
-    visit("position", group.bounds.center(), {"Center of that box", "object units"});
-    fields(visit, group.wrong);
+/// Returns the first kListedPartsMax parts.
+std::vector<PartReport> worstOf(const PartsReport& report) {
+    const std::vector<PartAccuracy>& all = report.accuracy.parts;
+    std::vector<PartReport> rows;
+    for (const PartAccuracy& one : std::span(all).first(std::min(all.size(), kListedPartsMax))) {
+        rows.push_back({one, report.parts.parts[one.part], report.collider});
+    }
+    return rows;
 }
+
+/// Returns the first kListedPartsMax nodes, and as many materials.
+std::vector<GroupAccuracy> groupsOf(const PartsAccuracy& accuracy) {
+    std::vector<GroupAccuracy> rows;
+    std::array<std::size_t, 2> listed{};
+    for (const GroupAccuracy& group : accuracy.groups) {
+        if (listed[group.is_material ? 1 : 0]++ < kListedPartsMax) {
+            rows.push_back(group);
+        }
+    }
+    return rows;
+}
+
+}  // namespace
 
 void fields(FieldVisitor& visit, const PartsReport& report) {
     constexpr std::array<std::string_view, kPartVerdicts> kCounts = {
@@ -386,10 +401,10 @@ void fields(FieldVisitor& visit, const PartsReport& report) {
     for (std::size_t i = 0; i < kPartVerdicts; ++i) {
         visit(kWordsOf<PartVerdict>[i], accuracy.count[i], {kCounts[i]});
     }
-    visit("worst", report.worst(),
+    visit("worst", worstOf(report),
           {"At most 100 parts, the lost ones first; a part is connected, and belongs to one node and "
            "one material"});
-    visit("groups", report.groups(),
+    visit("groups", groupsOf(accuracy),
           {"The worst 100 named nodes, then the worst 100 materials, if there are "
            "several; their parts are weighted by area"});
 }

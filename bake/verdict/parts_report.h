@@ -32,18 +32,8 @@ void fields(FieldVisitor& visit, const IgnoredParts& ignored);
 /// part counts.
 [[nodiscard]] Verdict verdictOf(double wrong_percent, const PartsAccuracy& accuracy, const std::string& unit);
 
-/// Returns "pillar_17 (stone)", "part 17 of wood" or "part 17". \param index  into SurfaceParts::parts; the text counts
-/// from 1.
-[[nodiscard]] std::string partName(const SurfacePart& part, std::size_t index);
 /// Returns how to keep a lost or coarse part: a budget, a resolution, a thickness, or a separate bake.
 [[nodiscard]] std::string partCure(const SurfacePart& part, const Collider& collider);
-/// Returns the side of the finest texels at the centre of a part, or of patches in its bounds, object units; 0 without
-/// maps.
-[[nodiscard]] double partTexel(const SurfacePart& part, const Collider& collider);
-/// Returns "9 m long at (1, 2, 3): 48 % of the points near it are on the wrong side, classified as outside; …", then
-/// partCure().
-[[nodiscard]] std::string partText(const PartAccuracy& accuracy, const SurfaceParts& parts,
-                                   const Collider& collider);
 
 /// Returns the worst parts, the worst named nodes and materials, and the ignored parts; "" if all parts are
 /// represented.
@@ -60,27 +50,10 @@ void fields(FieldVisitor& visit, const IgnoredParts& ignored);
 
 // --- The same data as fields.
 
-inline constexpr std::size_t kListedPartsMax = 100;
-
-struct PartReport {
-    const PartAccuracy& accuracy = kNone<PartAccuracy>;
-    const SurfacePart& part = kNone<SurfacePart>;
-    const Collider& collider = kNone<Collider>;
-};
-
-void fields(FieldVisitor& visit, const PartReport& report);
-
-void fields(FieldVisitor& visit, const GroupAccuracy& group);
-
 struct PartsReport {
     const PartsAccuracy& accuracy = kNone<PartsAccuracy>;
     const SurfaceParts& parts = kNone<SurfaceParts>;
     const Collider& collider = kNone<Collider>;
-
-    /// Returns the first kListedPartsMax parts.
-    [[nodiscard]] std::vector<PartReport> worst() const;
-    /// Returns the first kListedPartsMax nodes, and as many materials.
-    [[nodiscard]] std::vector<GroupAccuracy> groups() const;
 };
 
 void fields(FieldVisitor& visit, const PartsReport& report);

@@ -16,8 +16,11 @@
 namespace relief {
 namespace {
 
-constexpr std::array<std::string_view, 10> kKeys = {"dir", "up",    "size",   "compare", "center",
-                                                    "box", "depth", "decode", "budget",  "texel"};
+constexpr auto kKeys = [] {
+    std::array<std::string_view, kMapKeys.size()> keys;
+    std::ranges::transform(kMapKeys, keys.begin(), &MapKey::key);
+    return keys;
+}();
 
 /// Minimum sine of the angle between up and dir: below it, rounding could turn the image.
 constexpr double kUpSineMin = 1e-4;
@@ -114,7 +117,7 @@ class MapSpecBuilder {
 
     MapSpecDefaults defaults_;
     MapSpec spec_;
-    std::array<bool, 10> seen_{};  // by key
+    std::array<bool, kKeys.size()> seen_{};  // by key
 };
 
 Result<void> MapSpecBuilder::setFormat(std::string_view word) {

@@ -7,27 +7,9 @@
 //     cube:center=0/0.1/0,compare=less          all around a point in free space
 //     patches:budget=1MB                        small depth maps in an octree: formats/patch_tree.h
 //     patches:texel=0.01                        the same, with a uniform texel size
-//
-// clang-format off
-//     key      value               formats             meaning
-//     budget   1MB, 250000         patches             maximum size of the tree
-//     texel    0.01                patches             texel size, object units, for a tree of any size; with
-//                                                      `budget`, the size grows until the tree fits. Patches have
-//                                                      no other keys.
-//     dir      +x -x … -z, a/b/c   all but cube        view direction; -y looks down
-//     up       +x -x … -z, a/b/c   all but cube        direction that points up in the image, projected
-//                                                      perpendicular to dir; default: the rule of view.h
-//     size     N or WxH            all (cube: N)       texels, border included; for a cube, along the edge of a face
-//     compare  less, greater       all but front-back  keep the nearest or the farthest surface along the ray
-//     center   a/b/c               cube                origin of the rays, object space
-//     depth    unorm16, half       front-back          16-bit fixed point, or the paper's half floats
-//     decode   plane, projected    all                 distance to a plane fitted to the texel's footprint, or,
-//                                                      as in the paper, along the ray to a flat texel
-//     box      tight, or           all                 part of object space covered by the map;
-//              x0/y0/z0/x1/y1/z1                       a cube with a box is centred on the box
-// clang-format on
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <optional>
@@ -42,6 +24,28 @@
 namespace relief {
 
 inline constexpr std::uint64_t kPatchBytesDefault = 1'000'000;
+
+struct MapKey {
+    std::string_view key;
+    std::string_view formats;  ///< that have it
+    std::string_view text;     ///< its meaning, in the manual
+};
+inline constexpr std::array kMapKeys = std::to_array<MapKey>({
+    {"budget", "patches", "size limit on the GPU as in --budget, 1MB by default"},
+    {"texel", "patches", "texel length as in --texel; budget is then an upper limit"},
+    {"dir", "float, fixed8, front-back", "view direction: +x, -x, +y, -y, +z, -z or a vector a/b/c"},
+    {"up", "float, fixed8, front-back", "up direction of the image, as in dir"},
+    {"size", "all but patches", "texels: N, or WxH for all but cube"},
+    {"compare", "float, fixed8, cube",
+     "less (default) keeps the nearest surface, greater the farthest; a cube whose centre is inside the mesh "
+     "defaults to greater"},
+    {"center", "cube", "viewpoint a/b/c, by default the middle of the box"},
+    {"depth", "front-back", "unorm16 (default): 16-bit fixed point; half: half floats, as in the paper"},
+    {"decode", "all but patches",
+     "plane (default): distance to a plane fitted to the whole texel; projected: along the ray to a flat "
+     "texel, as in the paper"},
+    {"box", "all but patches", "region to cover: tight (default) or x0/y0/z0/x1/y1/z1"},
+});
 
 struct MapSpec {
     MapFormat format = MapFormat::kFrontBackFixed;

@@ -33,10 +33,8 @@ std::array<glm::dvec3, 3> orthographicFrame(const glm::vec3& direction, const st
 
 std::array<Range, 3> projectedRanges(const Bounds& box, const std::array<glm::dvec3, 3>& frame) {
     std::array<Range, 3> ranges;
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 p((corner & 1) != 0 ? box.max.x : box.min.x,
-                           (corner & 2) != 0 ? box.max.y : box.min.y,
-                           (corner & 4) != 0 ? box.max.z : box.min.z);
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 p = box.corner(corner);
         for (std::size_t i = 0; i < 3; ++i) {
             ranges[i].add(dot(frame[i], p));
         }
@@ -59,20 +57,11 @@ std::array<Range, 3> projectedRanges(const TriangleMesh& mesh, const std::array<
     return ranges;
 }
 
-double largestCoordinate(const Bounds& b) {
-    double largest = 0.0;
-    for (int i = 0; i < 3; ++i) {
-        largest = std::max({largest, std::abs(double{b.min[i]}), std::abs(double{b.max[i]})});
-    }
-    return largest;
-}
-
 /// Returns the free space on each side of a tight volume along an axis. \param extent  of the mesh along it.
 double padding(const Bounds& bounds, double extent) {
     const auto longest = static_cast<double>(bounds.longestSide());
     // More free space far from the origin, where floats are coarse.
-    const double rounding =
-        8.0 * static_cast<double>(std::numeric_limits<float>::epsilon()) * largestCoordinate(bounds);
+    const double rounding = 8.0 * double{std::numeric_limits<float>::epsilon()} * double{bounds.farthest()};
     return std::max(kPadding * longest + rounding, 0.5 * (kExtentMin * longest - extent));
 }
 

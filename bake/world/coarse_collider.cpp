@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "bake/patches/patch_tiles.h"
 #include "formats/patch_tree.h"

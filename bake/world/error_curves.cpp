@@ -2,10 +2,10 @@
 #include "bake/world/error_curves.h"
 
 #include <cmath>
-#include <span>
-#include <system_error>
 
+#include "bake/recipe/bake_cache.h"
 #include "formats/base/file_io.h"
+#include "formats/base/text.h"
 #include "formats/fields/json_value.h"
 #include "formats/fields/strict_json.h"
 
@@ -16,7 +16,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kFormat = "relief-curves";
 constexpr int kVersion = 1;
-constexpr std::uint64_t kFileBytesMax = std::uint64_t{256} << 20;
 constexpr JsonLimits kLimits{.depth = 3, .values = 8'000'000};
 
 /// \return nullopt if the values are not a curve.
@@ -81,28 +80,12 @@ std::string errorCurvesText(const ErrorCurves& curves) {
 
 Result<ErrorCurves> loadErrorCurves(const fs::path& folder) {
     const fs::path path = folder / kErrorCurvesName;
-    std::error_code error;
-    const fs::file_status status = fs::symlink_status(path, error);
-    if (!fs::exists(status)) {
-        return ErrorCurves{};
-    }
-    if (!fs::is_regular_file(status)) {
-        return fail(ErrorCode::kInvalidInput, quotedPath(path) + ": not a regular file");
-    }
-    const auto bytes = RELIEF_TRY(readFile(path, kFileBytesMax));
-    return withPrefix(quotedPath(path),
-                      parseErrorCurves({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
+    const auto bytes = RELIEF_TRY(readCacheFile(path));
+    return bytes ? withPrefix(quotedPath(path), parseErrorCurves(textOf(*bytes))) : ErrorCurves{};
 }
 
 Result<void> saveErrorCurves(const fs::path& folder, const ErrorCurves& curves) {
-    const fs::path path = folder / kErrorCurvesName;
-    std::error_code error;
-    if (fs::is_symlink(fs::symlink_status(path, error)) && !fs::remove(path, error)) {
-        return fail(ErrorCode::kIo,
-                    "cannot replace the link " + quotedPath(path) + ": " + error.message() + "; remove it");
-    }
-    const std::string text = errorCurvesText(curves);
-    return writeFile(path, std::as_bytes(std::span(text)));
+    return writeCacheFile(folder / kErrorCurvesName, errorCurvesText(curves));
 }
 
 }  // namespace relief

@@ -19,7 +19,6 @@
 
 namespace relief {
 
-/// Curves by key.
 using ErrorCurves = std::map<std::string, ErrorCurve>;
 
 /// Errors: kInvalidInput (not a file of this version), kLimit.

@@ -125,10 +125,8 @@ class WorldChecker {
             PlacedMesh placed{&body, &queries_[body.mesh], glm::dvec3(std::numeric_limits<double>::max()),
                               glm::dvec3(std::numeric_limits<double>::lowest())};
             const Bounds& box = placed.query->mesh().bounds;
-            for (int corner = 0; corner < 8; ++corner) {
-                const glm::dvec3 at =
-                    placed.toWorld({corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
-                                    corner & 4 ? box.max.z : box.min.z});
+            for (unsigned i = 0; i < 8; ++i) {
+                const glm::dvec3 at = placed.toWorld(box.corner(i));
                 placed.low = glm::min(placed.low, at);
                 placed.high = glm::max(placed.high, at);
             }

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,7 +12,6 @@
 #include "bake/pipeline/mesh_check.h"
 #include "bake/world/world_places.h"
 #include "formats/base/result.h"
-#include "formats/container_limits.h"
 #include "formats/world/world_field.h"
 
 namespace relief {

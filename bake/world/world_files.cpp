@@ -223,8 +223,7 @@ Result<ReplacedWorld> replaceWorld(const fs::path& folder, World& world,
     if (before) {
         keepBodies(world, read, *before, replaced.warnings);
     }
-    const std::string text = worldText(world);
-    RELIEF_TRY(writeFile(path, std::as_bytes(std::span(text))));
+    RELIEF_TRY(writeText(path, worldText(world)));
     if (before) {
         replaced.removed = removeUnnamed(folder, filesOf(before->colliders), world);
     }

@@ -2,7 +2,6 @@
 #include "bake/world/world_places.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "bake/maps/bake_maps.h"
 #include "bake/measure/worst_places.h"

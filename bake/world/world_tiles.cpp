@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <glm/common.hpp>
 
 #include "formats/world/world.h"
 

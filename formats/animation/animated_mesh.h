@@ -61,7 +61,6 @@ struct MeshJoint {
     friend bool operator==(const MeshJoint&, const MeshJoint&) = default;
 };
 
-/// The influence of one joint on a vertex.
 struct VertexInfluence {
     std::uint32_t joint = 0;
     float weight = 1.0F;  ///< above 0; the weights of a vertex sum to 1

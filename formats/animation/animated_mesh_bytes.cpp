@@ -4,7 +4,6 @@
 #include <bit>
 #include <cstring>
 #include <memory>
-#include <string>
 #include <utility>
 
 #include "animated_mesh_generated.h"

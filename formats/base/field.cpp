@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/base/field.h"
 
+#include <bit>
 #include <cstring>
 
 namespace relief {
 namespace {
+
+static_assert(std::endian::native == std::endian::little);  // whole numbers are copied as their low bytes
 
 template <class T>
 T load(const void* value) {
@@ -13,8 +16,8 @@ T load(const void* value) {
     return number;
 }
 
-template <class T, class Value>
-void store(void* to, Value value) {
+template <class T>
+void store(void* to, double value) {
     const T number = static_cast<T>(value);
     std::memcpy(to, &number, sizeof(T));
 }
@@ -53,29 +56,14 @@ bool FieldRef::isNumber() const {
 }
 
 std::uint64_t FieldRef::whole() const {
-    switch (type_->size) {
-        case 1:
-            return load<std::uint8_t>(value_);
-        case 2:
-            return load<std::uint16_t>(value_);
-        case 4:
-            return load<std::uint32_t>(value_);
-        default:
-            return load<std::uint64_t>(value_);
-    }
+    std::uint64_t value = 0;
+    std::memcpy(&value, value_, type_->size);
+    return value;
 }
 
 std::int64_t FieldRef::integer() const {
-    switch (type_->size) {
-        case 1:
-            return load<std::int8_t>(value_);
-        case 2:
-            return load<std::int16_t>(value_);
-        case 4:
-            return load<std::int32_t>(value_);
-        default:
-            return load<std::int64_t>(value_);
-    }
+    const auto unused = static_cast<int>(64 - 8 * type_->size);
+    return static_cast<std::int64_t>(whole() << unused) >> unused;  // extends the sign
 }
 
 double FieldRef::number() const {
@@ -86,16 +74,7 @@ double FieldRef::number() const {
 }
 
 void FieldRef::setWhole(std::uint64_t value) const {
-    switch (type_->size) {
-        case 1:
-            return store<std::uint8_t>(value_, value);
-        case 2:
-            return store<std::uint16_t>(value_, value);
-        case 4:
-            return store<std::uint32_t>(value_, value);
-        default:
-            return store<std::uint64_t>(value_, value);
-    }
+    std::memcpy(value_, &value, type_->size);
 }
 
 void FieldRef::setReal(double value) const {

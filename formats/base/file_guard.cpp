@@ -162,6 +162,24 @@ std::optional<FileGuard::File> FileGuard::claim(const fs::path& path, std::strin
     return std::nullopt;
 }
 
+FileGuard::MadeFolders::~MadeFolders() {
+    for (; !made.empty(); made.pop_back()) {
+        ::rmdir(made.back().c_str());  // fails if not empty
+    }
+}
+
+Result<void> FileGuard::makes(const fs::path& path, std::string_view option) {
+    std::error_code error;
+    fs::path folder;
+    for (const fs::path& part : path) {
+        folder /= part;
+        if (!fs::exists(folder, error)) {
+            folders_->made.push_back(folder);
+        }
+    }
+    return preflightFolder(path, option);
+}
+
 Result<void> FileGuard::keeps(const fs::path& path, std::string_view option) {
     const auto link = placeOfLink(path);
     const Keys keys = link ? Keys{*link} : keysOf(path, STDOUT_FILENO);

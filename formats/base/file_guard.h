@@ -13,7 +13,6 @@
 #include <string_view>
 #include <vector>
 
-#include "formats/base/made_folders.h"
 #include "formats/base/result.h"
 
 namespace relief {
@@ -68,12 +67,10 @@ class FileGuard {
     /// that leaves the folder.
     [[nodiscard]] Result<void> writes(const NumberedFiles& files, std::string_view option);
     [[nodiscard]] Result<void> writes(const FilesByEnding& files, std::string_view option);
-    /// Creates a folder that the run fills, like MadeFolders::make(). The last copy of this guard removes the folder if
-    /// it is empty, unless keepFolders() was called.
-    [[nodiscard]] Result<void> makes(const std::filesystem::path& folder, std::string_view option) {
-        return folders_->make(folder, option);
-    }
-    void keepFolders() { folders_->keep(); }
+    /// Creates a folder that the run fills, like preflightFolder(). The last copy of this guard removes the folders that
+    /// it created and that are empty, unless keepFolders() was called.
+    [[nodiscard]] Result<void> makes(const std::filesystem::path& folder, std::string_view option);
+    void keepFolders() { folders_->made.clear(); }
     /// Registers a cache file. A link at that path is replaced, not followed. Several caches may share one file, and
     /// the folder need not exist. \param option  the option that names the folder. Errors: kUsage, as for writes().
     [[nodiscard]] Result<void> keeps(const std::filesystem::path& path, std::string_view option);
@@ -90,6 +87,13 @@ class FileGuard {
     struct Series {
         File folder;
         HoldsName holds;
+    };
+    struct MadeFolders {
+        MadeFolders() = default;
+        MadeFolders(const MadeFolders&) = delete;
+        MadeFolders& operator=(const MadeFolders&) = delete;
+        ~MadeFolders();
+        std::vector<std::filesystem::path> made;  // parents before children
     };
 
     [[nodiscard]] static Keys keysOf(const std::filesystem::path& path, int standard);

@@ -235,17 +235,11 @@ Result<std::vector<std::byte>> readFile(const fs::path& path, std::uint64_t size
 }
 
 Result<void> writeFile(const fs::path& path, std::span<const std::byte> bytes) {
-    if (path == "-") {
-        if (const int code = writeAll(STDOUT_FILENO, bytes)) {
-            return ioError("write", "standard output", code);
-        }
-        return {};
-    }
-    const std::string name = quotedPath(path);
+    const std::string name = path == "-" ? "standard output" : quotedPath(path);
     if (const int code = checkPath(path)) {
         return ioError("write", name, code);
     }
-    if (const std::optional<int> number = descriptorOf(path)) {
+    if (const std::optional<int> number = path == "-" ? STDOUT_FILENO : descriptorOf(path)) {
         if (const int code = writeAll(*number, bytes)) {
             return ioError("write", name, code);
         }
@@ -272,6 +266,10 @@ Result<void> writeFile(const fs::path& path, std::span<const std::byte> bytes) {
     const fs::path target = link ? destination(path, error) : path;
     return error && link ? ioError("write", name, error.value())
                          : replaceFile(target, name, bytes, older_mode);
+}
+
+Result<void> writeText(const fs::path& path, std::string_view text) {
+    return writeFile(path, std::as_bytes(std::span(text)));
 }
 
 std::string quotedPath(const fs::path& path) {

@@ -43,6 +43,9 @@ namespace relief {
 /// Errors: kIo, with the system's message.
 [[nodiscard]] Result<void> writeFile(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
+/// Replaces a file like writeFile().
+[[nodiscard]] Result<void> writeText(const std::filesystem::path& path, std::string_view text);
+
 /// Formats a path for a one-line message: escapedUtf8 in single quotes.
 [[nodiscard]] std::string quotedPath(const std::filesystem::path& path);
 

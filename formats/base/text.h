@@ -2,6 +2,7 @@
 // Numbers and words of command lines and text files: strict, exact, and independent of the locale.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <optional>
@@ -26,6 +27,11 @@ void appendShortest(std::string& out, float value);
 [[nodiscard]] std::optional<double> parseDouble(std::string_view text);
 /// Parses the whole text as decimal digits. Values beyond 64 bits return the maximum.
 [[nodiscard]] std::optional<std::uint64_t> parseUnsigned(std::string_view text);
+
+/// Returns bytes as text. \param bytes  borrowed
+[[nodiscard]] inline std::string_view textOf(std::span<const std::byte> bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
 
 /// Splits text: "a,b,,c" by ',' -> a b "" c. Empty text has one empty part.
 [[nodiscard]] std::vector<std::string_view> split(std::string_view text, char separator);

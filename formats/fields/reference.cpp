@@ -114,16 +114,9 @@ void addWords(const std::vector<FieldReference>& fields, std::set<std::string>& 
     }
 }
 
-}  // namespace
-
-namespace {
-
-/// Returns the schema of an array of `count` numbers.
 Json numbersSchema(std::size_t count, bool whole, const FieldInfo& info) {
-    return {{"type", "array"},
-            {"items", numberSchema(whole, false, info)},
-            {"minItems", count},
-            {"maxItems", count}};
+    const auto size = static_cast<double>(count);
+    return arraySchema(numberSchema(whole, false, info), {size, size});
 }
 
 Json listSchema(const Json& items) {

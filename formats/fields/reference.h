@@ -31,7 +31,6 @@ struct FieldReference {
 /// Schemas of the types that FieldCustom::read reads.
 using CustomSchemas = std::map<const FieldCustom*, FieldSchema>;
 
-/// Returns the fields of a struct.
 [[nodiscard]] std::vector<FieldReference> referenceOf(FieldRef value, const CustomSchemas& custom = {});
 template <class T>
 [[nodiscard]] std::vector<FieldReference> referenceOf() {

@@ -24,10 +24,8 @@ struct Pose {
 /// Returns the world-space axis-aligned box of an object-space box.
 [[nodiscard]] inline Bounds toWorld(const Pose& pose, const Bounds& box) {
     Bounds world;
-    for (int corner = 0; corner < 8; ++corner) {
-        world.add(toWorld(pose, glm::vec3((corner & 1) != 0 ? box.max.x : box.min.x,
-                                          (corner & 2) != 0 ? box.max.y : box.min.y,
-                                          (corner & 4) != 0 ? box.max.z : box.min.z)));
+    for (unsigned i = 0; i < 8; ++i) {
+        world.add(toWorld(pose, box.corner(i)));
     }
     return world;
 }

@@ -207,8 +207,7 @@ const WorldFile& fileOf(const WorldCollider& collider, WorldDetail detail) {
 
 Result<World> loadWorldFile(const fs::path& path) {
     const auto bytes = RELIEF_TRY(readFile(path, kWorldBytesMax));
-    World world = RELIEF_TRY(withPrefix(
-        quotedPath(path), parseWorld({reinterpret_cast<const char*>(bytes.data()), bytes.size()})));
+    World world = RELIEF_TRY(withPrefix(quotedPath(path), parseWorld(textOf(bytes))));
     for (std::size_t i = 0; i < world.colliders.size(); ++i) {
         const auto check = [&](WorldDetail detail) {
             return withPrefix(quotedPath(path), pathOf(world, i, detail, path.parent_path()));

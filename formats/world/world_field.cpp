@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/world/world_field.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace relief {
 namespace {
 
@@ -17,21 +14,12 @@ bool isLocal(const Collider& collider) {
            collider.maps[0].encloses && collider.maps[0].empty_is_outside;
 }
 
-bool holds(const Bounds& box, const glm::vec3& p) {
-    return p.x >= box.min.x && p.y >= box.min.y && p.z >= box.min.z && p.x <= box.max.x && p.y <= box.max.y &&
-           p.z <= box.max.z;
-}
-
 }  // namespace
 
 WorldField::WorldField(LoadedWorld loaded) : loaded_(std::move(loaded)) {
     for (std::size_t i = 0; i < world().bodies.size(); ++i) {
         Bounds placed = toWorld(poseOf(world().bodies[i]), solidBox(colliderOf(i)));
-        float largest = 0.0F;
-        for (int axis = 0; axis < 3; ++axis) {
-            largest = std::max({largest, std::abs(placed.min[axis]), std::abs(placed.max[axis])});
-        }
-        const glm::vec3 room(kRoom * placed.longestSide() + kRounding * largest);
+        const glm::vec3 room(kRoom * placed.longestSide() + kRounding * placed.farthest());
         placed.min -= room;
         placed.max += room;
         boxes_.push_back(placed);
@@ -51,7 +39,7 @@ void WorldField::addSample(std::size_t body, const glm::vec3& p, WorldSample& be
 WorldSample WorldField::evaluate(const glm::vec3& p) const {
     WorldSample best;
     for (std::size_t i = 0; i < boxes_.size(); ++i) {
-        if (local_[i] == 0 || holds(boxes_[i], p)) {
+        if (local_[i] == 0 || boxes_[i].contains(p)) {
             addSample(i, p, best);
         } else if (best.body < 0) {
             best = {kFarOutside, glm::vec3(0.0F), static_cast<int>(i)};
@@ -71,9 +59,7 @@ WorldSample WorldField::evaluate(const glm::vec3& p, std::span<const std::uint32
 std::vector<std::uint32_t> WorldField::bodiesIn(const Bounds& box) const {
     std::vector<std::uint32_t> bodies;
     for (std::uint32_t i = 0; i < boxes_.size(); ++i) {
-        const Bounds& own = boxes_[i];
-        if (own.min.x <= box.max.x && own.max.x >= box.min.x && own.min.y <= box.max.y &&
-            own.max.y >= box.min.y && own.min.z <= box.max.z && own.max.z >= box.min.z) {
+        if (boxes_[i].meets(box)) {
             bodies.push_back(i);
         }
     }

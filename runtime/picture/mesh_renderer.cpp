@@ -56,11 +56,8 @@ glm::mat4 parallelClip(const Bounds& box, const glm::vec3& towards) {
         std::abs(towards.y) > 0.9F ? glm::vec3(0.0F, 0.0F, -1.0F) : glm::vec3(0.0F, 1.0F, 0.0F);
     const glm::mat4 view = glm::lookAt(box.center() + towards, box.center(), aside);
     Bounds seen;
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::vec3 at((corner & 1) != 0 ? box.max.x : box.min.x,
-                           (corner & 2) != 0 ? box.max.y : box.min.y,
-                           (corner & 4) != 0 ? box.max.z : box.min.z);
-        seen.add(glm::vec3(view * glm::vec4(at, 1.0F)));
+    for (unsigned i = 0; i < 8; ++i) {
+        seen.add(glm::vec3(view * glm::vec4(box.corner(i), 1.0F)));
     }
     const float margin = 0.01F * seen.longestSide();
     // Include higher geometry, which casts shadows, too.

@@ -8,6 +8,7 @@
 
 #include "bake/cli/command.h"
 #include "formats/base/file_io.h"
+#include "formats/base/text.h"
 #include "formats/fields/generated.h"
 #include "runtime/player/report.h"
 #include "runtime/scene/scene_reference.h"
@@ -19,7 +20,7 @@ namespace fs = std::filesystem;
 
 Result<std::string> readText(const fs::path& path) {
     const std::vector<std::byte> bytes = RELIEF_TRY(readFile(path));
-    return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    return std::string(textOf(bytes));
 }
 
 /// All derived texts. Each library that declares fields has its own function.
@@ -51,7 +52,7 @@ Result<int> writeBuilt(const fs::path& folder, std::string_view extension) {
     fs::create_directories(folder);
     for (const GeneratedText& generated : all()) {
         if (generated.built && generated.path.ends_with(extension)) {
-            RELIEF_TRY(writeFile(folder / generated.path, std::as_bytes(std::span(generated.text))));
+            RELIEF_TRY(writeText(folder / generated.path, generated.text));
         }
     }
     return 0;
@@ -74,7 +75,7 @@ Result<int> generate(const fs::path& root, bool check) {
         if (check) {
             std::fprintf(stderr, "%s is stale; run scripts/generate.sh\n", generated.path.c_str());
         } else {
-            RELIEF_TRY(writeFile(path, std::as_bytes(std::span(text))));
+            RELIEF_TRY(writeText(path, text));
             std::printf("%s\n", generated.path.c_str());
         }
     }
@@ -89,9 +90,10 @@ int main(int argc, char** argv) {
     const bool schemas = argc == 3 && std::string_view(argv[1]) == "--schemas";
     const bool dictionaries = argc == 3 && std::string_view(argv[1]) == "--dictionaries";
     if (argc != 2 && !check && !schemas && !dictionaries) {
-        std::fputs("usage: relief-generate ROOT [--check]\n"
-                   "       relief-generate --schemas|--dictionaries FOLDER\n",
-                   stderr);
+        std::fputs(
+            "usage: relief-generate ROOT [--check]\n"
+            "       relief-generate --schemas|--dictionaries FOLDER\n",
+            stderr);
         return 1;
     }
     const relief::Result<int> stale = schemas        ? relief::writeBuilt(argv[2], ".json")

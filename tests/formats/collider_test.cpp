@@ -65,6 +65,25 @@ TEST(Rule2, OutsideWinsThenTheVoteNearestToZero) {
     EXPECT_EQ(distance({-1.0F, 0.0F}), 0.0F);
 }
 
+// A wrong bit would move a box that a body or a view turns.
+TEST(Bounds, CornersFollowTheBitsOfTheirIndex) {
+    const Bounds box{{-1, -2, -9}, {4, 5, 6}};
+    EXPECT_EQ(box.corner(0), box.min);
+    EXPECT_EQ(box.corner(1), glm::vec3(4, -2, -9));
+    EXPECT_EQ(box.corner(2), glm::vec3(-1, 5, -9));
+    EXPECT_EQ(box.corner(4), glm::vec3(-1, -2, 6));
+    EXPECT_EQ(box.corner(7), box.max);
+    EXPECT_EQ(box.farthest(), 9.0F);
+}
+
+// Exact powers of two: a transposed matrix, which glm makes easy, would differ.
+TEST(Affine, InverseUndoesTheLinearPart) {
+    const Affine affine{{{2, 4, 0, 7}, {0, 8, 16, -3}, {0, 0, 0.5, 1}}};
+    const glm::dvec3 p(3, -5, 11);
+    EXPECT_EQ(affine.linear() * p, glm::dvec3(affine.apply(p)) - glm::dvec3(affine.apply({0, 0, 0})));
+    EXPECT_EQ(affine.inverse() * (affine.linear() * p), p);
+}
+
 TEST(InsideBox, IsTheIntersectionOfEnclosingVolumes) {
     Collider collider = colliderOf({-1.0F, -1.0F, -1.0F});
     const auto place = [&](std::size_t map, const glm::dvec3& center, bool encloses) {
