@@ -38,7 +38,10 @@ constexpr std::uint64_t kHeapBytes = std::uint64_t{64} << 20;
 /// Returns zeros on failure.
 struct stat statusOf(int file) {
     struct stat status {};
-    return ::fstat(file, &status) == 0 ? status : decltype(status){};
+    if (::fstat(file, &status) != 0) {
+        status = {};
+    }
+    return status;
 }
 
 /// Whether the parent ended before PR_SET_PDEATHSIG took effect.

@@ -15,6 +15,10 @@ tl::unexpected<Error> embreeError(RTCError error, const std::string& what) {
         case RTC_ERROR_UNSUPPORTED_CPU:
             return fail(ErrorCode::kUnsupported,
                         what + ": the ray tracer reports: this processor is not supported");
+        case RTC_ERROR_INVALID_ARGUMENT:
+            return fail(ErrorCode::kFailure, what + ": the ray tracer reports: invalid argument");
+        case RTC_ERROR_INVALID_OPERATION:
+            return fail(ErrorCode::kFailure, what + ": the ray tracer reports: invalid operation");
         default:
             return fail(ErrorCode::kFailure,
                         what + ": the ray tracer reports: error " + std::to_string(static_cast<int>(error)));

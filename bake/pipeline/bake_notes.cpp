@@ -75,8 +75,7 @@ std::vector<std::string> noticesOf(const SolidMesh& solid, std::size_t nodes) {
     if (nodes >= kLevelNodes && !solid.animated) {
         note(std::to_string(nodes) +
              " nodes become one collider; if it is a level, bake it with --world DIR: each mesh once, with "
-             "more "
-             "detail for the same bytes");
+             "more detail for the same bytes");
     }
     noteParts(solid.shape.unjoined_shells, "open shell",
               " inside another one, with rims too far apart to join: the space inside is solid; to make it "

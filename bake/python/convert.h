@@ -69,6 +69,7 @@ auto column(const std::vector<Item>& items, T Class::*member) {
         std::ranges::transform(items, array.mutable_data(), [&](const Item& item) { return item.*member; });
         return array;
     } else {
+        static_assert(std::is_same_v<std::remove_cvref_t<decltype((items[0].*member)[0])>, float>);
         constexpr std::size_t kParts = sizeof(T) / sizeof(float);
         Floats array({count, static_cast<py::ssize_t>(kParts)});
         for (std::size_t i = 0; i < items.size(); ++i) {

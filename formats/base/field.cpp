@@ -2,6 +2,7 @@
 #include "formats/base/field.h"
 
 #include <bit>
+#include <cassert>
 #include <cstring>
 
 namespace relief {
@@ -57,6 +58,7 @@ bool FieldRef::isNumber() const {
 
 std::uint64_t FieldRef::whole() const {
     std::uint64_t value = 0;
+    assert(type_->size <= sizeof(value));
     std::memcpy(&value, value_, type_->size);
     return value;
 }
@@ -74,6 +76,7 @@ double FieldRef::number() const {
 }
 
 void FieldRef::setWhole(std::uint64_t value) const {
+    assert(type_->size <= sizeof(value));
     std::memcpy(value_, &value, type_->size);
 }
 

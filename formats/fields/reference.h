@@ -44,7 +44,7 @@ template <class T>
 [[nodiscard]] std::string markdownTables(const std::vector<FieldReference>& fields,
                                          std::span<const std::string_view> names);
 /// Returns a JSON Schema of the file. \param place  JSON pointer of these fields within it.
-[[nodiscard]] Json fileSchema(const std::vector<FieldReference>& fields, const std::string& place = "#");
+[[nodiscard]] Json fileSchema(const std::vector<FieldReference>& fields, const std::string& place);
 /// Returns keys, words and table names for libFuzzer.
 [[nodiscard]] std::string fuzzDictionary(const std::vector<FieldReference>& fields);
 

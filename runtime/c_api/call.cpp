@@ -17,9 +17,10 @@ std::string numberText(double value) {
 }
 
 /// In the order of HandleKind.
-constexpr std::array<const char*, kHandleKinds> kTypeNames{
-    "relief_collider", "relief_textures",  "relief_particles", "relief_renderer",
-    "relief_world",    "relief_animation", "relief_emitter"};
+constexpr auto kTypeNames =
+    std::to_array<const char*>({"relief_collider", "relief_textures", "relief_particles", "relief_renderer",
+                                "relief_world", "relief_animation", "relief_emitter"});
+static_assert(kTypeNames.size() == kHandleKinds);
 constexpr int kKindBits = 3;
 constexpr std::uintptr_t kHighest = ~(~std::uintptr_t{0} >> 1);
 

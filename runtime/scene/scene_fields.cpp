@@ -408,8 +408,7 @@ void fields(FieldVisitor& visit, SceneRender& r) {
     visit("last_frame", r.last_frame, {"Step of the last frame", {}, {0.0, kStepsMax}, "the last step"});
     visit("sort_frames", r.sort_frames,
           {.help = "Frames over which one depth sort is spread, at least 2; 0: no sort. The compute path "
-                   "sorts every "
-                   "frame",
+                   "sorts every frame",
            .range = {0.0, 200.0}});
     visit("sprite", r.sprite, {"Shape of particles; quads may have any size and rotate"});
     visit("blend", r.blend, {"Blend mode of particles"});

@@ -23,7 +23,7 @@ CustomSchemas customSchemas() {
         {&kColorTrackField,
          {{{"oneOf", {listOf(kNumber, 3, 3), listOf(listOf(kNumber, 4, 4), 1, kLookKeysMax)}}}, {}}},
         {&kEmitterSpeedField,
-         {{{"oneOf", {kNumber, listOf(kNumber, 2, 2), fileSchema(referenceOf<NormalSpeed>())}}}, {}}},
+         {{{"oneOf", {kNumber, listOf(kNumber, 2, 2), fileSchema(referenceOf<NormalSpeed>(), "#")}}}, {}}},
         {&kNameListField, {{{"oneOf", {name, {{"type", "array"}, {"items", name}, {"minItems", 1}}}}}, {}}},
         {&kCollidesListField,
          {{{"type", "array"}, {"items", {{"oneOf", {{{"type", "integer"}}, {{"const", "ground"}}}}}}},
@@ -73,7 +73,7 @@ GeneratedTexts sceneReference() {
     texts.push_back({readme, "tables", markdownTables(fields, tables)});
     Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
                    {"title", "A scene of relief-sim"}};
-    schema.update(fileSchema(fields));
+    schema.update(fileSchema(fields, "#"));
     texts.push_back({"runtime/scene/scene.schema.json", "", tableText(schema) + "\n"});
     texts.push_back({.path = "scene.dict", .part = {}, .text = fuzzDictionary(fields), .built = true});
     return texts;

@@ -33,6 +33,7 @@ expect_bake() {
 
 # Two groups of different kinds. The check agrees.
 expect_bake two.obj '1, 0, 1, 0'
+cp out.relief plain.relief
 expect_bake two.obj '0, 1, 1, 0' --as tub=solid --as garden=shell --thickness 0.2
 json report.json "d['shape']['named'] == [{'name': 'tub', 'as': 'solid', 'triangles': 10}, {'name': 'garden', 'as': 'shell', 'triangles': 12}]"
 json report.json "d['provenance']['options'].endswith(' --as tub=solid --as garden=shell --thickness 0.2')"
@@ -43,6 +44,13 @@ sed 's/^g tub left/g tab/' two.obj >renamed.obj
 expect_error 3 "renamed\.obj.*'tub'" "$relief" check two.relief --mesh renamed.obj --samples 1000
 expect_bake two.obj '0, 0, 2, 0' --as garden=auto --as wood=shell
 grep -q 'warning: two.obj: --as garden=auto' stderr || die "no warning: $(cat stderr)"
+
+# A name without effect changes no texel. Without names not even a byte changes.
+expect_bake two.obj '1, 0, 1, 0' --as tub=auto --as garden=solid
+"$relief" export plain.relief --engine c plain -q && "$relief" export out.relief --engine c same -q
+cmp plain/plain.texels same/out.texels && cmp plain/plain.constants same/out.constants || die "names without effect change the texels"
+expect_bake two.obj '1, 0, 1, 0' --as auto
+cmp plain.relief out.relief || die "--as auto is not the default"
 
 # Artists' names reach the container, the check and its suggested commands.
 odd="Fenster = \"vorn\" \$x;'é=shell"

@@ -204,6 +204,23 @@ TEST(BakeBunny, NearestSurfaceIsTheNearestTriangle) {
     }
 }
 
+TEST(BakeBunny, PatchesPreferASide) {
+    const MeshQuery query = queryOf(bunny());
+    const TruthSamples truth = sampleTruth(query, {.samples = 20'000});
+    const auto errors = [&](Prefer prefer) {
+        BakeOptions options;
+        options.maps = {*parseMapSpec("patches:budget=32kB")};
+        options.quality = Quality::kFast;
+        options.prefer = prefer;
+        return measureField(truth, fieldOf(required(bake(bunny(), options)).collider)).near;
+    };
+    const auto neither = errors(Prefer::kNeither);
+    const auto inside = errors(Prefer::kInside);
+    const auto outside = errors(Prefer::kOutside);
+    EXPECT_LT(inside.false_outside, 0.8 * neither.false_outside);
+    EXPECT_LT(outside.false_inside, 0.8 * neither.false_inside);
+}
+
 TEST(BakeProgress, RunsFromZeroToOne) {
     for (const char* decode : {"projected", "plane"}) {
         double last = 0.0;

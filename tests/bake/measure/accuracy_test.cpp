@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "bake/bench/distance_volume.h"
@@ -51,6 +52,25 @@ TEST(MeshQuery, HoleAffectsOnlyPointsNearIt) {
         const float radius = glm::length(p);
         if (radius < 0.8F || radius > 1.0F) {
             EXPECT_EQ(query.inside(p), radius < 1.0F) << p.x << " " << p.y << " " << p.z;
+        }
+    }
+}
+
+TEST(MeshQuery, ClosestPointsMatchASearchOfAllTriangles) {
+    for (const TriangleMesh& mesh :
+         {makeIcosphere({0, 0, 0}, 1.0, 4), makeTorusMesh(1.0, 0.4, 96, 48),
+          makeBoxMesh({2000, -500, 300}, {1, 2, 0.5}, rotation({1, 1, 0}, 40.0))}) {
+        const MeshQuery query = queryOf(mesh);
+        for (const glm::vec3& p : pointsIn(mesh.bounds, 300)) {
+            double least = std::numeric_limits<double>::infinity();
+            for (const glm::uvec3& corners : mesh.triangles) {
+                const glm::dvec3 at(p);
+                const glm::dvec3 on = closestOnTriangle(at, glm::dvec3(mesh.positions[corners.x]),
+                                                        glm::dvec3(mesh.positions[corners.y]),
+                                                        glm::dvec3(mesh.positions[corners.z]));
+                least = std::min(least, glm::distance(at, on));
+            }
+            EXPECT_NEAR(query.closest(p).distance, least, 1e-9 * std::max(1.0, least));
         }
     }
 }

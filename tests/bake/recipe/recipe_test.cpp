@@ -258,6 +258,8 @@ TEST_F(RecipeJobsTest, PathsOutsideTheFoldersAreRejected) {
     fails(mesh("/etc/passwd"), "is an absolute path");
     fails(mesh("secret.obj"), "leads out of the recipe's folder");
     fails(mesh("up/*.obj"), "leads out of the recipe's folder");
+    fs::create_symlink("../../secret.obj", folder_ / "rocks/secret.obj");
+    fails("[[asset]]\nmesh = 'rocks/'\noutput = 'w/world.json'\n", "contains the link 'secret.obj'");
     for (const char* name : {"../x.relief", "up/x.relief", "up/world.json"}) {
         fails(output(name), "is outside the output folder");
     }

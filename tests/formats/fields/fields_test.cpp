@@ -143,7 +143,7 @@ TEST(Reference, Markdown) {
 }
 
 TEST(Reference, SchemaAndDictionary) {
-    const Json schema = fileSchema(referenceOf<Described>());
+    const Json schema = fileSchema(referenceOf<Described>(), "#");
     EXPECT_EQ(schema["required"], Json::array());
     EXPECT_EQ(schema["properties"]["place"]["items"]["required"], Json::array({"at"}));
     EXPECT_EQ(schema["properties"]["size"]["exclusiveMinimum"], 0.0);
