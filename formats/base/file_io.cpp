@@ -269,7 +269,7 @@ Result<void> writeFile(const fs::path& path, std::span<const std::byte> bytes) {
 }
 
 Result<void> writeText(const fs::path& path, std::string_view text) {
-    return writeFile(path, std::as_bytes(std::span(text)));
+    return writeFile(path, std::as_bytes(std::span(text.data(), text.size())));
 }
 
 std::string quotedPath(const fs::path& path) {
