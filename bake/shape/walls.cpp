@@ -365,8 +365,10 @@ ShellWalls wallsAmong(const std::vector<WallCandidate>& candidates, const std::s
         }
         if (Result<TriangleMesh> mesh =
                 finishMesh(meshOf(*candidates[i].sheet, name))) {  // else too small for a mesh
-            shells.push_back(
-                {.index = i, .may_be_solid = candidates[i].may_be_solid, .mesh = std::move(*mesh)});
+            shells.push_back({.index = i,
+                              .may_be_solid = candidates[i].may_be_solid,
+                              .mesh = std::move(*mesh),
+                              .rims = {}});
         }
     }
     return joinRims(shells);
