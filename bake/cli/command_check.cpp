@@ -125,8 +125,9 @@ Result<void> runCheck(const CheckCommand& command, const std::string& file, File
     addAdvice(command, file, run);
     const MeshCheckReport report{run, inputName(file), command.max_error};
     if (!command.html.empty()) {
-        RELIEF_TRY(writeText(command.html, RELIEF_TRY(makeCheckPage(report.file, container.size(), report.run,
-                                                                    report.max_error))));
+        const std::string page =
+            RELIEF_TRY(makeCheckPage(report.file, container.size(), report.run, report.max_error));
+        RELIEF_TRY(writeText(command.html, page));
     }
     RELIEF_TRY(printOut(command.json ? jsonTextOf(report) : checkText(report)));
     const bool passed = run.passes(command.max_error);
