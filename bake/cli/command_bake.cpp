@@ -82,8 +82,9 @@ Result<void> runMeshCommand(BakeCommand& command, FileGuard& files) {
     result.times.write_ms = writing.ms();
     result.times.total_ms = total.ms();
     const ContainerInfo info = command.outputs.json ? RELIEF_TRY(readContainerInfo(bytes)) : ContainerInfo();
-    return printReport(command, BakeJson{result, info, command.output, command.outputs.compress},
-                       bakeText(result, command.output, bytes.size(), command.common.verbose));
+    return printReport(command, BakeJson{result, info, command.output, command.outputs.compress}, [&] {
+        return bakeText(result, command.output, bytes.size(), command.common.verbose);
+    });
 }
 
 /// Bakes a recipe, a height map, a level or a mesh.
@@ -132,12 +133,13 @@ Result<void> writeDepfile(const BakeCommand& command, const std::string& target,
     return writeDepfile(command.outputs.depfile, {target}, names);
 }
 
-Result<void> printReport(const BakeCommand& command, FieldRef json, const std::string& text) {
+Result<void> printReport(const BakeCommand& command, FieldRef json,
+                         const std::function<std::string()>& text) {
     if (command.outputs.json) {
         return printOut(jsonTextOf(json));
     }
     if (!command.common.quiet) {
-        std::fputs(text.c_str(), stderr);
+        std::fputs(text().c_str(), stderr);
     }
     return {};
 }

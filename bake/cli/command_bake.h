@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,7 +50,9 @@ struct BakeCommand {
 [[nodiscard]] Result<void> writeDepfile(const BakeCommand& command, const std::string& target,
                                         const std::vector<InputFile>& inputs);
 /// Prints a report: as JSON to standard output, or as text to standard error, unless --quiet is set.
-[[nodiscard]] Result<void> printReport(const BakeCommand& command, FieldRef json, const std::string& text);
+/// \param text  called only if the text is printed
+[[nodiscard]] Result<void> printReport(const BakeCommand& command, FieldRef json,
+                                       const std::function<std::string()>& text);
 
 /// Returns the options that a recipe may set.
 [[nodiscard]] std::vector<RecipeKey> recipeKeys();

@@ -134,7 +134,7 @@ Result<void> runGroundCommand(const BakeCommand& command, FileGuard& files) {
     logWarnings(result.warnings);
     const std::string& output = folder.empty() ? command.output : folder;
     return printReport(command, GroundJson{result, output, toString(result.heights), total.ms()},
-                       groundText(result, cleanUtf8(output), total.ms()));
+                       [&] { return groundText(result, cleanUtf8(output), total.ms()); });
 }
 
 }  // namespace relief

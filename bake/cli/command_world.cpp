@@ -98,8 +98,9 @@ Result<void> runWorldCommand(const BakeCommand& command, FileGuard& files) {
     RELIEF_TRY(verdict(folder, result));
     showMessages(result);
     RELIEF_TRY(writeDepfile(command, (folder / kWorldFileName).string(), result.inputs));
-    return printReport(command, WorldBakeJson{result, command.world, total.ms()},
-                       worldBakeText(result, cleanUtf8(command.world), total.ms(), command.common.verbose));
+    return printReport(command, WorldBakeJson{result, command.world, total.ms()}, [&] {
+        return worldBakeText(result, cleanUtf8(command.world), total.ms(), command.common.verbose);
+    });
 }
 
 Result<void> runWorldCheck(const CheckCommand& command, const std::string& file, FileGuard& files) {
