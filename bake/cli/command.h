@@ -30,16 +30,16 @@ struct CommonOptions {
 
 /// Adds a verb with --help, --manual, and the options that select messages: -q, -v and --warnings-only.
 /// \param description  a summary line, an empty line, and text for --help; withDetails() adds text for --manual
-/// \param example  complete command lines, one per line, with which the help begins
+/// \param example  complete command lines, one per line; the help starts with them
 CLI::App& addVerb(CLI::App& app, CommonOptions& common, const std::string& name,
                   const std::string& description, const std::string& example);
 
 /// Runs `each` for every file. With several files, it logs errors immediately and continues with the next file.
-/// Errors: that of the only file; for several, the code of the first failure, and the number of failures.
+/// Errors: that of a single file; for several files, the code of the first failure, and the number of failures.
 [[nodiscard]] Result<void> forEachFile(const std::vector<std::string>& files,
                                        const std::function<Result<void>(const std::string& file)>& each);
 
-/// Makes a verb set `action` to `run` when it is called.
+/// Sets `action` to `run` if the parsed command line contains the verb.
 void setAction(CLI::App& verb, Action& action, Action run);
 
 void logWarnings(const std::vector<std::string>& warnings);
@@ -52,7 +52,7 @@ void logWarnings(const std::vector<std::string>& warnings);
 /// Returns whether a file is a world, by its extension .json.
 [[nodiscard]] bool namesWorld(const std::string& file);
 
-// Each adds a verb, which sets `action` when it is called.
+// Each function adds a verb, which sets `action` if the parsed command line contains it.
 void addBake(CLI::App& app, Action& action);
 void addCheck(CLI::App& app, Action& action);
 void addInfo(CLI::App& app, Action& action);

@@ -50,9 +50,9 @@ void showNotices(BakeResult& result, std::size_t file_size) {
     const std::uint64_t in_memory = result.baked.collider.texelBytes();
     std::vector<std::string>& warnings = result.baked.report.warnings;
     if (in_memory > std::max(kToolMemory, kUnpackedPerStored * file_size)) {
-        warnings.push_back(result.mesh.mesh->name + ": its maps take " + bytesText(in_memory) +
-                           " in memory, for a file of " + bytesText(file_size) +
-                           "; other tools read it with --max-memory " + std::to_string(in_memory));
+        warnings.push_back(result.mesh.mesh->name + ": its maps unpack to " + bytesText(in_memory) +
+                           ", from a file of " + bytesText(file_size) + "; other tools need --max-memory " +
+                           std::to_string(in_memory) + " to read it");
     }
     for (const std::string& notice : result.notices) {
         spdlog::info(notice);
@@ -93,7 +93,7 @@ Result<void> runBake(BakeCommand& command, const CLI::App& verb, FileGuard& file
         return runRecipeCommand(command, verb, files);
     }
     if (command.output.empty() && command.world.empty()) {
-        // A folder has no file name: bakes reject it.
+        // A path that ends in a slash gives ".relief"; the bake then rejects the folder.
         const std::filesystem::path mesh(command.request.mesh);
         command.output = mesh.filename().replace_extension(kColliderExtension).string();
     }
@@ -178,12 +178,13 @@ void addBake(CLI::App& app, Action& action) {
     addFields(verb, command->request);
     addFields(verb, command->outputs);
     addRecipeOptions(verb, command->recipe);
-    addOption(verb, "--world", command->world,
-              withDetails("Bake a level into this folder: a collider for each distinct mesh, and world.json, "
-                          "which places them",
-                          "Each distinct mesh is baked once, however many nodes place it. Only what has "
-                          "changed is baked again. Options that choose maps, such as --map, --holes keep and "
-                          "--max-error, are for one mesh; the others apply to every mesh."))
+    addOption(
+        verb, "--world", command->world,
+        withDetails("Bake a level into this folder: a collider for each distinct mesh, and world.json, "
+                    "which places them",
+                    "Each distinct mesh is baked once, however many nodes place it. A repeated run "
+                    "skips meshes that are up to date. It excludes options that choose maps, such as --map, "
+                    "--holes keep and --max-error; all other options apply to every mesh."))
         ->valueText("DIR")
         ->excludes("--recipe");
     addKeyDetails(verb);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `relief bake` bakes one mesh, with --heights a height map, with --world a level or tiles of ground into a folder, and
-// with --recipe the assets of a file. Each has a source file.
+// `relief bake` bakes one mesh; with --heights, a height map; with --world, a level or ground tiles into a folder; with
+// --recipe, the assets of a file. Each of the four has its own source file.
 #pragma once
 
 #include <cstdint>

@@ -61,7 +61,7 @@ Result<void> checkFile(const std::string& file, bool json, const ContainerLimits
 }
 
 void addAdvice(const CheckCommand& command, const std::string& file, MeshCheck& run) {
-    // The maps of an animated collider are fixed.
+    // No advice applies to an animated collider, because its maps are fixed.
     if (run.recorded.request.animated ||
         (run.passes(command.max_error) && (command.max_error || run.wrongPercent() <= kGoodPercent))) {
         return;
@@ -118,7 +118,7 @@ Result<void> runCheck(const CheckCommand& command, const std::string& file, File
     auto [container, collider] = RELIEF_TRY(readColliderFile(file, command.limits));
     MeshCheck run = RELIEF_TRY(check(command.request, std::move(collider)));
     showCheckWarnings(run);
-    // Only the import finds the files that the mesh refers to.
+    // The files that the mesh references are known only after its import.
     for (const std::string& read : run.imported->dependencies) {
         RELIEF_TRY(files.reads(read));
     }
@@ -162,8 +162,8 @@ void addCheck(CLI::App& app, Action& action) {
             "With --mesh, the report also contains the percentage of wrong points near the surface and in "
             "the whole box, the errors of distance and normal, and the fraction of the surface that no map "
             "sees. Most commands were tried in memory; others are marked \"not tried\". Truth is the parity "
-            "of rays through the mesh, independent of the maps; for a collider baked with --repair, also "
-            "through the repaired mesh.\n"
+            "of rays through the mesh, independent of the maps. A collider baked with --repair is also "
+            "measured against the repaired mesh.\n"
             "For a world.json of relief bake --world, it checks that all containers are present and correct. "
             "With --mesh, it prints the percentage of wrong points near each body, the ten worst places, and "
             "the meshes that lose parts.\n"
@@ -196,14 +196,14 @@ void addCheck(CLI::App& app, Action& action) {
     addOption(
         verb, "--within", command->within,
         withDetails(
-            "Greatest distance of sample points from the surface of a world or ground, in world units",
+            "Maximum distance of sample points from the surface of a world or ground, in world units",
             "By default, nearly all points of a body lie within 1.5 % of its longest side, and those of "
             "ground within the distance between samples."))
         ->valueText("LENGTH")
         ->range(1e-6, 1e15)
         ->needs(mesh);
     addOption(verb, "--page", command->html,
-              "Also write the page of relief view with the verdict, the worst places and the remedies")
+              "Also write the page of relief view with the verdict, the worst places and the advice")
         ->valueText("OUT.html")
         ->needs(mesh);
     addFields(verb, command->request.import);

@@ -27,8 +27,8 @@ struct CheckCommand {
 [[nodiscard]] Result<void> runWorldCheck(const CheckCommand& command, const std::string& file,
                                          FileGuard& files);
 
-/// Returns whether `relief check` reads the file of --mesh as a height map without --heights: standard input or a file
-/// whose extension is not that of a mesh format.
+/// Returns whether `relief check` reads the file of --mesh as a height map, even without --heights: standard input, or a
+/// file whose extension belongs to no mesh format.
 [[nodiscard]] bool namesHeightMap(const std::string& file);
 
 /// \param file  the container or the world

@@ -124,7 +124,7 @@ template <class Source>
 Result<void> exportForEngine(const Source& source, Engine engine, const ExportCommand& command,
                              FileGuard& files) {
     const std::filesystem::path input = command.file;
-    // All worlds have the same file name.
+    // Every world is named world.json, so its folder gives the name.
     std::string name =
         namesWorld(command.file)
             ? std::filesystem::absolute(input).lexically_normal().parent_path().filename().string()
@@ -142,7 +142,7 @@ Result<void> exportForEngine(const Source& source, Engine engine, const ExportCo
     return {};
 }
 
-/// Smaller missing fractions are single texels, and not reported.
+/// Smaller missing fractions come from single texels and are not reported.
 constexpr double kMissingShown = 1e-3;
 
 /// Samples the field on a grid, and writes the level set and its surface.

@@ -39,12 +39,12 @@ Result<WorldField> fieldOf(const std::string& file, const ContainerLimits& limit
 }
 
 Result<void> checkOptions(const std::string& file, const CheckCommand& command) {
-    ImportLimits of_mesh;
-    of_mesh.triangles = command.request.import_limits.triangles;
-    const std::string of_import = importOptionOf(command.request.import, of_mesh);
+    ImportLimits mesh_limits;
+    mesh_limits.triangles = command.request.import_limits.triangles;
+    const std::string import_option = importOptionOf(command.request.import, mesh_limits);
     const std::string option = !command.html.empty()      ? "--page"
                                : command.request.min_part ? "--min-part"
-                                                          : of_import;
+                                                          : import_option;
     if (!option.empty()) {
         return fail(ErrorCode::kUsage, option + " has no effect with a height map; remove it");
     }
@@ -60,7 +60,7 @@ bool isHeightMapExtension(const std::string& extension) {
     return std::ranges::find(kExtensions, lowerCase(extension)) != kExtensions.end();
 }
 
-/// Returns the settings that the ground records. \param mesh  the value of --mesh
+/// Returns the settings recorded in the ground. \param mesh  the value of --mesh
 Result<HeightsSpec> recorded(const WorldField& field, const std::string& name, const std::string& mesh) {
     Result<HeightsSpec> heights = recordedHeights(field, name);
     const std::string extension = std::filesystem::path(mesh).extension().string();

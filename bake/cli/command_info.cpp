@@ -14,7 +14,7 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t kLineMost = 80;  // longest line of options, in characters
+constexpr std::size_t kLineMax = 80;  // maximum length of a line of options, in characters
 
 struct InfoCommand {
     CommonOptions common;
@@ -35,7 +35,7 @@ std::string vectorText(const glm::vec3& v) {
 std::string bakedText(const Provenance& from) {
     const std::string by = "baked    by " + from.tool_version + " with";
     const std::string options = from.optionsText();
-    if (options.size() <= kLineMost) {
+    if (options.size() <= kLineMax) {
         return by + " " + options + "\n";
     }
     std::string text = by;

@@ -49,8 +49,7 @@ Result<std::vector<FieldSample>> sampledWorld(const QueryCommand& command, std::
         return fail(
             ErrorCode::kUsage,
             quotedPath(command.file) +
-                " is a world, which only has distances to planes; use --distance plane, or query one of its "
-                "colliders");
+                " is a world, which supports only --distance plane; use it, or query one of its colliders");
     }
     const WorldField field(RELIEF_TRY(loadWorld(command.file, command.limits)));
     const std::filesystem::path folder = std::filesystem::path(command.file).parent_path();
@@ -96,9 +95,9 @@ void addQuery(CLI::App& app, Action& action) {
             "Each output line is x,y,z,f,nx,ny,nz,map: the signed distance f to the nearest surface, its "
             "normal, and its map. f is negative inside, inf outside at an unknown distance, and empty if no "
             "map votes.",
-            "With --distance plane, f and the normal are those of the plane that decides the side; the side "
-            "is the same.\n"
-            "For a world, they are always those of planes, and the last number is the body."),
+            "With --distance plane, f and the normal belong to the plane that decides the side; the side is "
+            "the same.\n"
+            "A world always uses --distance plane; the last column is the body."),
         "relief query bunny.relief --points in.csv -o out.csv\n"
         "echo 0,0.1,0 | relief query bunny.relief --points - -o - --distance plane");
     addOption(verb, "FILE", command->file, "Collider or world.json; - for a collider on standard input")

@@ -225,8 +225,8 @@ Result<RecipeResult> bakeAll(RecipeWork& work, bool shown, RecipeEvents& events)
     return result;
 }
 
-/// Returns whether a bake reads only this file: a height map, or a mesh that refers to no other file.
-bool isWhole(const RecipeJob& job) {
+/// Returns whether a bake reads only one file: a height map, or a mesh whose format never references other files.
+bool readsOneFile(const RecipeJob& job) {
     if (std::ranges::any_of(job.options, [](const auto& word) { return word.starts_with(kHeights); })) {
         return true;
     }
@@ -247,10 +247,10 @@ std::vector<InputFile> filesOf(const auto* from, const fs::path& folder) {
 
 /// Returns the mesh and all files that it refers to; empty if they cannot be read.
 std::vector<InputFile> filesOfMesh(const RecipeJob& job, const fs::path& folder) {
-    const bool whole = isWhole(job);
+    const bool one_file = readsOneFile(job);
     const std::optional<std::string> hash =
-        whole || job.mesh_is_folder ? hashOfInput(job.mesh_path) : std::nullopt;
-    if (whole) {
+        one_file || job.mesh_is_folder ? hashOfInput(job.mesh_path) : std::nullopt;
+    if (one_file) {
         return hash ? std::vector<InputFile>{{job.mesh, *hash}} : std::vector<InputFile>();
     }
     std::vector<InputFile> files;
@@ -282,7 +282,7 @@ Result<void> addKeys(std::vector<AssetResult>& assets, const RecipeRun& run) {
         if (!asset.key.empty()) {
             continue;
         }
-        const auto [mesh, is_new] = known.try_emplace({job.mesh, job.world, isWhole(job)});
+        const auto [mesh, is_new] = known.try_emplace({job.mesh, job.world, readsOneFile(job)});
         if (is_new) {
             mesh->second = filesOfMesh(job, folder);
         }
@@ -322,7 +322,7 @@ Result<void> writeFiles(const BakeCommand& command, RecipeWork& work,
     if (depfile.empty() && options.stamp.empty()) {
         return {};
     }
-    // Only the bakes find the files that the meshes refer to.
+    // The files that a mesh references are known only after its bake.
     for (const AssetResult& asset : assets) {
         for (const InputFile& input : asset.inputs) {
             RELIEF_TRY(work.files.reads(recipeFolder(options.recipe) / input.path));
@@ -348,8 +348,8 @@ std::vector<RecipeKey> recipeKeys() {
 void addRecipeOptions(CLI::App& verb, BakeRecipeOptions& options) {
     OptionRef recipe = addOption(verb, "--recipe", options.recipe,
                                  withDetails("Bake the assets of this TOML file that are out of date",
-                                             "Each bake runs in a process of its own; -j sets how many run "
-                                             "at once. Options of the bakes are keys of the recipe."));
+                                             "Each bake runs in its own process; -j sets how many run at "
+                                             "once. Set the options of bakes as keys in the recipe."));
     recipe->valueText("FILE");
     addParsed(verb, "--shard", options.shard, parseShard, "K/N with 1 <= K <= N, such as 2/4",
               "Bake only part K of N of the recipe; the parts may run at the same time")

@@ -32,7 +32,7 @@ struct ViewCommand {
     std::string output;
 };
 
-/// The report, and the data with which the page shows it.
+/// Returns the page of a check: the collider, the mesh, and the report with normals at the worst places.
 Result<std::string> checkPage(Page page, const MeshCheck& check, std::optional<float> max_error) {
     Json report = jsonOf(MeshCheckReport{check, page.name, max_error});
     report.erase("times_ms");  // differs in each run
@@ -74,13 +74,13 @@ Result<std::string> worldPage(const std::string& name, const World& world, const
     // The default scene of a world. A JSON string is also a TOML string.
     Page page{
         .name = inputName(name), .check = check, .scene = "world = " + jsonOf(file.filename()).dump() + "\n"};
-    const auto hold = [&](const fs::path& held) -> Result<void> {
-        page.files[nameBeside(held, file)] = RELIEF_TRY(readForPage(files, held));
+    const auto embed = [&](const fs::path& path) -> Result<void> {
+        page.files[nameBeside(path, file)] = RELIEF_TRY(readForPage(files, path));
         return {};
     };
-    RELIEF_TRY(hold(file));
+    RELIEF_TRY(embed(file));
     for (const WorldCollider& collider : world.colliders) {
-        RELIEF_TRY(hold(file.parent_path() / collider.file));
+        RELIEF_TRY(embed(file.parent_path() / collider.file));
         if (collider.coarse) {
             RELIEF_TRY(files.reads(file.parent_path() / collider.coarse->file));
         }
@@ -89,7 +89,7 @@ Result<std::string> worldPage(const std::string& name, const World& world, const
     return page.make(player);
 }
 
-/// The report, and the data with which the page shows it.
+/// Returns the report, with a picture of each of the worst places.
 Result<Json> worldCheckJson(const WorldCheckJson& check) {
     Json report = jsonOf(check);
     Json& accuracy = report["accuracy"];
@@ -125,7 +125,7 @@ Result<std::string> outputOf(const ViewCommand& command) {
     return fs::path(command.file).replace_extension(".html").string();
 }
 
-/// Equal inputs give equal bytes. Files are checked as `relief check` does.
+/// Writes the page; equal inputs give identical bytes. Validates files like `relief check`.
 Result<void> runView(const ViewCommand& command, FileGuard& files) {
     const bool world = namesWorld(command.file);
     if (lowerCase(fs::path(command.file).extension().native()) == ".toml") {
@@ -198,8 +198,8 @@ void addView(CLI::App& app, Action& action) {
             "The page is a single HTML file that any browser with WebGL2 opens from disk. It shows the "
             "surface that the maps represent, each map, and slices. --mesh adds the mesh and the worst "
             "places of relief check.",
-            "The page of a world shows snow on it and the name of each body. With --mesh, it also shows the "
-            "level, bodies coloured by the errors near them, and slices through the ten worst places. It "
+            "The page of a world shows falling snow and the name of each body. With --mesh, it also shows "
+            "the level, bodies coloured by the errors near them, and slices through the ten worst places. It "
             "needs the player page that `scripts/build.sh web` builds.\n"
             "`relief-sim SCENE.toml --page OUT.html` writes the page of a scene."),
         "relief view bunny.relief\n"

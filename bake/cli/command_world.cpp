@@ -68,7 +68,7 @@ Result<void> preflightWorld(const BakeCommand& command, FileGuard& files) {
     }
     if (folder == "-" || outputs.depfile == "-") {
         return fail(ErrorCode::kUsage,
-                    "--world needs a folder and --depfile a file, not standard output; name them");
+                    "--world and --depfile cannot be standard output; name a folder and a file");
     }
     RELIEF_TRY(files.reads(command.request.mesh));
     if (outputs.json) {
@@ -136,7 +136,7 @@ Result<void> runWorldCheck(const CheckCommand& command, const std::string& file,
         shortNumber(accuracy->all.total()) +
             " % of the points near the surface are on the wrong side, more than --max-error " +
             shortest(*command.max_error) +
-            (floats ? " %; move its meshes to their origins" : " %; bake the level with a larger --budget"));
+            (floats ? " %; move the meshes to their origins" : " %; bake the level with a larger --budget"));
 }
 
 }  // namespace relief

@@ -10,7 +10,7 @@
 namespace relief {
 namespace {
 
-/// A line of the manual: a key, and what it means.
+/// Returns a line of the manual: a key and its meaning.
 std::string keyLine(std::string_view key, const std::string& text) {
     constexpr std::size_t kWidth = 9;
     std::string line = "\n" + std::string(key);

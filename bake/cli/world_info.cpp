@@ -57,7 +57,7 @@ std::string worldInfoText(const WorldInfo& info) {
 
 void fields(FieldVisitor& visit, const WorldColliderInfo& collider) {
     FieldRef(collider.named).visit(visit);
-    visit("bodies", collider.bodies, {"Number of bodies that place it"});
+    visit("bodies", collider.bodies, {"Number of its bodies"});
     visit("maps", collider.maps, {"Number of its maps"});
     visit("bytes", collider.bytes, {"Size of its file", "bytes"});
 }

@@ -13,7 +13,7 @@ namespace relief {
 
 struct WorldColliderInfo {
     WorldCollider named;
-    std::size_t bodies = 0;  ///< bodies that place it
+    std::size_t bodies = 0;  ///< number of its bodies
     std::size_t maps = 0;
     std::uint64_t bytes = 0;  ///< size of its file
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Python values of results, texts and lists.
+// Converts results, texts and lists to Python values.
 #pragma once
 
 #include <pybind11/numpy.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs long work that Ctrl-C interrupts, although the work is independent of Python.
+// Runs long work so that Ctrl-C in Python interrupts it, although the work itself does not use Python.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -43,12 +43,12 @@ inline constexpr std::chrono::milliseconds kSignalInterval{50};
 /// Thrown by checkpoints in abandoned work.
 struct Abandoned {};
 
-/// Held by work that may be abandoned. If the process exits while such work runs, it ends at once, because the work
-/// still uses objects that the destructors of libraries would destroy.
+/// Held by work that may be abandoned. If the process exits while such work runs, it skips the destructors of libraries,
+/// because the work still uses their objects.
 class MayBeAbandoned {
   public:
     MayBeAbandoned() {
-        // Called before the destructors of libraries, which were registered earlier.
+        // Runs before the destructors of libraries: handlers run in reverse order of registration.
         static const int registered = ::on_exit(endAtOnce, nullptr);
         static_cast<void>(registered);
         ++running;

@@ -45,7 +45,7 @@ struct Samples {
 };
 
 /// Points between two signal checks: a tenth of a second on a few cores.
-constexpr std::size_t kPart = std::size_t{1} << 16;
+constexpr std::size_t kChunk = std::size_t{1} << 16;
 
 /// Calls evaluate_at(p) for all points, on all cores. A point that is not finite gets NaN as distance and normal.
 template <class Evaluate>
@@ -70,8 +70,8 @@ Samples sampleAll(const Floats& points, const Evaluate& evaluate_at) {
         std::copy_n(&sample.normal.x, 3, normal + 3 * i);
         map[i] = sample.map;
     };
-    for (std::size_t begin = 0; begin < at.size(); begin += kPart) {
-        const std::size_t end = std::min(begin + kPart, at.size());
+    for (std::size_t begin = 0; begin < at.size(); begin += kChunk) {
+        const std::size_t end = std::min(begin + kChunk, at.size());
         released([&] {
             tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, 4096), [&](const auto& range) {
                 for (std::size_t i = range.begin(); i != range.end(); ++i) {
@@ -91,7 +91,7 @@ py::tuple query(const Collider& collider, const Floats& points, const std::strin
     return py::make_tuple(s.distance, s.normal, s.map);
 }
 
-/// Returns the body in place of the map.
+/// Returns the distance, normal and body at each point.
 py::tuple queryWorld(const WorldField& field, const Floats& points) {
     const Samples s = sampleAll(points, [&](const glm::vec3& p) {
         const WorldSample sample = field.evaluate(p);
@@ -296,7 +296,7 @@ PYBIND11_MODULE(_relief, m) {
     };
     derive(ErrorCode::kFailure, "Error", py::reinterpret_borrow<py::object>(PyExc_RuntimeError));
     const py::object base = (*errors)[ErrorCode::kFailure];
-    // Python raises it too, for invalid arguments of a function.
+    // relief/__init__.py also raises it, for invalid arguments.
     derive(ErrorCode::kUsage, "UsageError", py::make_tuple(base, py::handle(PyExc_ValueError)));
     derive(ErrorCode::kInvalidInput, "InputError", base);
     derive(ErrorCode::kIo, "FileError", base);
@@ -339,7 +339,7 @@ PYBIND11_MODULE(_relief, m) {
              [](const std::shared_ptr<WorldField>& f, std::size_t i) {
                  const auto& colliders = f->colliders();
                  return SharedCollider(
-                     f, const_cast<Collider*>(&colliders.at(i)));  // NOLINT: nothing changes one
+                     f, const_cast<Collider*>(&colliders.at(i)));  // NOLINT: Python never modifies it
              })
         .def_property_readonly("collider_count", [](const WorldField& f) { return f.colliders().size(); })
         .def("query", &queryWorld);

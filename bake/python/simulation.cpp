@@ -24,7 +24,7 @@ struct Hit : ParticleEvent {
 class HeadlessSimulation {
   public:
     /// \param root  SceneOverrides::root.
-    /// \param hits  stores hits for takeHits().
+    /// \param hits  whether to store hits for takeHits().
     HeadlessSimulation(const std::filesystem::path& scene, std::optional<std::uint64_t> seed,
                        const std::filesystem::path& root, bool hits)
         : context_(need(GlContext::create())) {
@@ -51,8 +51,8 @@ class HeadlessSimulation {
         }
     }
     ~HeadlessSimulation() {
-        // If another thread collects this object, it must not free the objects of the context: only the thread that has
-        // the context may.
+        // If another thread collects this object, its GL objects are leaked: only the thread of the context may free
+        // them.
         if (simulation_ && !context_->makeCurrent()) {
             static_cast<void>(simulation_.release());
             static_cast<void>(loaded_.release());

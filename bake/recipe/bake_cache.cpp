@@ -48,7 +48,7 @@ BakeCacheEntry entryOf(const Json& json) {
     entry.output_bytes = json.at("output_bytes").get_ref<const Json::number_unsigned_t&>();
     entry.options = json.at("options").get<std::vector<std::string>>();
     const Json& inputs = json.at("inputs");
-    static_cast<void>(inputs.at(0));  // an entry without inputs would always be valid
+    static_cast<void>(inputs.at(0));  // throws if it is empty: such an entry would never become stale
     for (const Json& input : inputs) {
         entry.inputs.push_back({input.at("file").get<std::string>(), input.at("hash").get<std::string>()});
     }
@@ -116,7 +116,7 @@ Result<BakeCacheEntries> parseBakeCache(std::string_view text) {
             return entries;
         }
     } catch (const Json::exception&) {
-        // The kind of error does not matter: the file is rewritten.
+        // The kind of error does not matter, because the file will be rewritten.
     }
     return fail(ErrorCode::kInvalidInput, "it is not a cache file, or has an unsupported version");
 }

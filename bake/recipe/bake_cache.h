@@ -2,7 +2,7 @@
 // Records the inputs of each output of a recipe, so that only stale outputs are baked again.
 //
 // An entry records the hashes of the inputs and the output, the options and the program. Baking is deterministic: if an
-// entry matches the present files, the output is correct, no matter who wrote it. If it does not match, the cost is one
+// entry matches the current files, the output is correct, no matter who wrote the entry. A wrong entry costs only one
 // bake. Contents are always hashed; times are never compared.
 #pragma once
 
@@ -44,24 +44,24 @@ using BakeCacheEntries = std::map<std::string, BakeCacheEntry>;
 /// that bakes write.
 [[nodiscard]] std::optional<std::string> hashOfInput(const std::filesystem::path& path);
 
-/// Reads a cache file; nullopt if there is none. Does not follow a symbolic link in its place.
+/// Reads a cache file; nullopt if there is none. Does not follow a symbolic link at `path`.
 /// Errors: kInvalidInput (not a regular file), kIo, kLimit.
 [[nodiscard]] Result<std::optional<std::vector<std::byte>>> readCacheFile(const std::filesystem::path& path);
-/// Replaces a cache file, or a symbolic link in its place. Errors: kIo.
+/// Replaces a cache file, or a symbolic link at `path`. Errors: kIo.
 [[nodiscard]] Result<void> writeCacheFile(const std::filesystem::path& path, std::string_view text);
 
 /// Parses the text of a cache file. Errors: kInvalidInput (not a cache file of this version).
 [[nodiscard]] Result<BakeCacheEntries> parseBakeCache(std::string_view text);
 [[nodiscard]] std::string bakeCacheText(const BakeCacheEntries& entries);
 
-/// Loads the cache file of an output folder; empty if there is none. Does not follow a symbolic link in its place; the
+/// Loads the cache file of an output folder; empty if there is none. Does not follow a symbolic link at its path; the
 /// next update replaces the link.
 /// Errors, prefixed with the file: kInvalidInput, kIo, kLimit.
 [[nodiscard]] Result<BakeCacheEntries> loadBakeCache(const std::filesystem::path& output_folder);
 
 /// Adds entries to the cache file, preserving entries that other runs have added in the meantime. Removes entries whose
 /// output is gone. Safe for any number of concurrent processes, because the folder is locked (flock). If it cannot be
-/// locked, entries may get lost, which costs a bake. Errors: kIo.
+/// locked, entries may be lost, and their outputs are baked again. Errors: kIo.
 [[nodiscard]] Result<void> updateBakeCache(const std::filesystem::path& output_folder,
                                            const BakeCacheEntries& entries);
 
@@ -72,7 +72,7 @@ using BakeCacheEntries = std::map<std::string, BakeCacheEntry>;
 [[nodiscard]] std::string assetKey(const std::string& tool, const std::vector<std::string>& options,
                                    std::vector<InputFile> inputs);
 
-/// Returns the name of a file relative to the recipe's folder, or the unchanged name if the file is elsewhere.
+/// Returns the path of a file relative to the recipe's folder, or the unchanged path if there is no relative one.
 [[nodiscard]] std::string nameInRecipe(const std::filesystem::path& file,
                                        const std::filesystem::path& recipe_folder);
 

@@ -75,7 +75,7 @@ ChildProcesses::ChildProcesses() {
 ChildProcesses::~ChildProcesses() {
     endAll();
     if (termination_signal_ != 0) {
-        static_cast<void>(terminationSignal());  // one request is enough; others would be delivered now
+        static_cast<void>(terminationSignal());  // discards further requests, which would be delivered below
     }
     ::sigprocmask(SIG_SETMASK, &mask_before_, nullptr);
     ::unsetenv(kParentVariable);
@@ -180,7 +180,7 @@ void ChildProcesses::endBySignal(int signal) {
     ::sigaddset(&set, signal);
     ::sigprocmask(SIG_UNBLOCK, &set, nullptr);
     ::raise(signal);
-    // The handler returned.
+    // A handler caught the signal and returned.
     std::signal(signal, SIG_DFL);
     ::raise(signal);
     ::_exit(128 + signal);

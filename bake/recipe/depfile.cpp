@@ -10,28 +10,28 @@ namespace {
 
 constexpr std::string_view kEscaped = " #$:";
 
-/// Escapes a name so that both programs read it unchanged. They treat backslashes before an escaped character
+/// Escapes a name so that Make and Ninja read it unchanged. They treat backslashes before an escaped character
 /// differently, and have no escape for some characters.
 Result<std::string> escaped(const std::string& name, bool target) {
-    const auto refuse = [&](const std::string& what) {
+    const auto reject = [&](const std::string& what) {
         return fail(ErrorCode::kUnsupported, quotedPath(name) + " cannot be written to a depfile: " + what +
                                                  " is not portable between Make and Ninja; rename the file");
     };
     if (name.empty()) {
-        return refuse("an empty name");
+        return reject("an empty name");
     }
     std::string text;
     for (std::size_t i = 0; i < name.size(); ++i) {
         const char c = name[i];
         const auto byte = static_cast<unsigned char>(c);
         if (byte < 0x20 || byte == 0x7f) {
-            return refuse("a control character");
+            return reject("a control character");
         }
         if (c == ';' || c == '=' || (target && c == '%')) {
-            return refuse(std::string("'") + c + "'");
+            return reject(std::string("'") + c + "'");
         }
         if (c == '\\' && (i + 1 == name.size() || kEscaped.find(name[i + 1]) != std::string_view::npos)) {
-            return refuse("a backslash in this place");
+            return reject("a backslash in this place");
         }
         if (c == '$') {
             text += "$$";

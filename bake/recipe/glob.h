@@ -20,7 +20,7 @@ class GlobPattern {
   public:
     /// Parses a pattern.
     /// Errors: kInvalidInput (empty, absolute, a zero byte, a part `..`, `**` at the end), kLimit (more than 64 parts).
-    /// The message continues after the pattern: "names no file; …".
+    /// The message is meant to follow the pattern: "names no file; …".
     [[nodiscard]] static Result<GlobPattern> parse(std::string_view text);
 
     /// Whether any part has a wildcard.
@@ -45,7 +45,7 @@ class GlobPattern {
 
 struct GlobResult {
     std::vector<std::string> files;    ///< relative to `folder`, parts separated by `/`; sorted by bytes
-    std::vector<std::string> folders;  ///< that were searched, relative to `folder`; "" for itself; sorted
+    std::vector<std::string> folders;  ///< searched folders, in the same form; "" is `folder`
 };
 
 /// Returns the files below a folder that match a pattern: regular files or folders, including symbolic links to them.

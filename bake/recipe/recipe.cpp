@@ -20,21 +20,21 @@ namespace fs = std::filesystem;
 constexpr std::int64_t kRecipeVersion = 1;
 constexpr std::size_t kTextMax = 4096;  // limit on the bytes of a value
 constexpr std::array<std::string_view, 3> kTopKeys = {"version", "defaults", "asset"};
-/// Options that select the maps: an asset with any of these ignores those of the defaults.
+/// Options that select or refine the maps. Worlds, and assets that set an option that selects maps, inherit none of them.
 constexpr std::array<std::string_view, 8> kMapChoice = {"map",       "paper",  "budget", "texel",
                                                         "max-error", "decode", "depth",  "resolution"};
-/// The first options of kMapChoice select the maps; the others refine the selection.
-constexpr std::size_t kChoosers = 5;
+/// Number of options of kMapChoice that select the maps; they come first.
+constexpr std::size_t kSelectors = 5;
 
-/// Defaults that apply to an asset with its own height map; all others are for meshes.
-constexpr std::array<std::string_view, 2> kOfHeights = {"compress", "timeout"};
+/// Defaults that an asset with `heights` inherits; all others are for meshes.
+constexpr std::array<std::string_view, 2> kGroundDefaults = {"compress", "timeout"};
 
 /// Thrown if a recipe exceeds a limit.
-struct BeyondLimit {
+struct LimitExceeded {
     std::string message;
 };
 
-void refuseUnknown(const TomlValue& table, std::span<const std::string_view> known) {
+void rejectUnknown(const TomlValue& table, std::span<const std::string_view> known) {
     for (const toml::key* key : keysInOrder(*table.node().as_table())) {
         if (std::ranges::find(known, key->str()) == known.end()) {
             const std::string guess = didYouMean(key->str(), known);
@@ -60,8 +60,8 @@ std::string textOf(const TomlValue& value, bool number) {
         value.fail(value.name() + " is empty; leave the key out");
     }
     if (text.size() > kTextMax) {
-        throw BeyondLimit{value.place() + ": " + value.name() + " is longer than " +
-                          std::to_string(kTextMax) + " bytes"};
+        throw LimitExceeded{value.place() + ": " + value.name() + " is longer than " +
+                            std::to_string(kTextMax) + " bytes"};
     }
     if (text.find('\0') != std::string::npos) {
         value.fail(value.name() + " contains a zero byte; remove it");
@@ -75,8 +75,8 @@ std::vector<std::string> textsOf(const TomlValue& value) {
         return {textOf(value, false)};
     }
     if (value.array()->size() > kRecipePatternsMax) {
-        throw BeyondLimit{value.place() + ": " + value.name() + " lists more than " +
-                          std::to_string(kRecipePatternsMax) + "; use patterns"};
+        throw LimitExceeded{value.place() + ": " + value.name() + " lists more than " +
+                            std::to_string(kRecipePatternsMax) + "; use patterns"};
     }
     std::vector<std::string> texts;
     for (std::size_t i = 0; i < value.array()->size(); ++i) {
@@ -108,10 +108,10 @@ RecipeAsset readTable(const TomlValue& table, bool is_asset, const std::vector<R
         known.insert(known.end(), {"mesh", "exclude", "optional"});
     }
     std::ranges::transform(keys, std::back_inserter(known), &RecipeKey::name);
-    refuseUnknown(table, known);
+    rejectUnknown(table, known);
     RecipeAsset asset;
     asset.place = table.place();
-    // Messages name only the keys.
+    // Messages contain only the key, without its table.
     const auto find = [&](const std::string& key) -> std::optional<TomlValue> {
         const toml::node* node = table.node().as_table()->get(key);
         return node == nullptr ? std::nullopt : std::optional(TomlValue(*node, key, table.file()));
@@ -155,10 +155,11 @@ void merge(RecipeAsset& asset, const RecipeAsset& defaults) {
         return std::ranges::find(names, name) != names.end();
     };
     // A budget for single meshes does not apply to a level.
-    const bool chooses = has_one_of(kChoosers) || asset.isWorld();
+    const bool selects_maps = has_one_of(kSelectors) || asset.isWorld();
     const bool is_ground = asset.options.contains("heights");
     for (const auto& [name, value] : defaults.options) {
-        if (!(chooses && is_one_of(kMapChoice, name)) && !(is_ground && !is_one_of(kOfHeights, name))) {
+        if (!(selects_maps && is_one_of(kMapChoice, name)) &&
+            !(is_ground && !is_one_of(kGroundDefaults, name))) {
             asset.options.emplace(name, value);  // emplace() keeps the asset's own value
         }
     }
@@ -172,7 +173,7 @@ std::vector<RecipeAsset> readRecipe(const TomlValue& top, const std::vector<Reci
     if (version->node().value_exact<std::int64_t>() != kRecipeVersion) {
         version->fail("version must be 1, the only supported version");
     }
-    refuseUnknown(top, kTopKeys);
+    rejectUnknown(top, kTopKeys);
     const auto table = top.find("defaults");
     const RecipeAsset defaults = table ? readTable(*table, false, keys) : RecipeAsset();
     const auto tables = top.find("asset");
@@ -180,9 +181,9 @@ std::vector<RecipeAsset> readRecipe(const TomlValue& top, const std::vector<Reci
         tables.value_or(top).fail("a recipe needs at least one [[asset]]");
     }
     if (tables->array()->size() > kRecipeTablesMax) {
-        throw BeyondLimit{tables->place() + ": " + std::to_string(tables->array()->size()) +
-                          " [[asset]] tables exceed the limit of " + std::to_string(kRecipeTablesMax) +
-                          "; use patterns, or several recipes"};
+        throw LimitExceeded{tables->place() + ": " + std::to_string(tables->array()->size()) +
+                            " [[asset]] tables exceed the limit of " + std::to_string(kRecipeTablesMax) +
+                            "; use patterns, or several recipes"};
     }
     std::vector<RecipeAsset> assets;
     for (std::size_t i = 0; i < tables->array()->size(); ++i) {
@@ -211,8 +212,8 @@ Result<std::vector<RecipeAsset>> parseRecipe(std::string_view text, const std::v
     std::vector<RecipeAsset> assets;
     try {
         RELIEF_TRY(readTomlFile(text, file, [&](const TomlValue& top) { assets = readRecipe(top, keys); }));
-    } catch (const BeyondLimit& beyond) {
-        return fail(ErrorCode::kLimit, beyond.message);
+    } catch (const LimitExceeded& exceeded) {
+        return fail(ErrorCode::kLimit, exceeded.message);
     }
     return assets;
 }

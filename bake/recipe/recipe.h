@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recipes: files in TOML that describe many bakes. bake/recipe/README.md describes them.
+// Recipes: TOML files that list many bakes. bake/recipe/README.md describes them.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ struct RecipeKey {
 using RecipePlace = std::string;
 
 struct RecipeValue {
-    std::vector<std::string> values;  ///< a flag has none if it is off, and "" if it is on
+    std::vector<std::string> values;  ///< for a flag, empty if it is off, and one "" if it is on
     RecipePlace place;
 };
 
@@ -46,7 +46,7 @@ struct RecipeAsset {
     RecipePlace mesh_place;
     RecipePlace output_place;
 
-    /// Whether it bakes levels or height maps into worlds: `output` names their kWorldFileName.
+    /// Whether the asset bakes levels or height maps into worlds: the file name of `output` is kWorldFileName.
     [[nodiscard]] bool isWorld() const;
 };
 

@@ -35,7 +35,7 @@ std::string inQuotes(const std::string& text) {
 
 /// Returns the first link in a folder that leads out of `root`, through which any file could be read.
 /// \param inside  the folder, relative to `root`.
-std::optional<std::string> linkOut(const fs::path& root, const fs::path& inside) {
+std::optional<std::string> escapingLink(const fs::path& root, const fs::path& inside) {
     std::set<std::string> out;
     std::error_code error;
     for (fs::directory_iterator entry(root / inside, error), end; !error && entry != end;
@@ -112,8 +112,8 @@ class Expander {
     }
 
   private:
-    /// A world removes containers that it no longer names, and names new ones by their contents. Nothing else may be
-    /// written to its folder.
+    /// Checks that no other output is in or below the folder of a world: its bake removes containers that it no longer
+    /// references, and names new containers by their contents.
     Result<void> keepWorldsApart() {
         if (std::ranges::none_of(result_.jobs, &RecipeJob::world)) {
             return {};
@@ -234,7 +234,7 @@ class Expander {
         std::error_code error;
         job.mesh_is_folder = fs::is_directory(*path, error);
         if (job.mesh_is_folder) {
-            if (const auto link = linkOut(folder_, mesh)) {
+            if (const auto link = escapingLink(folder_, mesh)) {
                 return at(asset.mesh_place, "mesh " + inQuotes(mesh) + " contains the link " +
                                                 inQuotes(*link) +
                                                 ", which points outside the recipe's folder; remove it");
@@ -264,7 +264,7 @@ class Expander {
         for (std::size_t i = 0; i < asset.output.size(); ++i) {
             const char c = asset.output[i];
             if (c == '}') {
-                return at(asset.output_place, "output has a } without a {; use {stem}, {name} or {dir}");
+                return at(asset.output_place, "output contains a } without a {; use {stem}, {name} or {dir}");
             }
             if (c != '{') {
                 name += c;
@@ -280,7 +280,7 @@ class Expander {
             } else if (word == "dir") {
                 name += path.has_parent_path() ? path.parent_path().string() : ".";
             } else {
-                return at(asset.output_place, "output has the unknown {" + cleanUtf8(word, 80) +
+                return at(asset.output_place, "output contains the unknown {" + cleanUtf8(word, 80) +
                                                   "}; use {stem}, {name} or {dir}");
             }
             i = end;

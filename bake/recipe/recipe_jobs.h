@@ -19,10 +19,10 @@ inline constexpr std::size_t kRecipeJobsMax = 100'000;
 inline constexpr std::string_view kColliderExtension = ".relief";
 /// Cache file next to the outputs: the inputs of each output.
 inline constexpr const char* kBakeCacheName = ".relief-cache.json";
-/// Cache file next to the containers of a level: how their errors grow with fewer bytes.
+/// Cache file next to the containers of a level: their errors as functions of their bytes.
 inline constexpr const char* kErrorCurvesName = ".relief-curves.json";
 
-/// Marks the RecipeJob::options of a world.
+/// Option that marks the RecipeJob::options of a world.
 inline constexpr const char* kWorldOption = "--world";
 
 /// A bake of one mesh into a collider, or of a level or height map into a world.
@@ -34,14 +34,14 @@ struct RecipeJob {
     bool mesh_is_folder = false;         ///< the mesh is a folder whose mesh files form a level
     bool world = false;                  ///< `output` is a world's file, and the only output in its folder
     std::vector<std::string> arguments;  ///< of `relief bake`, files relative to the current folder; sorted
-    /// Everything that the output depends on: `arguments`, with files relative to the recipe's folder, and
+    /// The options that the output depends on: `arguments`, with files relative to the recipe's folder, and for a world
     /// kWorldOption.
     std::vector<std::string> options;
 };
 
 struct RecipeJobs {
     std::vector<RecipeJob> jobs;                 ///< in the order of the recipe
-    std::vector<std::filesystem::path> folders;  ///< that patterns searched; without duplicates
+    std::vector<std::filesystem::path> folders;  ///< folders that patterns searched; without duplicates
     FileGuard files;                             ///< contains every input and every output
 };
 

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// Interval of cache updates during bakes; a killed run loses at most this much.
+/// Interval of cache updates during bakes; a killed run loses at most the entries since the last update.
 constexpr auto kCacheInterval = std::chrono::seconds(2);
 constexpr std::string_view kErrorStart = "relief: error: ";
 constexpr std::string_view kWarningStart = "relief: warning: ";
@@ -50,13 +50,13 @@ Result<BakeCacheEntry> entryOf(const RecipeJob& job) {
     }
     for (const auto& [file, file_hash] : entry.containers) {
         const std::uintmax_t bytes = fs::file_size(job.output_path.parent_path() / file, error);
-        entry.output_bytes += error ? 0 : bytes;  // the next run finds it missing
+        entry.output_bytes += error ? 0 : bytes;  // the next run reports a missing container
     }
     return entry;
 }
 
-/// Returns `wrong_percent` of a bake's report. For a world, returns that of its worst collider, or nullopt unless all
-/// were measured.
+/// Returns `wrong_percent` of a bake's report. For a world, returns that of its worst collider, or nullopt if any
+/// collider was not measured.
 std::optional<double> wrongPercentOf(const nlohmann::json& report) {
     const auto of = [](const nlohmann::json& json) {
         const auto found = json.find("wrong_percent");
@@ -77,7 +77,8 @@ std::optional<double> wrongPercentOf(const nlohmann::json& report) {
     return worst;
 }
 
-/// Allows replacing an unknown file only if it is of the same kind, because meshes may reference it.
+/// For an output that is not in the cache: fails if it would replace a file of another kind (collider or world), because
+/// a mesh may reference such a file.
 Result<void> checkReplaced(const RecipeJob& job) {
     constexpr std::size_t kBegin = 4096;
     std::error_code error;
@@ -155,7 +156,7 @@ class Runner {
                 RELIEF_TRY(checkReplaced(asset.job));
             }
             if (!reason) {
-                made(asset, AssetState::kUpToDate, entry->second);
+                complete(asset, AssetState::kUpToDate, entry->second);
             } else {
                 asset.reason = *reason;
             }
@@ -164,7 +165,7 @@ class Runner {
         return {};
     }
 
-    void made(AssetResult& asset, AssetState state, const BakeCacheEntry& entry) {
+    void complete(AssetResult& asset, AssetState state, const BakeCacheEntry& entry) {
         asset.state = state;
         asset.hash = entry.output_hash;
         asset.bytes = entry.output_bytes;
@@ -197,7 +198,7 @@ class Runner {
                 take(end);
             }
             if (!fresh_.empty() && Clock::now() - cached > kCacheInterval) {
-                // The last write reports errors.
+                // Errors are ignored here; the last update reports them.
                 if (updateBakeCache(run_.output_folder, fresh_)) {
                     fresh_.clear();
                 }
@@ -261,7 +262,7 @@ class Runner {
                                   "its bake was ended by signal " + std::to_string(end.signal) + " (" +
                                       ::strsignal(end.signal) + "); repair or simplify the mesh"});
             }
-            return;  // otherwise it is canceled
+            return;  // go() marks it as canceled
         }
         if (end.exit_code != 0) {
             const bool known = end.exit_code <= static_cast<int>(ErrorCode::kDifference);
@@ -303,7 +304,7 @@ class Runner {
         entry->options = asset.job.options;
         entry->inputs = asset.inputs;
         entry->wrong_percent = wrongPercentOf(json);
-        made(asset, AssetState::kBaked, *entry);
+        complete(asset, AssetState::kBaked, *entry);
         fresh_[asset.job.output] = std::move(*entry);
     }
 
@@ -316,7 +317,7 @@ class Runner {
 
 fs::path realFolder(const fs::path& path) {
     std::error_code error;
-    // A trailing slash would change the path of a folder.
+    // The result is the same with and without a trailing slash.
     return fs::weakly_canonical(fs::absolute(path / ".", error), error).lexically_normal() / "";
 }
 
@@ -339,7 +340,7 @@ Result<void> writeRecipeDepfile(const fs::path& path, const std::string& stamp,
     if (run.recipe != "-") {
         inputs.push_back(name(run.recipe));
     }
-    std::vector<fs::path> looked_through = folders;
+    std::vector<fs::path> searched_folders = folders;
     std::set<fs::path> written = {realFolder(run.output_folder)};
     for (const std::string& file : beside) {
         if (!file.empty()) {
@@ -351,15 +352,15 @@ Result<void> writeRecipeDepfile(const fs::path& path, const std::string& stamp,
         targets.push_back(name(asset.job.output_path));
         written.insert(realFolder(asset.job.output_path.parent_path()));
         if (asset.job.mesh_is_folder) {
-            looked_through.push_back(asset.job.mesh_path);
+            searched_folders.push_back(asset.job.mesh_path);
         }
         for (std::size_t i = asset.job.mesh_is_folder ? 1 : 0; i < asset.inputs.size(); ++i) {
             inputs.push_back(name(folder / asset.inputs[i].path));
         }
     }
-    for (const fs::path& searched : looked_through) {
+    for (const fs::path& searched : searched_folders) {
         if (!written.contains(realFolder(searched))) {
-            // "rocks/" and "rocks" are different files for Make.
+            // Make treats "rocks/" and "rocks" as different files.
             const fs::path normal = (searched / "").lexically_normal();
             inputs.push_back(normal == "./" || normal == "." ? "." : normal.parent_path().string());
         }

@@ -50,7 +50,7 @@ struct RecipeRun {
     unsigned jobs = 1;                    ///< at least 1
     unsigned threads = 1;                 ///< per bake; neither number affects results
     bool dry_run = false;                 ///< only determines what is stale
-    // Called between bakes; may be empty.
+    // Called on the thread of runRecipe(); may be empty.
     std::function<void(const AssetResult&)> started;
     std::function<void(const AssetResult&)> ended;  ///< up to date, baked, failed or canceled
     std::function<void(const std::string&)> warn;
@@ -58,7 +58,7 @@ struct RecipeRun {
 
 struct RecipeResult {
     std::vector<AssetResult> assets;  ///< in the order of the recipe
-    int signal = 0;                   ///< that ended the run early, after its children have ended; 0: none
+    int signal = 0;                   ///< signal that ended the run early; its children have ended. 0: none
 };
 
 /// Runs the jobs. Errors of single assets are in their results.
@@ -67,11 +67,11 @@ struct RecipeResult {
 [[nodiscard]] Result<RecipeResult> runRecipe(std::vector<RecipeJob> jobs, const RecipeRun& run);
 
 /// Writes the inputs of all outputs for build systems: the recipe, every file read, and every folder that a pattern
-/// searched, so that new files are noticed. Omits folders that the run itself writes to, because that changes their
-/// time.
+/// searched, so that new files are noticed. Omits folders that the run itself writes to, because writing changes their
+/// modification time.
 /// \param stamp    the target; empty: all outputs are targets
 /// \param beside   other files that the run writes; empty names are ignored
-/// \param folders  that patterns searched
+/// \param folders  folders that patterns searched
 /// Errors: those of writeDepfile.
 [[nodiscard]] Result<void> writeRecipeDepfile(const std::filesystem::path& path, const std::string& stamp,
                                               const std::vector<std::string>& beside, const RecipeRun& run,

@@ -56,20 +56,21 @@ std::string healthLine(const MeshHealth& health) {
 }
 
 /// Returns complete lines; empty if all counts are zero.
-std::string careText(const RepairReport& care, bool verbose) {
-    if (!care.health) {
+std::string healthText(const RepairReport& report, bool verbose) {
+    if (!report.health) {
         return "";
     }
     std::string text =
         "mesh: " +
-        (care.repaired ? std::to_string(care.health->triangles) + " triangles as imported; " : "") +
-        healthLine(*care.health) + "\n";
-    text += verbose ? linesOf(*care.health) : "";
-    if (care.repaired) {
-        text += "after --repair " + care.repair + ": " + std::to_string(care.repaired->triangles) +
-                " triangles; " + healthLine(*care.repaired) + "\n" + (verbose ? linesOf(*care.repaired) : "");
-    } else if (care.turned > 0) {
-        text += "turned " + countText(care.turned, "triangle") + " to face outwards\n";
+        (report.repaired ? std::to_string(report.health->triangles) + " triangles as imported; " : "") +
+        healthLine(*report.health) + "\n";
+    text += verbose ? linesOf(*report.health) : "";
+    if (report.repaired) {
+        text += "after --repair " + report.repair + ": " + std::to_string(report.repaired->triangles) +
+                " triangles; " + healthLine(*report.repaired) + "\n" +
+                (verbose ? linesOf(*report.repaired) : "");
+    } else if (report.turned > 0) {
+        text += "flipped " + countText(report.turned, "triangle") + " to face outwards\n";
     }
     return text;
 }
@@ -80,9 +81,8 @@ std::string patchesLine(const PatchesReport& report, const std::string& unit) {
         "patches for " +
         (requested ? "a texel of " + shortNumber(double{*requested}) + " " + unitText(unit) : "") +
         (requested && report.budget ? " and at most " : "") +
-        (report.budget ? bytesText(*report.budget) + " on the GPU" : "") + " take " +
-        bytesText(report.bytes) + ": heights at least " + shortNumber(report.texel) + " " + unitText(unit) +
-        " apart";
+        (report.budget ? bytesText(*report.budget) + " on the GPU" : "") + " use " + bytesText(report.bytes) +
+        ": heights at least " + shortNumber(report.texel) + " " + unitText(unit) + " apart";
     if (report.max_error) {
         line += "; " + shortNumber(report.wrong_percent) +
                 " % of the points near the surface are on the wrong side, found in " +
@@ -116,8 +116,8 @@ std::string shapeText(const ShapeReport& report, const std::string& unit) {
         return text;
     }
     if (report.thickness > 0.0) {
-        const bool alike = report.thickness_min == report.thickness;
-        text += "; sheets are " + (alike ? "" : shortNumber(report.thickness_min) + " to ") +
+        const bool uniform = report.thickness_min == report.thickness;
+        text += "; sheets are " + (uniform ? "" : shortNumber(report.thickness_min) + " to ") +
                 shortNumber(report.thickness) + " " + unitText(unit) + " thick";
     }
     if (report.coincident_triangles > 0) {
@@ -146,7 +146,7 @@ std::string bakeText(const BakeResult& result, const std::string& output, std::s
         text += ", " + countText(result.unused_vertices, "vertex", "vertices") + " unused";
     }
     text += "\nbox " + boxText(mesh.bounds, mesh.unit);
-    text += "\n" + careText(result.mesh.report, verbose) + shapeText(result.shape, mesh.unit);
+    text += "\n" + healthText(result.mesh.report, verbose) + shapeText(result.shape, mesh.unit);
     if (const Materials& materials = baked.collider.materials; !materials.empty()) {
         text += countText(materials.list.size(), "material") + " in " + bytesText(materials.bytes()) + "\n";
     }
@@ -182,7 +182,7 @@ std::string bakeText(const BakeResult& result, const std::string& output, std::s
 void fields(FieldVisitor& visit, const PatchesReport& report) {
     visit("budget", report.budget, {"Budget; null for --texel without --budget", "bytes of texels"});
     visit("bytes", report.bytes, {"Size of the patches", "bytes of texels"});
-    visit("texel", report.texel, {"Minimum distance of two heights", "object units", kFromZero});
+    visit("texel", report.texel, {"Minimum distance between two heights", "object units", kFromZero});
     const auto search = [&](FieldVisitor& visit_search) {
         visit_search("max_error_percent", static_cast<float>(report.max_error.value_or(0.0)),
                      {"--max-error", "%", kFromZero});
@@ -194,14 +194,14 @@ void fields(FieldVisitor& visit, const PatchesReport& report) {
           {"Search for the smallest budget; null without --max-error"});
 }
 
-void fields(FieldVisitor& visit, const RepairReport& care) {
-    visit("mesh_health", care.health, {"Health of the mesh as imported"});
+void fields(FieldVisitor& visit, const RepairReport& report) {
+    visit("mesh_health", report.health, {"Health of the mesh as imported"});
     const auto repair = [&](FieldVisitor& visit_repair) {
-        visit_repair("method", care.repair, {"Value of --repair: wrap=ALPHA"});
-        visit_repair("mesh_health", care.repaired, {"Health of the repaired mesh"});
+        visit_repair("method", report.repair, {"Value of --repair: wrap=ALPHA"});
+        visit_repair("mesh_health", report.repaired, {"Health of the repaired mesh"});
     };
-    visit("repair", groupIf(!care.repair.empty(), repair), {"Results of --repair; null without it"});
-    visit("flipped_triangles", care.turned, {"Triangles flipped to face outwards"});
+    visit("repair", groupIf(!report.repair.empty(), repair), {"Results of --repair; null without it"});
+    visit("flipped_triangles", report.turned, {"Triangles flipped to face outwards"});
 }
 
 void fields(FieldVisitor& visit, const InputFile& input) {
@@ -311,7 +311,7 @@ void fields(FieldVisitor& visit, const BakeJson& report) {
     visit("times_ms", group(times), {"Wall-clock times"});
     fields(visit, result.mesh.report);
     visit("warnings", baked.report.warnings, {"Warnings, one line each"});
-    // A wrapped mesh does not have the names of its files. The schema, which is made without maps, requires them.
+    // A mesh that was not read from a file has no inputs. The schema requires inputs; it is made from a report without maps.
     if (!result.inputs.empty() || baked.collider.maps.empty()) {
         visit("inputs", result.inputs,
               {.help = "All files that were read, the mesh first", .items = kFromOne});

@@ -6,10 +6,10 @@ namespace relief {
 std::string materialsText(const Materials& materials) {
     std::vector<std::vector<std::string>> rows = {
         {"material", "restitution>", "friction>", "lifetime loss>", "area>"}};
-    for (const Material& one : materials.list) {
-        rows.push_back({one.name.empty() ? "-" : one.name, shortNumber(double{one.restitution}),
-                        shortNumber(double{one.friction}), shortNumber(double{one.lifetime_loss}),
-                        shortNumber(100.0 * double{one.area_fraction}) + " %"});
+    for (const Material& m : materials.list) {
+        rows.push_back({m.name.empty() ? "-" : m.name, shortNumber(double{m.restitution}),
+                        shortNumber(double{m.friction}), shortNumber(double{m.lifetime_loss}),
+                        shortNumber(100.0 * double{m.area_fraction}) + " %"});
     }
     return countText(materials.list.size(), "material") + " in " + bytesText(materials.bytes()) + "\n" +
            table(rows);
@@ -98,9 +98,10 @@ void fields(FieldVisitor& visit, const AnimatedMesh& mesh) {
 
 void fields(FieldVisitor& visit, const Material& material) {
     visit("name", material.name, {"Name, unique in the collider; empty for surfaces without a material"});
-    visit("restitution", material.restitution, {"Factor of the particles' own restitution", {}, kShareRange});
+    visit("restitution", material.restitution,
+          {"Restitution; multiplies that of the particles", {}, kShareRange});
     visit("friction", material.friction,
-          {"1 − friction is a factor of the particles' own 1 − friction", {}, kShareRange});
+          {"Friction; 1 − friction multiplies that of the particles", {}, kShareRange});
     visit("lifetime_loss", material.lifetime_loss,
           {"Lifetime lost per step in contact", "s", {0.0, double{kMaterialLossMax}}});
     visit("area_percent", 100.0 * double{material.area_fraction},

@@ -93,7 +93,7 @@ std::string groundCheckText(const GroundAccuracy& accuracy, const std::string& n
         " on average, at most " + millimetres(accuracy.near.most) + "\n\n";
     std::vector<std::vector<std::string>> rows = {
         {"points", "number>", "wrong>", "false inside>", "false outside>", "mean error>", "absolute>",
-         "99 %>", "most>", "no surface>"},
+         "99 %>", "largest>", "no surface>"},
         nearRow("near the surface", accuracy.near)};
     if (accuracy.seams) {
         rows.push_back(nearRow("near seams", *accuracy.seams));
@@ -102,7 +102,7 @@ std::string groundCheckText(const GroundAccuracy& accuracy, const std::string& n
                     percentText(accuracy.uniform.total()), percentText(accuracy.uniform.false_inside),
                     percentText(accuracy.uniform.false_outside), "", "", "", "", ""});
     text += table(rows) + "\n";
-    rows = {{"worst place", "tile", "error>", "rise of its square, in sides>"}};
+    rows = {{"worst place", "tile", "error>", "rise / side of its square>"}};
     for (const GroundWorstPlace& place : accuracy.worst) {
         rows.push_back({positionText(place.position), place.node.empty() ? "-" : place.node,
                         place.error ? millimetres(*place.error) : "no surface", shortNumber(place.rise)});
@@ -111,7 +111,7 @@ std::string groundCheckText(const GroundAccuracy& accuracy, const std::string& n
 }
 
 void fields(FieldVisitor& visit, const GroundNear& near) {
-    visit("points", near.points, {"Points, as many in each square with ground"});
+    visit("points", near.points, {"Points, the same number in each square with ground"});
     fields(visit, near.wrong);
     const auto distances = [&](FieldVisitor& inner) {
         inner("mean", near.mean, {"Mean, positive upwards", "m"});

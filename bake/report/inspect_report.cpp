@@ -10,7 +10,7 @@ bool usable(PartState state) {
     return state == PartState::kSound || state == PartState::kSuspicious;
 }
 
-std::string trustText(const Inspection& inspection) {
+std::string usableText(const Inspection& inspection) {
     if (!inspection.damaged()) {
         return "";
     }
@@ -68,12 +68,12 @@ std::string inspectionText(const Inspection& inspection, const std::string& name
         }
         text += table(rows);
     }
-    return text + trustText(inspection);
+    return text + usableText(inspection);
 }
 
 void fields(FieldVisitor& visit, const Issue& issue) {
     visit("code", issue.id(),
-          {.help = "Code of the issue; codes keep their meaning", .pattern = "^RLF-[0-9]{4}$"});
+          {.help = "Code of the issue; the meaning of a code never changes", .pattern = "^RLF-[0-9]{4}$"});
     visit("severity", issue.severity(), {"Severity of the code"});
     visit("map", onlyIf(issue.map >= 0, issue.map),
           {"Index of the map; null if the issue is not about a map", {}, kFromZero});

@@ -46,8 +46,9 @@ void fields(FieldVisitor& visit, const MeshCheckReport& report) {
         fields(visit_verdict, report.verdict());
         visit_verdict(
             "inside_grade", insideGradeOf(run.judged().accuracy.field.inside),
-            {.help = "Votes at points inside: good if the nearest face does not decide at most 3 %; "
-                     "fair: at most 10 %; unknown with fewer than 300 points",
+            {.help =
+                 "Votes at points inside: good if the nearest face decides at least 97 % of them; fair: at "
+                 "least 90 %; unknown with fewer than 300 points",
              .words = kWords<"good", "fair", "poor", "unknown">});
         visit_verdict("inside_text", insideVerdictText(run.judged().accuracy.field.inside),
                       {"The grade in words; empty if it is good or unknown"});
@@ -58,7 +59,7 @@ void fields(FieldVisitor& visit, const MeshCheckReport& report) {
     visit("worst_places", viewsOf<WorstPlaceReport>(run.places, run.collider),
           {.help = "At most three places, the worst first", .items = {0.0, 3.0}});
     visit("depth_proof", DepthProofReport{run.proof, run.judged().samples.longest_side},
-          {"Proven bound of errors against the mesh that was baked"});
+          {"Proven bound on the depth of errors against the baked mesh"});
     visit("advice", run.advice, {"Commands to try; empty if the verdict is good and --max-error is met"});
     visit("sampling", samples, {"Points of the measurement"});
     visit("accuracy", ColliderAccuracyReport{accuracy, samples.longest_side},

@@ -10,7 +10,7 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t kQuotedMax = 40;  // bytes of a bad line that its message quotes
+constexpr std::size_t kQuotedMax = 40;  // maximum bytes of an invalid line that its message quotes
 
 bool startsLikeANumber(std::string_view field) {
     return !field.empty() &&

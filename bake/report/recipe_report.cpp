@@ -26,7 +26,7 @@ std::string seconds(double ms) {
     return text;
 }
 
-/// Checks that a file that will be truncated contains only events.
+/// Fails if a file that will be truncated does not start with an event.
 Result<void> checkOlderLog(const std::string& path) {
     constexpr std::string_view kBegin = R"({"event":)";
     std::error_code error;
@@ -116,7 +116,7 @@ std::vector<AssetEvent> AssetEvent::kinds() {
 // --- Events ---
 
 Result<void> RecipeEvents::open(const std::string& path) {
-    // A reader that exits must not end the bakes.
+    // The bakes must continue if the reader of the events exits.
     std::signal(SIGPIPE, SIG_IGN);
     path_ = path;
     if (path != "-") {
@@ -153,8 +153,9 @@ Result<void> RecipeEvents::finish() const {
 
 namespace {
 
-/// Whether two warnings are equal, ignoring numbers with join_numbers; warnings about a missing unit always are.
-bool areAlike(std::string_view a, std::string_view b, bool join_numbers) {
+/// Returns whether two warnings are grouped: if they are equal, apart from numbers with join_numbers, or if both are
+/// about a missing unit.
+bool sameGroup(std::string_view a, std::string_view b, bool join_numbers) {
     const auto words = [](std::string_view text) {
         std::string rest(text);
         std::erase_if(rest, [](char c) { return (c >= '0' && c <= '9') || c == '.'; });
@@ -176,12 +177,12 @@ std::vector<std::string> warningLines(std::span<const OwnWarnings> all, std::str
     };
     std::vector<Group> groups;
     for (const OwnWarnings& own : all) {
-        // Warnings start with the name of the mesh, which would make equal ones differ.
+        // Remove the name of the mesh, with which a warning may start, so that equal warnings match.
         const std::string mesh = own.mesh + ": ";
         for (const std::string& full : own.warnings) {
             const std::string warning = full.starts_with(mesh) ? full.substr(mesh.size()) : full;
             auto group = std::ranges::find_if(
-                groups, [&](const Group& one) { return areAlike(one.warning, warning, join_numbers); });
+                groups, [&](const Group& one) { return sameGroup(one.warning, warning, join_numbers); });
             group = group == groups.end() ? groups.insert(group, {warning, true, {}}) : group;
             group->same = group->same && group->warning == warning;
             group->owners.push_back(own.owner);
@@ -230,7 +231,7 @@ void fields(FieldVisitor& visit, const AssetReport& report) {
         visit("bytes", asset.bytes, {"Size of the output, including its containers", "bytes"});
         visit("wrong_percent", asset.wrong_percent,
               {"Points near the surface that are on the wrong side; for a world, those of its worst "
-               "collider; null unless the bake measured all",
+               "collider; null if any was not measured",
                "%", kPercentRange});
         visit("hash", asset.hash,
               {.help = "XXH3-128 of the output; for a world, it covers the containers",

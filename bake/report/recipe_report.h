@@ -36,7 +36,7 @@ struct RecipeCounts {
 /// The fields of an asset depend on its state.
 struct AssetReport {
     const AssetResult& asset = kNone<AssetResult>;
-    bool event = false;  ///< part of an event, which omits the key of an asset that was not baked
+    bool event = false;  ///< part of an event, which contains a key only if the output is up to date
 
     [[nodiscard]] static std::vector<AssetReport> kinds();
 };
@@ -115,8 +115,8 @@ struct OwnWarnings {
 /// \param join_numbers  warnings are treated as equal even if their numbers differ
 [[nodiscard]] std::vector<std::string> warningLines(std::span<const OwnWarnings> all, std::string_view owners,
                                                     bool join_numbers);
-/// Groups the warnings of assets: "2 assets (a.relief, b.relief): it is skinned". A missing unit is grouped too, with
-/// the size of the first asset.
+/// Groups the warnings of assets: "2 assets (a.relief, b.relief): it is skinned". All warnings about a missing unit form
+/// one group, with the size of the first asset.
 [[nodiscard]] std::vector<std::string> warningLines(const std::vector<AssetResult>& assets);
 
 }  // namespace relief

@@ -23,7 +23,7 @@ std::uint64_t gpuBytesOf(const WorldField& field) {
     return bytes;
 }
 
-/// Returns advice in one sentence; empty if the body is good anyway.
+/// Returns advice in one sentence; empty if the body is good already.
 std::string adviceFor(const WorldField& field, const BodyAccuracy& body, WorldCause cause) {
     if (body.wrong.total() <= kGoodPercent) {
         return "";
@@ -33,7 +33,7 @@ std::string adviceFor(const WorldField& field, const BodyAccuracy& body, WorldCa
             return "its pose in the world differs from the level: bake the level again";
         case WorldCause::kPrecision:
             return "floats are coarse this far from the origin of its mesh: move the mesh to the origin, and "
-                   "its node back";
+                   "its node by the opposite offset";
         case WorldCause::kTexel:
             return "its details are finer than the texels: bake with --budget " +
                    bytesWord(roundBudget(2 * gpuBytesOf(field))) +
@@ -41,8 +41,8 @@ std::string adviceFor(const WorldField& field, const BodyAccuracy& body, WorldCa
         case WorldCause::kMesh:
             break;
     }
-    return "the error exceeds the texels: its mesh may be open or intersect itself there; repair it, or set "
-           "its kind with --as " +
+    return "the error is larger than the texels: its mesh may be open or intersect itself there; repair it, "
+           "or set its kind with --as " +
            shellQuoted((body.node.empty() ? body.mesh : body.node) + "=solid") + ", shell or terrain";
 }
 
@@ -74,7 +74,7 @@ std::string adviceLines(const WorldField& field, const WorldAccuracy& accuracy) 
 
 std::string worldBakeText(const WorldBakeResult& result, const std::string& folder, double ms, bool verbose) {
     std::vector<std::vector<std::string>> rows = {
-        {"collider", "bodies>", "area>", "scale>", "share>", "taken>", "wrong>", "state"}};
+        {"collider", "bodies>", "area>", "scale>", "share>", "size>", "wrong>", "state"}};
     for (const WorldColliderResult& c : result.colliders) {
         rows.push_back({c.mesh + (c.tile.empty() ? "" : " " + c.tile), std::to_string(c.bodies),
                         shortNumber(c.area), shortNumber(c.largest_scale),
@@ -208,8 +208,8 @@ void fields(FieldVisitor& visit, const BodyAccuracy& body) {
     visit("points", body.points, {"Points near its surface", {}, kFromOne});
     fields(visit, body.wrong);
     visit("tiles", body.tiles,
-          {"Consecutive bodies of the world: several for a mesh in tiles; 0 for all "
-           "if the level has different nodes"});
+          {"Number of its consecutive bodies in the world: several for a mesh in tiles; 0 for every body if "
+           "the nodes of the level differ from the world"});
     visit("position", body.position,
           {"A typical point on the wrong side, world space; the body's position if there is none",
            "[x, y, z]"});

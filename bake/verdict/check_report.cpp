@@ -51,7 +51,7 @@ std::string mapWords(const Collider& collider, int map) {
     return name + " around " + positionText(center) + ")";
 }
 
-/// Returns "below the texel size: map 2 (…) decides, whose texels are 0.02 wide".
+/// Returns "below the texel size: map 2 (…) decides, and its texels are 0.02 wide".
 std::string causeText(const WorstPlace& place, const Collider& collider) {
     const std::string map = mapWords(collider, place.map);
     const std::string decides = place.map < 0 ? "no map votes" : map + " decides";
@@ -71,10 +71,10 @@ std::string causeText(const WorstPlace& place, const Collider& collider) {
     }
     if (place.map >= 0 &&
         collider.maps[static_cast<std::size_t>(place.map)].projection() == Projection::kLocal) {
-        return "finer than the patches: " + decides + ", whose heights are " +
+        return "finer than the patches: " + decides + ", and its heights are " +
                lengthText(place.texel, collider.unit) + " apart here";
     }
-    return "below the texel size: " + decides + ", whose " + texels;
+    return "below the texel size: " + decides + ", and its " + texels;
 }
 
 }  // namespace
@@ -119,7 +119,7 @@ std::string accuracyText(const ColliderAccuracy& accuracy, const TruthSamples& s
                               wrongRow("anywhere in the box", field.uniform)});
     text += "\n";
     text +=
-        table({{"error", "mean", "99 % stay below"},
+        table({{"error", "mean", "99th percentile"},
                {"signed distance near the surface", length(field.distance_mean), length(field.distance_p99)},
                {"normal at the surface", degrees(field.normal_mean), degrees(field.normal_p99)},
                {"depth inside", length(field.inside.depth_mean), length(field.inside.depth_p99)},
@@ -139,8 +139,8 @@ std::string accuracyText(const ColliderAccuracy& accuracy, const TruthSamples& s
     text += "\nLengths in percent are of the longest side, " + shortNumber(samples.longest_side) + units +
             ". " + std::to_string(samples.options.samples) + " points of each kind, " +
             std::to_string(field.inside.points) + " inside, seed " + std::to_string(samples.options.seed) +
-            "; those near\nthe surface lie " + precisely(100.0 * samples.options.sigma_share) +
-            " of it away (standard deviation).\n";
+            ".\nThe distance of points near the surface has a standard deviation of " +
+            precisely(100.0 * samples.options.sigma_share) + ".\n";
     return text;
 }
 
@@ -153,8 +153,8 @@ std::string proofText(const DepthProof& proof, double longest_side, const std::s
     };
     return "Proven: no point farther than " + length(proof.depth) +
            " from every triangle is on the wrong side.\n" +
-           (proof.deepest > 0.0 ? "The deepest error found is " + length(proof.deepest) + " from them, at " +
-                                      positionText(proof.place) + ".\n"
+           (proof.deepest > 0.0 ? "The deepest error found is " + length(proof.deepest) +
+                                      " from the nearest triangle, at " + positionText(proof.place) + ".\n"
                                 : "");
 }
 
@@ -173,11 +173,11 @@ std::string placesText(std::span<const WorstPlace> places, const Collider& colli
 
 std::string adviceText(std::span<const Advice> advice, double wrong_percent) {
     std::string commands;
-    std::string vain;
+    std::string failed;
     for (const Advice& one : advice) {
         if (one.wrong_percent && !one.helps) {
-            vain +=
-                (vain.empty() ? "" : ", ") + one.description + " (" + percentText(*one.wrong_percent) + ")";
+            failed +=
+                (failed.empty() ? "" : ", ") + one.description + " (" + percentText(*one.wrong_percent) + ")";
             continue;
         }
         commands += "  " + one.command + "\n     " + one.description + "; ";
@@ -187,7 +187,7 @@ std::string adviceText(std::span<const Advice> advice, double wrong_percent) {
         commands += "\n";
     }
     return (commands.empty() ? "" : "What to do:\n" + commands) +
-           (vain.empty() ? "" : "Tried without success: " + vain + "\n");
+           (failed.empty() ? "" : "Tried without success: " + failed + "\n");
 }
 
 void fields(FieldVisitor& visit, const FieldAccuracyReport& report) {
@@ -224,11 +224,10 @@ void fields(FieldVisitor& visit, const FieldAccuracyReport& report) {
         const auto depth_error = lengths(field.inside.depth_mean, field.inside.depth_p99);
         const auto normal_error = angles(field.inside.normal_mean, field.inside.normal_p99);
         visit_inside("points", field.inside.points, {"Points that were measured"});
-        visit_inside(
-            "far_face_percent", field.inside.far_face_percent,
-            {"Points where the nearest face does not decide: classified as outside, with a normal away "
-             "from it, or more than 1.25 times as deep",
-             "%", kPercentRange});
+        visit_inside("far_face_percent", field.inside.far_face_percent,
+                     {"Points where the nearest face does not decide: classified as outside, with a normal "
+                      "that points away from the face, or with more than 1.25 times the depth",
+                      "%", kPercentRange});
         visit_inside("depth_error", group(depth_error), {"Error of the depth"});
         visit_inside("normal_error_degrees", group(normal_error),
                      {"Angle between the normal and the direction to the nearest face"});
@@ -291,13 +290,14 @@ void fields(FieldVisitor& visit, const DepthProofReport& report) {
           {"No point farther than this from every triangle is on the wrong side; null if not proven",
            "object units", kFromZero});
     visit("depth_percent", onlyIf(proven, 100.0 * proof.depth / report.longest_side),
-          {"The same", "% of the longest side", kFromZero});
+          {"The same depth", "% of the longest side", kFromZero});
     visit("deepest", onlyIf(found, proof.deepest),
-          {"Distance of the deepest error found from the triangles; null if none is found", "object units",
-           kFromZero});
-    visit("place", onlyIf(found, proof.place), {"That point, for `relief query`", "object units"});
+          {"Distance from the nearest triangle to the deepest error found; null if none is found",
+           "object units", kFromZero});
+    visit("place", onlyIf(found, proof.place),
+          {"Position of that error, for `relief query`", "object units"});
     visit("boxes", proof.boxes, {"Boxes that the proof examined"});
-    visit("unproven", nonEmpty(proof.unproven), {"Why no depth is proven; null if it is"});
+    visit("unproven", nonEmpty(proof.unproven), {"Why no depth is proven; null if one is"});
 }
 
 void fields(FieldVisitor& visit, const Advice& advice) {

@@ -17,24 +17,24 @@ namespace {
 constexpr std::size_t kShownParts = 5;
 constexpr std::size_t kShownGroups = 5;
 constexpr std::size_t kListedPartsMax = 100;
-/// A part is kept by texels of this fraction of its middle extent: three across a pillar.
+/// Texels of this fraction of a part's middle extent keep the part: three texels across a pillar.
 constexpr double kTexelsAcross = 1.0 / 3.0;
 constexpr double kBudgetAdvisedMax = 1e9;
-/// Factor on the bytes of patches that is suggested for a lost part.
+/// Suggested factor on the bytes of patches if a part is lost.
 constexpr double kMorePatches = 4.0;
-/// A requested shell swallows a part if it is at least this fraction of the part's longest side thick.
+/// A shell swallows a part if its requested thickness is at least this fraction of the part's longest side.
 constexpr double kSwallows = 0.25;
 constexpr std::size_t kNameBytesMax = 80;
 
-/// Rounds up, in the syntax of --budget: "1.2MB", "320MB".
+/// Returns the rounded-up size in the syntax of --budget: "1.2MB", "320MB".
 std::string megabytes(double bytes) {
     const auto tenths = static_cast<std::uint64_t>(std::ceil(bytes / 1e5));
     return tenths < 100 ? std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + "MB"
                         : std::to_string((tenths + 9) / 10) + "MB";
 }
 
-/// Returns the option that bakes smaller texels into the patches of a collider, by the options of its bake: of --map,
-/// --texel or --budget; "" if it would take too many bytes. \param needed  texel, object units
+/// Returns the option for smaller patch texels: the one of --map, --texel and --budget that the collider was baked with;
+/// "" if the patches would be too large. \param needed  texel, object units
 std::string finerPatches(const Collider& collider, double needed) {
     std::string map;
     bool by_map = true;
@@ -46,7 +46,7 @@ std::string finerPatches(const Collider& collider, double needed) {
     if (map.starts_with("patches:texel=")) {
         return (by_map ? "--map patches:texel=" : "--texel ") + roughly(needed);
     }
-    // Cells are split where the errors are, so other parts do not take much more.
+    // Only cells with errors are split, so the bytes of other parts hardly grow.
     const double bytes = kMorePatches * static_cast<double>(collider.texelBytes());
     return bytes > kBudgetAdvisedMax ? ""
                                      : (by_map ? "--map patches:budget=" : "--budget ") + megabytes(bytes);
@@ -336,16 +336,16 @@ struct PartReport {
 
 void fields(FieldVisitor& visit, const PartReport& report) {
     const auto& [accuracy, part, collider] = report;
-    const bool wants = accuracy.state == PartVerdict::kLost || accuracy.state == PartVerdict::kCoarse ||
-                       accuracy.state == PartVerdict::kMinor;
+    const bool needs_fix = accuracy.state == PartVerdict::kLost || accuracy.state == PartVerdict::kCoarse ||
+                           accuracy.state == PartVerdict::kMinor;
     visit("part", accuracy.part + 1, {"Number from 1, in the order of the first triangles", {}, kFromOne});
     visit("node", part.node, {"Name of its node in the file; may be empty"});
     visit("material", part.material, {"Name of its material in the file; may be empty"});
     visit("kind", part.kind, {"Treatment of the part; a surface is baked unchanged"});
     visit("state", accuracy.state,
-          {"kept: at most 10 % of the points near it are wrong; coarse: at most 25 %; lost: more; hidden: "
-           "inside other parts; minor: more, but too small to be noticed; unmeasured: not measured because "
-           "there are too many parts"});
+          {"kept: at most 10 % of the points near it are wrong; coarse: at most 25 %; lost: more than 25 %; "
+           "hidden: inside other parts; minor: like lost, but too small to be noticed; unmeasured: not "
+           "measured because there are too many parts"});
     visit("size", part.size(), {"Longest side of its box", "object units", kFromZero});
     visit("position", part.bounds.center(), {"Center of its box", "object units"});
     visit("triangles", part.triangles, {"Number of triangles"});
@@ -358,7 +358,7 @@ void fields(FieldVisitor& visit, const PartReport& report) {
     visit("texel", partTexel(part, collider),
           {"Side of the finest texels at its center, or of the finest patches in its box", "object units",
            kFromZero});
-    visit("fix", wants ? std::optional(partCure(part, collider)) : std::nullopt,
+    visit("fix", needs_fix ? std::optional(partCure(part, collider)) : std::nullopt,
           {"How to keep the part; null unless coarse, lost or minor"});
 }
 
@@ -390,9 +390,9 @@ void fields(FieldVisitor& visit, const PartsReport& report) {
     constexpr std::array<std::string_view, kPartVerdicts> kCounts = {
         "Parts with at most 10 % wrong points",
         "Parts with at most 25 % wrong points",
-        "Parts with more wrong points",
+        "Parts with more than 25 % wrong points",
         "Parts inside other parts",
-        "Parts with more that are too small to be noticed",
+        "Parts with more than 25 % wrong points that are too small to be noticed",
         "Parts not measured"};
     const PartsAccuracy& accuracy = report.accuracy;
     visit("min_part", accuracy.min_part,

@@ -28,8 +28,8 @@ void fields(FieldVisitor& visit, const IgnoredParts& ignored);
 /// \return "0.3 % wrong near the surface, but 27 of 82 parts are lost: poor", followed by ignoredText().
 [[nodiscard]] Verdict verdictOf(double wrong_percent, const std::string& grade, const std::string& but,
                                 const IgnoredParts& ignored, const std::string& unit);
-/// The grade is the worse of gradeOf(wrong_percent) and the grade of the parts: poor if one is lost, fair if any coarse
-/// part counts.
+/// The grade is the worse of gradeOf(wrong_percent) and the grade of the parts: poor if a part is lost, fair if coarse
+/// parts count.
 [[nodiscard]] Verdict verdictOf(double wrong_percent, const PartsAccuracy& accuracy, const std::string& unit);
 
 /// Returns how to keep a lost or coarse part: a budget, a resolution, a thickness, or a separate bake.
@@ -45,7 +45,7 @@ void fields(FieldVisitor& visit, const IgnoredParts& ignored);
                                                           const Collider& collider);
 /// Returns a line about parts far from all others; nullopt if there are none.
 [[nodiscard]] std::optional<std::string> strayText(const SurfaceParts& parts, const std::string& unit);
-/// Returns strayText(), and a line per shell whose --thickness is at least a quarter of the length of its part.
+/// Returns strayText(), and one line about all sheets whose --thickness is at least a quarter of their length.
 [[nodiscard]] std::vector<std::string> partWarnings(const SurfaceParts& parts, const std::string& unit);
 
 // --- The same data as fields.

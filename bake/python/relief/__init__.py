@@ -233,7 +233,7 @@ class World:
         return [Collider(self._handle.collider(i)) for i in range(self._handle.collider_count)]
 
     def find(self, node: str) -> list[int]:
-        """Returns the bodies of the node with this name: several at one place if its mesh was cut into tiles."""
+        """Returns the indices of all bodies whose node has this name; a mesh that was cut into tiles has several."""
         if not isinstance(node, str):
             _wrong_type(node, "node", "text")
         if node not in self._nodes:
@@ -274,9 +274,9 @@ class Accuracy:
     """The accuracy of a collider against a mesh."""
 
     false_inside_percent: float
-    """Percentage of points near the surface that are inside, but outside in truth."""
+    """Percentage of points near the surface that are wrongly classified as inside."""
     false_outside_percent: float
-    """Percentage of points near the surface that are outside, but inside in truth."""
+    """Percentage of points near the surface that are wrongly classified as outside."""
     distance_error_mean: float
     """Mean error of the distance near the surface, in the mesh's units."""
     distance_error_p99: float
@@ -411,12 +411,12 @@ def _in_python(text: str) -> str:
 def _run(work: Callable[..., tuple[Any, list[str]]], *arguments: Any) -> Any:
     """Calls the module; converts options in its messages to arguments, and its warnings to Python warnings."""
     try:
-        made, said = work(*arguments)
+        result, messages = work(*arguments)
     except Error as error:
         raise type(error)(_in_python(str(error))) from None
-    for text in said:
+    for text in messages:
         warnings.warn(_in_python(text), ReliefWarning, stacklevel=4)
-    return made
+    return result
 
 
 @_hinting
@@ -489,8 +489,8 @@ def check(collider: Collider, mesh: Any, triangles: Any = None, *,
     """Measures the accuracy of a collider at random points around the mesh that it was baked from: a file, or vertices and
     triangles.
 
-    The verdict is that of `relief check`: against the baked solid, which is the repaired one if it was baked with repair. The
-    options are the same:
+    The verdict is that of `relief check`: against the mesh as baked, which is the repaired mesh if the bake repaired it. The
+    other arguments are the options of `relief check`:
     """
     if not isinstance(collider, Collider):
         _wrong_type(collider, "collider", "a relief.Collider")
@@ -510,11 +510,11 @@ class Hits(NamedTuple):
     step: np.ndarray
     """(n,) uint64: the step, from 1, ascending."""
     time: np.ndarray
-    """(n,) float64: seconds, within the step."""
+    """(n,) float64: seconds since the start of the simulation."""
     id: np.ndarray
     """(n,) uint32: the id of the particle, as in Simulation.ids."""
     type: np.ndarray
-    """(n,) uint32"""
+    """(n,) uint32: as in Simulation.types."""
     body: np.ndarray
     """(n,) int32: index of the scene's collider; -1: the ground."""
     material: np.ndarray
@@ -592,7 +592,7 @@ class Simulation:
 
     positions = _of_state("positions", "(n, 3) float32, in the same order as the other arrays. Read back once per step.")
     velocities = _of_state("velocities", "(n, 3) float32")
-    ids = _of_state("ids", "(n,) uint32: number of births before its own.")
+    ids = _of_state("ids", "(n,) uint32: number of births before that of the particle.")
     types = _of_state("types", "(n,) uint32: index of the [[type]].")
     ages = _of_state("ages", "(n,) float32: seconds since birth.")
     lifetimes = _of_state("lifetimes", "(n,) float32: seconds from birth to death.")
