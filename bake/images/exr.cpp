@@ -44,7 +44,7 @@ std::vector<std::byte> encode(const ExrImage& image) {
     Imf::FrameBuffer frame_buffer;
     for (const ExrImage::Channel& channel : image.channels) {
         header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
-        // OpenEXR takes non-const memory both for reading and for writing; here it only reads.
+        // OpenEXR requires non-const memory; writing a file only reads it.
         auto* base = const_cast<char*>(reinterpret_cast<const char*>(channel.values.data()));
         frame_buffer.insert(channel.name,
                             Imf::Slice(Imf::FLOAT, base, sizeof(float), sizeof(float) * image.width));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes images of floats as OpenEXR files; bake/import reads heights. No other code uses OpenEXR.
+// Writes images of floats as OpenEXR files. Besides exr.cpp, only bake/import uses OpenEXR, to read heights.
 #pragma once
 
 #include <cstddef>

@@ -32,8 +32,8 @@ Color distanceColor(double u) {
     return t < 1.0 ? light + t * (middle - light) : middle + (t - 1.0) * (dark - middle);
 }
 
-/// Returns the distance of the strongest colours: the deepest point inside, or half of the farthest outside if nothing
-/// is inside.
+/// Returns the distance at which colours saturate: the largest distance inside, or half the largest distance outside if
+/// nothing is inside.
 double colorRange(const Slice& slice) {
     double inside = 0.0;
     double outside = 0.0;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint32_t kSize = 192;  ///< samples along a side
 constexpr double kZoom = 3.0;         ///< pixels per sample
-constexpr double kEm = 20.0;          ///< pixels; legible at half the size, which the page uses
+constexpr double kEm = 20.0;          ///< pixels; legible at half size, as shown on the page
 constexpr double kPanel = kSize * kZoom;
 
 constexpr std::array<std::pair<Color, const char*>, 4> kLegend = {{{{0.66, 0.69, 0.73}, "inside"},
@@ -25,7 +25,7 @@ bool isInside(SideVerdict verdict) {
     return verdict == SideVerdict::kInside || verdict == SideVerdict::kFalseOutside;
 }
 
-/// The contour consists of the outermost samples that are inside in truth.
+/// The contour consists of the outermost samples that are truly inside.
 Color colorAt(const VerdictSlice& slice, std::uint32_t x, std::uint32_t y) {
     const auto outside = [&](std::uint32_t at_x, std::uint32_t at_y) {
         return at_x < slice.size && at_y < slice.size && !isInside(slice.at(at_x, at_y));
@@ -38,15 +38,15 @@ Color colorAt(const VerdictSlice& slice, std::uint32_t x, std::uint32_t y) {
 
 /// Returns the largest number of the form 1, 2 or 5 times a power of ten that is at most a third of the side.
 double scaleOf(double side) {
-    const double most = side / 3.0;
+    const double limit = side / 3.0;
     double length = 1.0;
-    while (length > most) {
+    while (length > limit) {
         length *= 0.1;
     }
-    while (10.0 * length <= most) {
+    while (10.0 * length <= limit) {
         length *= 10.0;
     }
-    return 5.0 * length <= most ? 5.0 * length : 2.0 * length <= most ? 2.0 * length : length;
+    return 5.0 * length <= limit ? 5.0 * length : 2.0 * length <= limit ? 2.0 * length : length;
 }
 
 std::string lengthWords(double length, const std::string& unit) {

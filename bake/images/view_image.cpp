@@ -20,7 +20,7 @@ constexpr int kHalvings = 10;
 constexpr double kStepsPerCell = 64.0;
 constexpr double kStepsPerPair = 4.0;
 constexpr double kStepsPerTexel = 8.0;
-constexpr double kTexelsMin = 64.0;  // minimum number per ray, no matter how small the collider
+constexpr double kTexelsMin = 64.0;  // minimum number of texels per ray, for coarse maps
 constexpr double kStepsMax = 16384.0;
 
 struct Hit {
@@ -65,7 +65,7 @@ class Rays {
   private:
     /// The length that a ray may advance from a point, object units.
     struct Reach {
-        double end = std::numeric_limits<double>::max();  ///< of the cells and squares that contain the point
+        double end = std::numeric_limits<double>::max();  ///< to the end of the point's cells and squares
         double least = 0.0;                               ///< minimum step
         bool outside = false;                             ///< no point before `end` is inside
         bool in_tree = false;
@@ -76,7 +76,7 @@ class Rays {
         return p;
     }
 
-    /// A cell without a patch is entirely on one side. A single map that sees a point outside decides the vote.
+    /// A cell without a patch is entirely on one side. One map that classifies a point as outside decides the vote.
     [[nodiscard]] Reach reachAt(const glm::vec3& p) const {
         Reach reach;
         if (collider_.maps.size() > 1) {
@@ -108,8 +108,7 @@ class Rays {
                             length * toBorder(squares * from, squares * (frame.across(at + way) - from), 2));
                     }
                 }
-                // Within a square, the first surface on the ray is no nearer than the distance, or it lies beyond
-                // the square.
+                // Within a square, no surface on the ray is closer than the field's distance.
                 reach.end = pair ? std::min(reach.end, length / kStepsPerPair) : reach.end;
                 reach.least = length / kStepsPerCell;
             }
@@ -151,7 +150,7 @@ class Rays {
         return patchLeafAt(map.texels, in_map);
     }
 
-    /// \param inner  a parameter that is inside; nothing before `outer` is.
+    /// Bisects for the surface. \param outer  no point before it is inside. \param inner  its point is inside.
     [[nodiscard]] Hit between(const glm::vec3& p, double outer, double inner) const {
         for (int i = 0; i < kHalvings && outer < inner; ++i) {
             const double middle = 0.5 * (outer + inner);

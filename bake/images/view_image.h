@@ -5,12 +5,12 @@
 // (solidBox). Channels of 32-bit floats:
 //
 //     depth.front    object units along the view, from the near face of the bounds to the first surface
-//     depth.back     the same to the last surface
+//     depth.back     object units along the view, from the near face of the bounds to the last surface
 //     normal.X/Y/Z   of the field at the first surface: unit length, object space, outwards
 //
-// Depths are +inf and the normal is zero if the ray hits no surface. A depth is negative if the surface lies before the
-// near face. The top row is the highest of the frame (axis_grid.h). If the inside extends to the end of the box, the face
-// of the box counts as the surface, with a normal towards the viewer.
+// Depths are +inf and the normal is zero if the ray hits no surface. A depth is negative if the surface lies in front of
+// the near face. The top row is the highest of the frame (axis_grid.h). If the inside extends to the end of the box, the
+// face of the box counts as the surface, with a normal towards the viewer.
 #pragma once
 
 #include <cstdint>
@@ -32,8 +32,8 @@ inline constexpr std::uint32_t kViewSizeMax = 4096;
 /// a patch.
 ///
 /// A wall or a gap may be missed if its thickness along the ray is below 1/64 of its cell plus 1/8 of the finest texel
-/// (finestTexel()) or, if longer, 1/16384 of the ray. The limit is 1/4 of the cell higher between the two
-/// surfaces of a pair of patches, and a finest texel higher if the collider has several maps.
+/// (finestTexel()) or, if longer, 1/16384 of the ray. The limit rises by 1/4 of the cell between the two
+/// surfaces of a pair of patches, and by one finest texel if the collider has several maps.
 ///
 /// The result does not depend on the number of threads.
 /// \param view  index of kDirectionNames. \param size  texels along the longer side; kViewSizeMin to kViewSizeMax.

@@ -119,16 +119,16 @@ Result<void> addClipsOf(const AnimatedMesh& from, AnimatedMesh& mesh, std::vecto
     NodeMatch match(from, mesh);
     std::size_t added = 0;
     for (const MeshClip& clip : from.clips) {
-        MeshClip taken{clip.name, clip.seconds, {}};
+        MeshClip matched{clip.name, clip.seconds, {}};
         std::set<std::pair<std::uint32_t, NodeMember>> moved;
         for (const ClipChannel& channel : clip.channels) {
             const std::optional<std::uint32_t> node = match.nodeOf(channel);
             if (node && moved.emplace(*node, channel.member).second) {
-                taken.channels.push_back(channel);
-                taken.channels.back().node = *node;
+                matched.channels.push_back(channel);
+                matched.channels.back().node = *node;
             }
         }
-        if (taken.channels.empty()) {
+        if (matched.channels.empty()) {
             continue;
         }
         if (mesh.clips.size() == kMeshClipsMax) {
@@ -136,7 +136,7 @@ Result<void> addClipsOf(const AnimatedMesh& from, AnimatedMesh& mesh, std::vecto
                                                " for all files; leave some out");
         }
         ++added;
-        addClip(mesh, std::move(taken), warnings);
+        addClip(mesh, std::move(matched), warnings);
     }
     if (added == 0) {
         return invalidInput("none of its animated nodes has the name of a node of the mesh: " +

@@ -20,10 +20,10 @@
 namespace relief {
 namespace {
 
-/// Maximum cosine between matrix columns that count as perpendicular: float rounding.
+/// Maximum cosine of the angle between perpendicular matrix columns; allows for float rounding.
 constexpr double kPerpendicular = 1e-6;
-/// Maximum deviation of a vertex's weight sum from 1 without a warning; quantized weights deviate less.
-constexpr double kWeightSumWarns = 0.03;
+/// A vertex's weight sum may differ from 1 by this much without a warning; quantized weights differ less.
+constexpr double kWeightSumTolerance = 0.03;
 
 Affine rowsOf(const Transform& transform) {
     Affine affine;
@@ -112,7 +112,7 @@ class AnimatedReader {
         std::vector<Affine> binds;
     };
 
-    /// Uses all nodes, because a file of clips need not show any of them.
+    /// Adds all nodes, because the scene of a clip file may contain none of them.
     Result<void> readClips() {
         RELIEF_TRY(addNodes(nodesBelow(rootsOf(from_), from_)));
         return readGltfClips(document_, buffers_, nodes_, mesh_, out_.warnings);
@@ -290,7 +290,8 @@ class AnimatedReader {
                    : mesh.wrong("has positions that are not numbers");
     }
 
-    /// Returns the mirrored weight minus the unmirrored weight in the rest pose: above 0 if most of it is mirrored.
+    /// Returns the mirrored weight minus the unmirrored weight in the rest pose: positive if most of the weight is
+    /// mirrored.
     Result<double> addInfluences(const GltfInfluences& influences, const Skin& skin) {
         double mirrored = 0.0;
         std::map<std::uint32_t, bool> mirrors;
@@ -301,7 +302,7 @@ class AnimatedReader {
             for (const GltfInfluence& by : own) {
                 sum += double{by.weight};
             }
-            odd_sums_ += std::abs(sum - 1.0) > kWeightSumWarns ? 1 : 0;
+            odd_sums_ += std::abs(sum - 1.0) > kWeightSumTolerance ? 1 : 0;
             mesh_.influence_begin.push_back(static_cast<std::uint32_t>(mesh_.influences.size()));
             for (const GltfInfluence& by : own) {
                 const auto weight = static_cast<float>(double{by.weight} / sum);
@@ -409,7 +410,7 @@ class AnimatedReader {
     Transform frame_;
     LeftOutObjects left_out_;
     std::vector<GltfNode> from_;
-    std::vector<std::optional<std::uint32_t>> nodes_;  // by node index in the file; the index in mesh_
+    std::vector<std::optional<std::uint32_t>> nodes_;  // by node index in the file: index in mesh_
     std::map<std::uint64_t, Skin> skins_;
     std::map<std::pair<std::uint32_t, std::array<float, 12>>, std::uint32_t> joints_;
     std::map<std::string, std::uint16_t> materials_;

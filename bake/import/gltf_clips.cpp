@@ -62,15 +62,14 @@ class ClipReader {
     }
 
   private:
-    /// Adds the channel if it moves a node of the mesh. \param moved  pairs of node and path that already have a
-    /// channel.
+    /// Adds the channel if it moves a node of the mesh. \param moved  nodes and paths that already have a channel.
     Result<void> readChannel(const GltfValue& from, const std::vector<GltfValue>& samplers,
                              std::set<std::pair<std::uint64_t, std::string>>& moved, MeshClip& clip) {
         const std::optional<GltfValue> target = RELIEF_TRY(from.object("target"));
         const std::optional<std::string> path =
             target ? RELIEF_TRY(target->get<std::string>("path")) : std::nullopt;
         if (!path) {
-            return from.wrong("has no target, or one without a path");
+            return from.wrong("has no target, or its target has no path");
         }
         const std::optional<GltfValue> node = RELIEF_TRY(target->named("node", "nodes"));
         const std::uint64_t number = RELIEF_TRY(from.number("sampler"));
@@ -91,11 +90,11 @@ class ClipReader {
         const GltfValue& sampler = samplers[number];
         channel.times = RELIEF_TRY(readTimes(sampler));
         clip.seconds = std::max(clip.seconds, channel.times.back());
-        const std::optional<std::uint32_t> of_mesh = nodes_[node->index()];
-        if (!of_mesh) {
+        const std::optional<std::uint32_t> mesh_node = nodes_[node->index()];
+        if (!mesh_node) {
             return {};
         }
-        channel.node = *of_mesh;
+        channel.node = *mesh_node;
         if (mesh_.nodes[channel.node].matrix && channel.member != NodeMember::kWeights) {
             return from.wrong(
                 "moves nodes[" + std::to_string(node->index()) +
@@ -148,10 +147,10 @@ class ClipReader {
                 channel.values = RELIEF_TRY(numbers<glm::vec3>(output, GltfUse::kVectors));
                 break;
         }
-        const std::size_t a_key = keyNumbers(mesh_, channel) * (channel.curve == KeyCurve::kCubic ? 3 : 1);
-        if (channel.values.size() != a_key * channel.times.size()) {
+        const std::size_t per_key = keyNumbers(mesh_, channel) * (channel.curve == KeyCurve::kCubic ? 3 : 1);
+        if (channel.values.size() != per_key * channel.times.size()) {
             return output.wrong("has " + std::to_string(channel.values.size()) + " numbers instead of " +
-                                std::to_string(a_key) + " for each of " +
+                                std::to_string(per_key) + " for each of " +
                                 std::to_string(channel.times.size()) + " keys");
         }
         if (!std::ranges::all_of(channel.values, [](float value) { return std::isfinite(value); })) {
@@ -160,7 +159,8 @@ class ClipReader {
         return channel.member == NodeMember::kRotation ? unitRotations(output, channel) : Result<void>();
     }
 
-    /// Normalizes quaternions, which quantization changes. Tangents are unchanged.
+    /// Checks that quaternions have about unit length. Normalizes them, except in cubic curves: quantization changes
+    /// their length.
     static Result<void> unitRotations(const GltfValue& output, ClipChannel& channel) {
         const bool cubic = channel.curve == KeyCurve::kCubic;
         for (std::size_t key = 0; key < channel.times.size(); ++key) {

@@ -299,8 +299,8 @@ Result<std::span<const std::byte>> GltfBuffers::part(const GltfValue& place) {
     const GltfValue buffer = RELIEF_TRY(place.needed("buffer", "buffers"));
     const std::uint64_t offset = RELIEF_TRY(place.get<std::uint64_t>("byteOffset", 0));
     const std::uint64_t length = RELIEF_TRY(place.number("byteLength"));
-    const std::uint64_t announced = RELIEF_TRY(buffer.number("byteLength"));
-    if (offset > announced || length > announced - offset) {
+    const std::uint64_t declared = RELIEF_TRY(buffer.number("byteLength"));
+    if (offset > declared || length > declared - offset) {
         return place.wrong("extends beyond its buffer");
     }
     const std::optional<std::string> uri = RELIEF_TRY(buffer.get<std::string>("uri"));
@@ -315,8 +315,8 @@ Result<std::span<const std::byte>> GltfBuffers::part(const GltfValue& place) {
         read_[buffer.index()] = *std::move(bytes);
     }
     const std::span<const std::byte> bytes = uri ? read_[buffer.index()] : *chunks_.binary;
-    if (bytes.size() < announced) {
-        return buffer.wrong("has " + std::to_string(bytes.size()) + " of the " + std::to_string(announced) +
+    if (bytes.size() < declared) {
+        return buffer.wrong("has " + std::to_string(bytes.size()) + " of the " + std::to_string(declared) +
                             " bytes that it declares, " + kCutOff);
     }
     return bytes.subspan(offset, length);

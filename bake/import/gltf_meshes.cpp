@@ -16,7 +16,7 @@ enum Mode : std::uint64_t { kPoints, kLines, kLineLoop, kLineStrip, kTriangles, 
 constexpr std::uint8_t kByTriangle = 1;
 constexpr std::uint8_t kByOther = 2;
 constexpr std::uint64_t kJointsMax = 65536;
-/// Maximum sets of joints; a vertex has at most sixteen joints.
+/// Maximum number of joint sets, each with four joints per vertex.
 constexpr std::size_t kSetsMax = 4;
 
 std::uint64_t linesOf(std::uint64_t mode, std::uint64_t corners) {
@@ -32,7 +32,7 @@ glm::uvec3 cornersOf(std::uint64_t mode, std::uint32_t i) {
 }
 
 /// Whether the weights of every vertex are not negative and sum to more than 0.
-bool weigh(const GltfInfluences& influences) {
+bool areWeightsValid(const GltfInfluences& influences) {
     for (std::size_t at = 0; at < influences.all.size(); at += influences.per_vertex) {
         double sum = 0.0;
         for (std::size_t k = at; k < at + influences.per_vertex; ++k) {
@@ -48,24 +48,24 @@ bool weigh(const GltfInfluences& influences) {
 
 /// Reads JOINTS_0, WEIGHTS_0, JOINTS_1, …
 /// \param vertices  number of vertices of the primitive.
-/// \return nullopt if there are none.
+/// \return nullopt if the primitive has no joints.
 Result<std::optional<GltfInfluences>> readInfluences(const GltfValue& attributes, GltfBuffers& buffers,
                                                      std::uint64_t vertices) {
     std::vector<std::pair<std::vector<glm::vec4>, std::vector<glm::vec4>>> sets;
     for (std::size_t i = 0; i < kSetsMax; ++i) {
         const std::string joints = "JOINTS_" + std::to_string(i);
         const std::string weights = "WEIGHTS_" + std::to_string(i);
-        const auto of_joints = RELIEF_TRY(attributes.named(joints.c_str(), "accessors"));
-        const auto of_weights = RELIEF_TRY(attributes.named(weights.c_str(), "accessors"));
-        if (!of_joints && !of_weights) {
+        const auto joint_accessor = RELIEF_TRY(attributes.named(joints.c_str(), "accessors"));
+        const auto weight_accessor = RELIEF_TRY(attributes.named(weights.c_str(), "accessors"));
+        if (!joint_accessor && !weight_accessor) {
             break;
         }
-        if (!of_joints || !of_weights) {
+        if (!joint_accessor || !weight_accessor) {
             return attributes.wrong("have only one of " + joints + " and " + weights);
         }
         auto& [joint, weight] = sets.emplace_back();
-        joint = RELIEF_TRY(readAccessor<glm::vec4>(*of_joints, GltfUse::kJoints, buffers, vertices));
-        weight = RELIEF_TRY(readAccessor<glm::vec4>(*of_weights, GltfUse::kWeights, buffers, vertices));
+        joint = RELIEF_TRY(readAccessor<glm::vec4>(*joint_accessor, GltfUse::kJoints, buffers, vertices));
+        weight = RELIEF_TRY(readAccessor<glm::vec4>(*weight_accessor, GltfUse::kWeights, buffers, vertices));
         if (joint.size() != vertices || weight.size() != vertices) {
             return attributes.wrong("have different counts of " + joints + ", " + weights + " and positions");
         }
@@ -81,7 +81,7 @@ Result<std::optional<GltfInfluences>> readInfluences(const GltfValue& attributes
             }
         }
     }
-    return weigh(influences)
+    return areWeightsValid(influences)
                ? Result<std::optional<GltfInfluences>>(std::move(influences))
                : attributes.wrong(
                      "have weights that are negative, not numbers, or 0 for all joints of a vertex");

@@ -33,9 +33,9 @@ Result<void> checkPacking(const GltfValue& extension, const MeshoptPacking& pack
                                    "', which is not supported; export it uncompressed",
                                ErrorCode::kUnsupported);
     }
-    const bool wide = packing.attributes() ? stride > 0 && stride % 4 == 0 && stride <= kStrideMax
-                                           : stride == 2 || stride == 4;
-    if (!wide || (packing.triangles() && packing.count % 3 != 0)) {
+    const bool stride_fits = packing.attributes() ? stride > 0 && stride % 4 == 0 && stride <= kStrideMax
+                                                  : stride == 2 || stride == 4;
+    if (!stride_fits || (packing.triangles() && packing.count % 3 != 0)) {
         return extension.wrong("has a byteStride or a count that its mode, " + packing.mode +
                                ", does not allow");
     }

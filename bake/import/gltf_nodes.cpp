@@ -66,8 +66,8 @@ Result<void> checkExtensions(const GltfValue& document) {
     return {};
 }
 
-/// Whether animations change the visibility of nodes (KHR_animation_pointer). Errors are those of animations, which a
-/// mesh does not depend on.
+/// Whether animations change the visibility of nodes (KHR_animation_pointer). Fails only if an animation is invalid.
+/// checkGltf() ignores this error, because a static mesh does not depend on animations.
 Result<bool> animatesVisibility(const GltfValue& document) {
     for (const GltfValue& animation : RELIEF_TRY(document.objects("animations"))) {
         for (const GltfValue& channel : RELIEF_TRY(animation.objects("channels"))) {
@@ -149,7 +149,7 @@ Result<void> linkNodes(std::vector<GltfNode>& nodes) {
     return {};
 }
 
-/// Rejects levels of detail that lead back to their node, also through children; none of them would be shown.
+/// Rejects a node that is a lower level of detail of itself, also through children: no level would be shown.
 Result<void> checkLevels(const std::vector<GltfNode>& nodes,
                          const std::vector<std::vector<std::uint32_t>>& levels) {
     enum class State : std::uint8_t { kNew, kOpen, kDone };
@@ -207,7 +207,7 @@ Result<void> hideNodes(const std::vector<std::uint32_t>& all, HiddenAs hidden, s
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         const auto levels = RELIEF_TRY(extensionOf(nodes[i].place, "MSFT_lod"));
         using Indices = std::vector<std::uint64_t>;
-        bool met = nodes[i].shown != Shown::kHidden;  // a more detailed level is shown
+        bool has_higher = nodes[i].shown != Shown::kHidden;  // a more detailed level is shown
         for (const std::uint64_t level : levels ? RELIEF_TRY(levels->get<Indices>("ids", {})) : Indices()) {
             if (level >= nodes.size()) {
                 return levels->wrong("references nodes[" + std::to_string(level) + "], which does not exist");
@@ -216,8 +216,8 @@ Result<void> hideNodes(const std::vector<std::uint32_t>& all, HiddenAs hidden, s
                 lower_levels[i].push_back(static_cast<std::uint32_t>(level));
                 Shown& shown = nodes[level].shown;
                 if (shown != Shown::kHidden) {
-                    shown = met ? Shown::kLowerLevel : shown;
-                    met = true;
+                    shown = has_higher ? Shown::kLowerLevel : shown;
+                    has_higher = true;
                 }
             }
         }
@@ -270,7 +270,7 @@ Result<std::vector<GltfNode>> readGltfNodes(const GltfValue& document, HiddenAs 
         node.skin = RELIEF_TRY(place.named("skin", "skins"));
     }
     RELIEF_TRY(linkNodes(nodes));
-    // A node has at most one parent, so a node that no root reaches is part of a cycle.
+    // A node has at most one parent, so nodes that no root reaches form a cycle or are below one.
     const std::vector<std::uint32_t> all = nodesBelow(rootsOf(nodes), nodes);
     if (all.size() != nodes.size()) {
         return invalidInput("its nodes are their own parents; nodes must form trees");
@@ -361,11 +361,11 @@ Result<std::optional<NodeResponse>> gltfResponse(const GltfValue& document, cons
     // Defaults of the extension's schema.
     response.restitution = RELIEF_TRY(material.get<float>("restitution", 0.0F));
     response.friction = RELIEF_TRY(material.get<float>("dynamicFriction", 0.6F));
-    for (float* share : {&response.restitution, &response.friction}) {
-        if (!(*share >= 0.0F)) {
+    for (float* factor : {&response.restitution, &response.friction}) {
+        if (!(*factor >= 0.0F)) {
             return material.wrong("has a restitution or a dynamicFriction below 0");
         }
-        *share = std::min(*share, 1.0F);
+        *factor = std::min(*factor, 1.0F);
     }
     RELIEF_TRY(checkCombineModes(material, warnings));
     return response;

@@ -55,8 +55,8 @@ struct GltfNode {
 /// kUnsupported.
 [[nodiscard]] Result<void> checkGltf(const GltfValue& document, std::vector<std::string>& warnings);
 
-/// Reads all nodes, in file order. Errors: kInvalidInput, also if the nodes do not form trees, or if skipped levels of
-/// detail lead back to their node.
+/// Reads all nodes, in file order. Errors: kInvalidInput, also if the nodes do not form trees, or if a node is a
+/// lower level of detail of itself and such levels are skipped.
 [[nodiscard]] Result<std::vector<GltfNode>> readGltfNodes(const GltfValue& document, HiddenAs hidden);
 
 /// Returns the root nodes of the default scene, or of the first one. Errors: kInvalidInput.
@@ -98,7 +98,7 @@ struct GltfInfluences {
 struct GltfPrimitive {
     ScenePart part;  ///< contains only positions that triangles use
     std::optional<GltfInfluences> influences{};
-    /// Per target, an offset for each position; empty if the target moves none.
+    /// Per target, an offset for each position; empty if the target does not move positions.
     std::vector<std::vector<glm::vec3>> targets{};
 };
 
@@ -124,7 +124,8 @@ class GltfMeshes {
     GltfMeshes(std::uint64_t triangle_max, GltfBuffers& buffers, std::vector<std::string>& warnings)
         : triangle_max_(triangle_max), buffers_(buffers), warnings_(warnings) {}
 
-    /// Reads the meshes of nodes, in this order, with the joints of skinned ones.
+    /// Reads the meshes of the nodes `shown`, in this order. Reads joints only for meshes of skinned nodes, and morph
+    /// targets only if `targets`.
     [[nodiscard]] Result<void> read(const std::vector<std::uint32_t>& shown,
                                     const std::vector<GltfNode>& nodes, bool targets);
     /// Returns a mesh that was read.

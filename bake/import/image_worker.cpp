@@ -72,7 +72,7 @@ class WorkerRows : public SampleRows {
         RELIEF_TRY(receive(std::as_writable_bytes(std::span(text))));
         return code <= static_cast<std::uint32_t>(ErrorCode::kDifference)
                    ? fail(static_cast<ErrorCode>(code), cleanUtf8(text, kImageErrorBytesMax))
-                   : invalidInput("the importer returned an unknown error; save it again");
+                   : invalidInput("the importer returned an unknown error; save the image again");
     }
 
     Result<std::uint32_t> receiveNumber() {

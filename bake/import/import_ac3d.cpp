@@ -20,7 +20,7 @@
 namespace relief {
 namespace {
 
-/// Rejects deeper files, because later stages recurse.
+/// Maximum nesting of objects; later stages recurse.
 constexpr std::size_t kDepthMax = 1000;
 
 /// Low digit of a surface's flags.
@@ -54,7 +54,7 @@ class Ac3dReader {
         if (missing > 0) {  // common in practice
             scene_.warnings.push_back(
                 "it has " + std::to_string(missing) +
-                " objects fewer than its 'kids' declare; if some are missing, copy or export it again");
+                " fewer objects than its 'kids' declare; if some are missing, copy or export it again");
         }
         if (subdivided_ > 0) {
             scene_.warnings.push_back(std::to_string(subdivided_) +
@@ -163,7 +163,7 @@ class Ac3dReader {
                 node.transform->offset[axis] = RELIEF_TRY(number());
             }
         } else if (key == "rot") {
-            // One axis after another, as columns.
+            // The file lists the matrix column by column.
             for (int axis = 0; axis < 3; ++axis) {
                 for (int i = 0; i < 3; ++i) {
                     node.transform->linear[axis][i] = RELIEF_TRY(number());
@@ -188,7 +188,7 @@ class Ac3dReader {
         text_.nextLine();
         const std::string_view rest = text_.rest();
         const std::string_view data = rest.substr(0, std::min<std::uint64_t>(bytes, rest.size()));
-        // The next line starts after the last word.
+        // Here, line() is the line of the last word; the data starts on the next line.
         lines_before_ = line() + static_cast<std::size_t>(std::ranges::count(data, '\n'));
         text_ = TextScanner(rest.substr(data.size()));
         return {};

@@ -61,8 +61,8 @@ class ReadOnlyFiles final : public Assimp::IOSystem {
     std::span<const std::byte> mesh_;
 };
 
-/// The first errors of an import on this thread, and warnings about omitted parts of the surface. This log is the only
-/// place where assimp's readers report that they repaired a file, such as an out-of-range index.
+/// The first errors of an import on this thread, and warnings about omitted parts of the surface. Only this log reports
+/// repairs by assimp's readers, such as the replacement of an out-of-range index.
 thread_local std::vector<std::string> logged;
 
 bool hasAny(std::string_view text, std::span<const std::string_view> words) {
@@ -140,8 +140,7 @@ SourceFrame fbxFrame(const ImportJob& job, const aiScene& scene) {
     return frame;
 }
 
-/// Reads the frame of a COLLADA file. assimp scales the root by the document's unit. \param root  that scale is
-/// removed.
+/// Reads the frame of a COLLADA file. assimp scales the root by the document's unit; removes that scale from `root`.
 SourceFrame daeFrame(const ImportJob& job, aiMatrix4x4& root) {
     SourceFrame frame = colladaFrame(job.bytes);
     const double applied = double{root.a1};  // as rounded by assimp
@@ -152,8 +151,8 @@ SourceFrame daeFrame(const ImportJob& job, aiMatrix4x4& root) {
     return frame;
 }
 
-/// Reads the frame of a 3DS file. assimp rotates the root, and divides it by the file's master scale, even if that is
-/// invalid. \param root  the rotation and an invalid scale are removed.
+/// Reads the frame of a 3DS file. assimp rotates the root, and divides it by the file's master scale, even if the scale
+/// is invalid. Removes the rotation, and an invalid scale, from `root`.
 SourceFrame frameOf3ds(aiMatrix4x4& root) {
     SourceFrame frame{std::nullopt, UpAxis::kPlusZ};
     const float scale = root.a1;
@@ -165,7 +164,7 @@ SourceFrame frameOf3ds(aiMatrix4x4& root) {
     return frame;
 }
 
-/// Reads the frame of a file. \param scene  assimp's conversion is removed from its root.
+/// Reads the frame of a file, and removes assimp's conversion from the root of `scene`.
 SourceFrame frameOf(AssimpFrame format, const ImportJob& job, aiScene& scene) {
     switch (format) {
         case AssimpFrame::k3ds:
@@ -211,7 +210,7 @@ std::optional<PolygonMesh> polygonsOf(const aiMesh& mesh) {
     return polygons;
 }
 
-/// Gives each corner its own vertex. This keeps the bytes of bakes of meshes with lines or points.
+/// Gives each corner its own vertex, so that bakes of meshes with lines or points stay byte-identical.
 void unshare(ScenePart& part) {
     std::vector<glm::vec3> positions;
     for (glm::uvec3& t : part.triangles) {
@@ -262,19 +261,19 @@ std::span<aiNode* const> childrenOf(const aiNode& node) {
 /// Nodes that the file hides by other means than FBX properties.
 struct HiddenNodes {
     std::map<const aiNode*, std::string> labels;  ///< names for messages
-    std::vector<std::string> unmet;               ///< hidden objects without a node
+    std::vector<std::string> unmatched;           ///< hidden objects without a node
 };
 
 HiddenNodes nodesOf(const aiNode& root, const std::set<std::string>& names) {
     HiddenNodes hidden;
-    std::set<std::string> unmet = names;
+    std::set<std::string> unmatched = names;
     std::vector<const aiNode*> pending{&root};
     while (!pending.empty()) {
         const aiNode* const node = pending.back();
         pending.pop_back();
         if (const std::string name = node->mName.C_Str(); names.contains(name)) {
             hidden.labels.emplace(node, name);
-            unmet.erase(name);
+            unmatched.erase(name);
         }
         for (const aiNode* child : childrenOf(*node)) {
             if (child != nullptr) {
@@ -282,7 +281,7 @@ HiddenNodes nodesOf(const aiNode& root, const std::set<std::string>& names) {
             }
         }
     }
-    hidden.unmet.assign(unmet.begin(), unmet.end());
+    hidden.unmatched.assign(unmatched.begin(), unmatched.end());
     return hidden;
 }
 
@@ -293,12 +292,12 @@ HiddenNodes nodesOf(const aiNode& root, const std::vector<ColladaNode>& document
     if (std::ranges::none_of(document, &ColladaNode::hidden)) {
         return hidden;
     }
-    std::vector<bool> met(document.size());
+    std::vector<bool> matched(document.size());
     std::vector<std::pair<const aiNode*, std::uint32_t>> pending{{&root, 0}};
     while (!pending.empty()) {
         const auto [node, index] = pending.back();
         pending.pop_back();
-        met[index] = true;
+        matched[index] = true;
         if (document[index].hidden) {
             hidden.labels.emplace(node, document[index].label);
         }
@@ -319,8 +318,8 @@ HiddenNodes nodesOf(const aiNode& root, const std::vector<ColladaNode>& document
         }
     }
     for (std::size_t i = 0; i < document.size(); ++i) {
-        if (document[i].hidden && !met[i]) {
-            hidden.unmet.push_back(document[i].label);
+        if (document[i].hidden && !matched[i]) {
+            hidden.unmatched.push_back(document[i].label);
         }
     }
     return hidden;
@@ -342,7 +341,7 @@ bool hasMeshes(const aiNode& node) {
            });
 }
 
-/// Finds all levels of a LodGroup except the most detailed one, which is the first that is shown.
+/// Finds all levels of a LodGroup except the most detailed level, which is the first shown level.
 std::set<const aiNode*> lowerLevels(const aiNode& group, const HiddenNodes& hidden) {
     std::set<const aiNode*> levels;
     if (std::string_view(group.mName.C_Str()).find(kLodGroupMark) == std::string_view::npos) {
@@ -365,7 +364,7 @@ void addNodes(const aiScene& source, const HiddenNodes& hidden, ImportScene& sce
         Shown above;
     };
     std::vector<Pending> pending{{source.mRootNode, 0, Shown::kYes}};
-    std::set<const aiNode*> lesser;
+    std::set<const aiNode*> lower_levels;
     while (!pending.empty()) {
         const auto [from, parent, above] = pending.back();
         pending.pop_back();
@@ -377,7 +376,7 @@ void addNodes(const aiScene& source, const HiddenNodes& hidden, ImportScene& sce
         node.index = index;
         const bool free = above == Shown::kHidden && isZero(*from, "Visibility Inheritance");
         const Shown below = above != Shown::kYes && !free ? above
-                            : lesser.contains(from)       ? Shown::kLowerLevel
+                            : lower_levels.contains(from) ? Shown::kLowerLevel
                             : hidesBelow(*from, hidden)   ? Shown::kHidden
                                                           : Shown::kYes;
         node.is_shown = below == Shown::kYes && isZero(*from, "Show") ? Shown::kHidden : below;
@@ -394,7 +393,7 @@ void addNodes(const aiScene& source, const HiddenNodes& hidden, ImportScene& sce
             }
         }
         scene.nodes.push_back(std::move(node));
-        lesser.merge(lowerLevels(*from, hidden));
+        lower_levels.merge(lowerLevels(*from, hidden));
         for (unsigned i = from->mNumChildren; i > 0; --i) {
             if (from->mChildren[i - 1] != nullptr) {
                 pending.push_back({from->mChildren[i - 1], index, below});
@@ -402,11 +401,11 @@ void addNodes(const aiScene& source, const HiddenNodes& hidden, ImportScene& sce
         }
     }
     scene.roots = {0};
-    if (!hidden.unmet.empty()) {  // a 3DS file without a keyframer
-        const std::size_t count = hidden.unmet.size();
+    if (!hidden.unmatched.empty()) {  // a 3DS file without a keyframer
+        const std::size_t count = hidden.unmatched.size();
         const std::string them = count == 1 ? "it" : "them";
         scene.warnings.push_back("could not leave out " + std::to_string(count) + " hidden object" +
-                                 (count == 1 ? "" : "s") + firstName(hidden.unmet.front(), count) +
+                                 (count == 1 ? "" : "s") + firstName(hidden.unmatched.front(), count) +
                                  ", because no node represents " + them + "; remove " + them);
     }
 }

@@ -11,7 +11,7 @@ namespace {
 
 using enum MeshReader;
 
-// Only formats whose test models in assimp are imported correctly, or rejected clearly.
+// Contains only formats of which assimp's test models are imported correctly, or rejected with a clear error.
 constexpr MeshFormat kRows[] = {
     {.extension = "obj", .reader = kObj},
     {.extension = "stl", .reader = kStl, .whole = true},

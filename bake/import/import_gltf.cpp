@@ -74,7 +74,7 @@ class GltfReader {
   private:
     struct Skin {
         GltfSkin joints;
-        std::vector<Transform> transforms;  // from modelled vertices
+        std::vector<Transform> transforms;  // by joint: from modelled to posed vertices
     };
     /// Mesh, primitive, and skin + 1, or 0 without a skin.
     using PlacedKey = std::tuple<std::uint64_t, std::size_t, std::uint64_t>;

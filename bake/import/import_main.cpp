@@ -30,8 +30,8 @@
 namespace relief {
 namespace {
 
-/// Reserve for the stack of importRaw and small allocations.
-constexpr std::uint64_t kMemoryBeside = (std::uint64_t{1} << 30) + (std::uint64_t{64} << 20);
+/// Address space for the stack of importRaw and small allocations, in addition to the limit.
+constexpr std::uint64_t kExtraMemory = (std::uint64_t{1} << 30) + (std::uint64_t{64} << 20);
 /// Initial heap, which may use large pages.
 constexpr std::uint64_t kHeapBytes = std::uint64_t{64} << 20;
 
@@ -60,7 +60,7 @@ int sendMessage(const Result<TriangleMesh>& raw) {
     if (size > static_cast<std::uint64_t>(statusOf(kImportResultFd).st_size)) {
         return kImportExitTooLarge;
     }
-    // Allocates all of it now: a page that cannot be allocated later raises SIGBUS.
+    // Allocates the whole message now: a page that cannot be allocated later raises SIGBUS.
     if (const int code = reserveMemory(kImportResultFd, size)) {
         return exitOf(code);
     }
@@ -136,7 +136,7 @@ int work(std::span<char*> arguments) {
         return exitOf(errno);
     }
     const Result<void> limited =
-        enterSandbox({memory + kMemoryBeside, static_cast<std::uint32_t>(seconds)}, folder, kImportResultFd);
+        enterSandbox({memory + kExtraMemory, static_cast<std::uint32_t>(seconds)}, folder, kImportResultFd);
     if (!limited) {
         const Error error{limited.error().code, limited.error().message +
                                                     "; raise the limits of this "

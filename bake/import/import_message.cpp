@@ -29,12 +29,12 @@ class Writer {
         put(&value, sizeof(value));
     }
     template <class List>
-    void array(const List& values, std::uint64_t /*most*/) {
+    void array(const List& values, std::uint64_t /*length_max*/) {
         number(std::uint64_t{values.size()});
         put(values.data(), values.size() * sizeof(values[0]));
     }
     template <class T, class Each>
-    void list(const std::vector<T>& values, std::uint64_t /*most*/, const Each& each) {
+    void list(const std::vector<T>& values, std::uint64_t /*length_max*/, const Each& each) {
         number(std::uint64_t{values.size()});
         std::for_each(values.begin(), values.end(), each);
     }
@@ -51,7 +51,7 @@ class Writer {
     std::uint64_t size_ = 0;
 };
 
-/// Reads a message of Writer. For other bytes, reads nothing after the first invalid length.
+/// Reads a message that Writer wrote. Reads nothing after the first invalid length.
 class Reader {
   public:
     explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -64,21 +64,21 @@ class Reader {
         take(&value, sizeof(value));
     }
     template <class List>
-    void array(List& values, std::uint64_t most) {
-        values.resize(length(most, sizeof(values[0])));
+    void array(List& values, std::uint64_t length_max) {
+        values.resize(length(length_max, sizeof(values[0])));
         take(values.data(), values.size() * sizeof(values[0]));
     }
     template <class T, class Each>
-    void list(std::vector<T>& values, std::uint64_t most, const Each& each) {
-        values.resize(length(most, sizeof(std::uint64_t)));  // each element has at least a length
+    void list(std::vector<T>& values, std::uint64_t length_max, const Each& each) {
+        values.resize(length(length_max, sizeof(std::uint64_t)));  // each element has at least a length
         std::for_each(values.begin(), values.end(), each);
     }
 
   private:
-    std::uint64_t length(std::uint64_t most, std::uint64_t element_bytes) {
+    std::uint64_t length(std::uint64_t length_max, std::uint64_t element_bytes) {
         std::uint64_t length = 0;
         number(length);
-        good_ = good_ && length <= most && length <= bytes_.size() / element_bytes;
+        good_ = good_ && length <= length_max && length <= bytes_.size() / element_bytes;
         return good_ ? length : 0;
     }
     void take(void* target, std::uint64_t size) {
@@ -137,7 +137,7 @@ void write(Writer& writer, const Result<TriangleMesh>& raw) {
     }
 }
 
-bool isShare(float value) {
+bool isFraction(float value) {
     return value >= 0.0F && value <= 1.0F;  // false for NaN
 }
 
@@ -160,7 +160,7 @@ void writeImportMessage(const Result<TriangleMesh>& raw, std::span<std::byte> ta
 
 Result<TriangleMesh> readImportMessage(std::span<const std::byte> bytes, std::uint64_t triangle_max) {
     Reader reader(bytes);
-    auto code = static_cast<std::uint32_t>(ErrorCode::kFailure);  // the default if even this is missing
+    auto code = static_cast<std::uint32_t>(ErrorCode::kFailure);  // if the message has no code
     reader.number(code);
     if (code != 0) {
         std::string message;
@@ -186,7 +186,7 @@ Result<TriangleMesh> readImportMessage(std::span<const std::byte> bytes, std::ui
     for (SurfaceName& name : raw.surface_names) {
         name.node = cleanUtf8(name.node, kAskedNameBytesMax);
         name.material = cleanUtf8(name.material, kAskedNameBytesMax);
-        if (!isShare(name.restitution) || !isShare(name.friction)) {
+        if (!isFraction(name.restitution) || !isFraction(name.friction)) {
             return noMessage();
         }
     }

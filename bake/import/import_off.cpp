@@ -37,8 +37,9 @@ class OffReader {
             RELIEF_TRY(checkTriangleCount(triangles));
         }
         if (const std::string_view word = text_.anyWord(); !word.empty()) {
-            return wrongLine(text_.line(), quotedWord(word) + " follows the last of the " + counts() +
-                                               " of its header; fix the counts or export it again");
+            return wrongLine(text_.line(),
+                             quotedWord(word) + " follows the " + counts() +
+                                 " that its header declares; fix the counts or export it again");
         }
         return std::move(mesh_);
     }
@@ -69,8 +70,8 @@ class OffReader {
         // The count of edges is unused, and some writers omit it.
         if (text_.atLineEnd()) {
             TextScanner ahead = text_;
-            const bool alone = parseUnsigned(ahead.anyWord()) && ahead.atLineEnd();
-            text_ = alone ? ahead : text_;
+            const bool is_edge_count = parseUnsigned(ahead.anyWord()) && ahead.atLineEnd();
+            text_ = is_edge_count ? ahead : text_;
         } else {
             static_cast<void>(RELIEF_TRY(countOf(text_.word())));
         }
@@ -93,7 +94,7 @@ class OffReader {
 
     [[nodiscard]] tl::unexpected<Error> cutOff(const std::string& where) const {
         return wrongLine(text_.line(), "it ends " + where + ", but its header declares " + counts() +
-                                           " and was probably cut off; copy or export it again");
+                                           "; it was probably cut off; copy or export it again");
     }
 
     Result<float> number(std::string_view word, const char* element, std::uint64_t index) const {
@@ -179,8 +180,8 @@ Result<PolygonMesh> readOff(std::span<const std::byte> bytes) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     OffReader reader(text, {});
     Result<PolygonMesh> mesh = reader.read();
-    // A second element on a line looks like colours of the first. The file then ends too early, unless it continues on
-    // the next line and its rest there looks like another element.
+    // The first attempt skips all words after the first element of a line, as colours. If it fails, or reads an element
+    // across lines, a line may contain several elements: tries the other layouts.
     for (const EndsWithLine ends : {EndsWithLine{false, false}, {true, false}, {false, true}}) {
         if (mesh && !reader.spansLines()) {
             break;

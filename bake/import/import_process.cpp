@@ -52,8 +52,8 @@ std::string signalName(int number) {
     return name != nullptr ? "SIG" + std::string(name) : "signal " + std::to_string(number);
 }
 
-/// \param what  "could not be …"
-tl::unexpected<Error> shortOf(const char* what, int number) {
+/// Returns the error of a failed system call. \param what  "could not be …"
+tl::unexpected<Error> systemError(const char* what, int number) {
     return fail(ErrorCode::kFailure,
                 std::string("the importer ") + what + " (" + std::strerror(number) +
                     "); close files, end processes or free memory, or raise the limits (ulimit -n -u -v -f)");
@@ -79,7 +79,7 @@ Descriptor sharedBytes(std::span<const std::byte> bytes) {
 }
 
 tl::unexpected<Error> ImportProcess::notStarted(int number) {
-    return shortOf("could not be started", number);
+    return systemError("could not be started", number);
 }
 
 Result<void> ImportProcess::checkLimits() const {
@@ -160,7 +160,7 @@ Result<void> ImportProcess::finish(bool begun) {
                                                "limit (ulimit -f)");
         default:
             return end.exit_code > kImportExitErrno
-                       ? shortOf("could not continue", end.exit_code - kImportExitErrno)
+                       ? systemError("could not continue", end.exit_code - kImportExitErrno)
                        : unreadable("ended with exit code " + std::to_string(end.exit_code));
     }
 }
@@ -188,7 +188,7 @@ tl::unexpected<Error> ImportProcess::ended(int number) const {
                 "the importer made a forbidden system call (SIGSYS), as a hostile file can cause; do not "
                 "trust the file, or report it if you do");
         case SIGBUS:  // not a truncated file: its memory is anonymous
-            return shortOf("could not continue", ENOMEM);
+            return systemError("could not continue", ENOMEM);
         default:
             return unreadable("crashed on it (" + signalName(number) + ")");
     }

@@ -77,8 +77,8 @@ inline constexpr int kImportExitErrno = 128;
 /// Writes the whole message. \param target  importMessageSize(raw) bytes.
 void writeImportMessage(const Result<TriangleMesh>& raw, std::span<std::byte> target);
 
-/// Reads and validates an untrusted message. Marks and labels are empty or have one entry per triangle. Indices and
-/// coordinates are validated by finishMesh, the meaning of marks by ImportSource::finish.
+/// Reads and validates an untrusted message. Marks and labels are empty or have one entry per triangle.
+/// finishMesh() validates indices and coordinates, and ImportSource::finish() validates the values of marks.
 /// \param bytes         must not change during the call.
 /// \param triangle_max  at most kTriangleMax. A message with more triangles, or with more than three times as many
 /// positions, is rejected before allocation.

@@ -26,7 +26,7 @@ namespace relief {
 ///
 /// Text starts with a line that begins with "solid"; keywords are case-insensitive, and line breaks count as spaces. A
 /// file may contain several solids; a triangle gets the first word of its solid's name. Normals are ignored. A file
-/// that is at least as long as its header's triangle count requires is binary, regardless of its first bytes; bytes
+/// is binary, regardless of its first bytes, if it is at least as long as its header's triangle count requires. Bytes
 /// after the last triangle cause a warning.
 [[nodiscard]] Result<PolygonMesh> readStl(std::span<const std::byte> bytes);
 

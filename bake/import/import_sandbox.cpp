@@ -88,7 +88,7 @@ Result<void> enterLandlock(int folder) {
 
 // --- system calls ---
 
-/// Harmless with any arguments.
+/// System calls that are harmless with any arguments.
 constexpr int kAllowed[] = {
     // memory
     SCMP_SYS(brk), SCMP_SYS(munmap), SCMP_SYS(mremap), SCMP_SYS(madvise),
@@ -124,7 +124,7 @@ constexpr Refused kRefused[] = {
 
 constexpr auto kThread = static_cast<scmp_datum_t>(CLONE_VM | CLONE_SIGHAND | CLONE_THREAD);
 /// Further thread flags of glibc and musl.
-constexpr auto kThreadMay =
+constexpr auto kThreadOptional =
     static_cast<scmp_datum_t>(CLONE_FS | CLONE_FILES | CLONE_SYSVSEM | CLONE_SETTLS | CLONE_PARENT_SETTID |
                               CLONE_CHILD_SETTID | CLONE_CHILD_CLEARTID | CLONE_DETACHED);
 
@@ -197,23 +197,23 @@ void addRules(Rules& rules, int folder, int result) {
         rules.allow(SCMP_SYS(fallocate), {Rules::is(0, file), Rules::is(1, 0)});
         rules.allow(SCMP_SYS(fcntl), {Rules::is(0, file), Rules::is(1, F_ADD_SEALS)});
     }
-    // glibc's fstat.
+    // For glibc's fstat().
     rules.allow(SCMP_SYS(newfstatat), {Rules::is(3, AT_EMPTY_PATH)});
-    // Only queries.
-    for (const int question : {PR_GET_DUMPABLE, PR_GET_NO_NEW_PRIVS, PR_GET_PDEATHSIG}) {
-        rules.allow(SCMP_SYS(prctl), {Rules::is(0, static_cast<scmp_datum_t>(question))});
+    // Only queries by prctl() and prlimit64().
+    for (const int query : {PR_GET_DUMPABLE, PR_GET_NO_NEW_PRIVS, PR_GET_PDEATHSIG}) {
+        rules.allow(SCMP_SYS(prctl), {Rules::is(0, static_cast<scmp_datum_t>(query))});
     }
     rules.allow(SCMP_SYS(prlimit64), {Rules::is(0, 0), Rules::is(2, 0)});
     rules.allow(SCMP_SYS(getrlimit));
-    rules.allow(SCMP_SYS(clone), {Rules::masked(0, ~kThreadMay, kThread)});
-    // abort() of this process only.
+    rules.allow(SCMP_SYS(clone), {Rules::masked(0, ~kThreadOptional, kThread)});
+    // For abort(), in this process only.
     rules.allow(SCMP_SYS(tgkill), {Rules::is(0, static_cast<scmp_datum_t>(::getpid()))});
 }
 
 /// Blocks all system calls that reading a mesh does not need. Allows non-executable memory, threads, reading from
-/// descriptors, openat2 (which Landlock restricts to reading below a folder), clocks, and exit. Calls that libraries
-/// can do without fail (EACCES, EPERM, ENOSYS, ENOTTY); all others end the process with SIGSYS. Requires
-/// PR_SET_NO_NEW_PRIVS. No effect on kernels without seccomp.
+/// descriptors, openat2 (which Landlock restricts to reading below a folder), clocks, and exit. Optional calls of
+/// libraries return an error (kRefused); all others end the process with SIGSYS. Requires PR_SET_NO_NEW_PRIVS. No effect
+/// on kernels without seccomp.
 Result<void> enterSeccomp(int folder, int result) {
     // EFAULT means that the kernel supports filters and rejects this null pointer.
     if (::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, nullptr) == 0 || errno != EFAULT) {

@@ -8,7 +8,7 @@
 
 namespace relief {
 
-/// Stack size of the first thread, in bytes. Readers run on their own stack, which the address space limits.
+/// Stack size of the first thread, in bytes. Readers run on their own stack, which counts towards the memory limit.
 inline constexpr std::uint64_t kSandboxStack = std::uint64_t{8} << 20;
 
 struct SandboxLimits {
@@ -17,9 +17,9 @@ struct SandboxLimits {
 };
 
 /// Restricts this process irrevocably. Limits address space, stack and processor time; forbids core files, writing or
-/// growing files, new privileges and debuggers; ends the process with its parent thread. With Landlock, only files
-/// below `folder` can be opened, read-only. With seccomp, only a few system calls remain; any other raises SIGSYS. Call
-/// it while the process has a single thread.
+/// growing files, new privileges and debuggers; ends the process when its parent thread ends. With Landlock, only files
+/// below `folder` can be opened, read-only. With seccomp, only a few system calls are allowed; others raise SIGSYS. Call
+/// this function while the process has a single thread.
 /// \param folder  descriptor; -1 for none.
 /// \param result  descriptor of the memory that may still be mapped, truncated and sealed, or of the pipe that may
 /// still be written; -1 for none.

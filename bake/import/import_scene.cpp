@@ -30,10 +30,10 @@ bool Transform::flattens() const {
 
 std::optional<RigidPose> rigidPose(const glm::dmat3& m) {
     const double scale = std::sqrt(glm::dot(m[0], m[0]));
-    const double lost = kRigid * scale * scale;
+    const double tolerance = kRigid * scale * scale;
     for (int i = 0; i < 3; ++i) {
-        if (!(std::abs(glm::dot(m[i], m[i]) - scale * scale) <= lost &&
-              std::abs(glm::dot(m[i], m[(i + 1) % 3])) <= lost)) {
+        if (!(std::abs(glm::dot(m[i], m[i]) - scale * scale) <= tolerance &&
+              std::abs(glm::dot(m[i], m[(i + 1) % 3])) <= tolerance)) {
             return std::nullopt;
         }
     }
@@ -50,7 +50,7 @@ std::optional<RigidPose> rigidPose(const glm::dmat3& m) {
         {r[2][0] + r[0][2], r[1][2] + r[2][1], squares[2], r[0][1] - r[1][0]},
         {r[1][2] - r[2][1], r[2][0] - r[0][2], r[0][1] - r[1][0], squares[3]},
     }};
-    // The last of equals, so that the identity has w = 1.
+    // In a tie, w wins.
     std::size_t largest = 3;
     for (std::size_t i = 0; i < 3; ++i) {
         largest = squares[i] > squares[largest] ? i : largest;

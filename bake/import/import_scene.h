@@ -44,7 +44,7 @@ struct ScenePart {
     std::vector<glm::vec3> positions;   ///< may be NaN
     std::vector<glm::uvec3> triangles;  ///< valid indices into positions
     std::string material{};             ///< for SurfaceName
-    std::vector<std::string> names{};   ///< for --as: of its mesh, group and material
+    std::vector<std::string> names{};   ///< of its mesh, group and material, for --as
 };
 
 /// Copies to the part only the positions that its triangles use, in order. \return their indices in `positions`.
@@ -104,8 +104,8 @@ struct ImportScene {
 /// file name.
 void warnOfParts(const MeshParts& parts, std::vector<std::string>& warnings);
 
-/// Merges everything that the scene shows into one mesh, with marks for the job's names and with warnings of skipped
-/// parts. Converts to metres and +Y up if the frame or the job gives unit and axis. Counts all triangles before
+/// Merges all shown parts of the scene into one mesh, with marks for the job's names and with warnings of skipped parts.
+/// Converts to metres and +Y up if the frame or the job specifies unit and axis. Counts all triangles before
 /// allocating, because a small file can place one mesh many times.
 /// Errors, without the file name: kInvalidInput (nothing to show, a node within itself, an invalid frame), kUsage (a
 /// name that no triangle has), kLimit (more triangles than the job allows, or three times as many vertices).
@@ -126,7 +126,7 @@ inline constexpr const char* kAnimatedVisibility =
 /// Returns " ('NAME')" for one object, " (first 'NAME')" for several, "" if the name is empty.
 [[nodiscard]] std::string firstName(const std::string& name, std::uint64_t count);
 
-/// Counts objects that an import skips because the file does not show them.
+/// Counts hidden objects and lower levels of detail that an import skips.
 class LeftOutObjects {
   public:
     /// Counts the object if it is skipped. \param name  as stored in the file. \return whether it is skipped.

@@ -30,7 +30,7 @@ void addTriangle(const std::array<glm::vec3, 3>& corners, PolygonMesh& mesh) {
     mesh.sizes.push_back(3);
 }
 
-std::uint64_t announced(std::span<const std::byte> bytes) {
+std::uint64_t declaredTriangles(std::span<const std::byte> bytes) {
     std::uint32_t count = 0;
     std::memcpy(&count, bytes.data() + kStlHeader - sizeof(count), sizeof(count));
     return count;
@@ -42,7 +42,7 @@ Result<PolygonMesh> readBinary(std::span<const std::byte> bytes) {
             "it does not begin with 'solid', and is shorter than a binary STL's header; copy or "
             "export it again");
     }
-    const std::uint64_t count = announced(bytes);
+    const std::uint64_t count = declaredTriangles(bytes);
     if (const std::uint64_t held = (bytes.size() - kStlHeader) / kTriangle; held < count) {
         return invalidInput("its header declares " + std::to_string(count) + " triangles, but it has " +
                             std::to_string(held) + " and was probably cut off; copy or export it again");
@@ -59,8 +59,8 @@ Result<PolygonMesh> readBinary(std::span<const std::byte> bytes) {
         }
         addTriangle(corners, mesh);
     }
-    if (const auto behind = static_cast<std::uint64_t>(bytes.data() + bytes.size() - at); behind > 0) {
-        mesh.warnings.push_back("left out " + std::to_string(behind) + " bytes after the " +
+    if (const auto trailing = static_cast<std::uint64_t>(bytes.data() + bytes.size() - at); trailing > 0) {
+        mesh.warnings.push_back("left out " + std::to_string(trailing) + " bytes after the " +
                                 std::to_string(count) + " triangles of its header");
     }
     return mesh;
@@ -157,7 +157,7 @@ class StlText {
 };
 
 bool isText(std::span<const std::byte> bytes) {
-    if (bytes.size() >= kStlHeader && bytes.size() >= kStlHeader + announced(bytes) * kTriangle) {
+    if (bytes.size() >= kStlHeader && bytes.size() >= kStlHeader + declaredTriangles(bytes) * kTriangle) {
         return false;
     }
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());

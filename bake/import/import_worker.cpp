@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Implements importMeshInWorker and similar functions: starts relief-import, waits for it, and validates its answer.
+// Implements importMeshInWorker and similar functions: starts relief-import, waits for it, and validates its result.
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -33,7 +33,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The file size limit also applies to memfds.
+/// Returns the maximum size of a memfd, which the file size limit restricts, too.
 std::uint64_t largestFile(std::uint64_t wanted) {
     rlimit limit{};
     return ::getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY
@@ -41,13 +41,13 @@ std::uint64_t largestFile(std::uint64_t wanted) {
                : wanted;
 }
 
-/// The worker of a mesh file, and its answer.
+/// Runs the worker for a mesh file, and reads its result.
 class MeshWorker {
   public:
     MeshWorker(const fs::path& path, const ImportOptions& options, const ImportLimits& limits)
         : path_(path), options_(options), worker_("mesh", "simplify the mesh", limits) {}
 
-    /// Reads a file, and frees its bytes. Errors name the file.
+    /// Reads a file, and frees the bytes of `source`. Errors name the file.
     Result<TriangleMesh> read(ImportSource& source, ImportKind kind) {
         Result<TriangleMesh> raw = workOn(source, kind);
         return raw || raw.error().message.find(quotedPath(path_)) != std::string::npos

@@ -53,7 +53,7 @@ std::vector<T> cut(const std::vector<T>& all, std::size_t first, std::size_t cou
     return {part.begin(), part.end()};
 }
 
-/// Copies the labels of one mesh, and the names that they use.
+/// Copies the labels of one mesh, and the names that the labels reference.
 void takeLabels(const TriangleMesh& all, std::size_t first, TriangleMesh& mesh) {
     std::map<std::uint32_t, std::uint32_t> places;
     for (std::size_t i = 0; !all.labels.empty() && i < mesh.triangles.size(); ++i) {
@@ -71,7 +71,7 @@ void takeLabels(const TriangleMesh& all, std::size_t first, TriangleMesh& mesh) 
     dropSingleLabel(mesh);
 }
 
-/// Whether finishMesh would find a triangle with area, or a fault.
+/// Whether finishMesh() finds a triangle with area, or fails.
 bool hasAreaOrFault(const TriangleMesh& mesh) {
     return std::ranges::any_of(mesh.triangles, [&mesh](const glm::uvec3& t) {
         return std::max({t.x, t.y, t.z}) >= mesh.positions.size() || hasArea(planeOf(mesh.positions, t));
@@ -95,15 +95,15 @@ std::string hashOf(const TriangleMesh& mesh) {
 std::string materialHash(const TriangleMesh& mesh) {
     std::map<std::string_view, std::uint32_t> known;
     std::string text;
-    std::uint32_t before = kNoLabel;
+    std::uint32_t previous = kNoLabel;
     const std::size_t count = mesh.labels.empty() ? mesh.surface_names.size() : mesh.labels.size();
     for (std::size_t i = 0; i < count; ++i) {
         const SurfaceName& name = mesh.surface_names[mesh.labels.empty() ? i : mesh.labels[i]];
         const auto [found, added] =
             known.try_emplace(name.material, static_cast<std::uint32_t>(known.size()));
-        if (found->second != before) {
-            before = found->second;
-            text += std::to_string(i) + ":" + std::to_string(before) +
+        if (found->second != previous) {
+            previous = found->second;
+            text += std::to_string(i) + ":" + std::to_string(previous) +
                     (added ? name.material + '|' + shortest(name.restitution) + '|' + shortest(name.friction)
                            : "") +
                     std::string(1, '\0');

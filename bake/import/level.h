@@ -41,7 +41,7 @@ struct Level {
 /// Collects the meshes of a level, and merges equal ones.
 class LevelMeshes {
   public:
-    /// Adds a mesh. \param mesh  after finishMesh(); its content_hash is computed here.
+    /// Adds a mesh, and computes its content_hash. \param mesh  after finishMesh().
     /// \param materials  true: meshes that differ only in materials stay separate.
     /// \return its index.
     std::uint32_t add(TriangleMesh mesh, bool materials);
@@ -60,8 +60,8 @@ class LevelMeshes {
                                                 const ImportOptions& options = {},
                                                 const ImportLimits& limits = {});
 
-/// Imports a file as importLevelInWorker() does. In a folder, imports each mesh file, sorted by name, as one mesh at
-/// its own coordinates; skips other files and subfolders.
+/// Imports a file as importLevelInWorker() does. In a folder, imports each mesh file as one mesh without a
+/// transform, sorted by name; skips other files and subfolders.
 /// \param path  a file or a folder.
 /// Errors: those of importLevelInWorker; for a folder also kUsage (names), kInvalidInput (no mesh file, or only some
 /// with a unit), kLimit.

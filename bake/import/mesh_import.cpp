@@ -25,11 +25,11 @@ namespace fs = std::filesystem;
 constexpr std::size_t kStackBytes = std::size_t{1} << 30;
 constexpr std::size_t kStackBytesMin = std::size_t{8} << 20;
 
-/// Adds the file name in front, and a cure if there is none.
+/// Prefixes the file name, and appends advice if the message has none.
 tl::unexpected<Error> unreadable(const ImportJob& job, const Error& error) {
-    const bool cured = error.message.find(';') != std::string::npos;
+    const bool has_advice = error.message.find(';') != std::string::npos;
     return fail(error.code, "cannot read the mesh " + job.shown + ": " + error.message +
-                                (cured ? "" : "; repair the file or export it again"));
+                                (has_advice ? "" : "; repair the file or export it again"));
 }
 
 /// \param apart  as in addPolygons().
@@ -47,8 +47,8 @@ Result<ImportScene> sceneOf(const Result<PolygonMesh>& polygons, bool apart, con
     return scene;
 }
 
-/// Reads an OBJ and opens its material libraries, which are dependencies although they do not affect the shape. A
-/// library with the mesh's own name replaces a missing one.
+/// Reads an OBJ and opens its material libraries, which are dependencies although they do not affect the shape. If
+/// a library is missing, the library named after the mesh replaces it.
 Result<PolygonMesh> readObjOf(const ImportJob& job, ImportFiles& files) {
     ObjMesh obj = RELIEF_TRY(readObj(job.bytes));
     const std::string own = fs::path(job.file_name).replace_extension("mtl").string();
@@ -79,7 +79,7 @@ Result<ImportScene> readScene(const MeshFormat& format, const ImportJob& job, Im
     }
 }
 
-Result<TriangleMesh> readAsAsked(const MeshFormat& format, const ImportJob& job, ImportFiles& files) {
+Result<TriangleMesh> readMesh(const MeshFormat& format, const ImportJob& job, ImportFiles& files) {
     if (job.kind == ImportKind::kAnimated || job.kind == ImportKind::kClips) {
         return format.reader == MeshReader::kGltf
                    ? readAnimatedGltf(job, files)
@@ -91,14 +91,14 @@ Result<TriangleMesh> readAsAsked(const MeshFormat& format, const ImportJob& job,
                                           : flatten(std::move(scene), job);
 }
 
-Result<TriangleMesh> importWhatItIs(const ImportJob& job) {
+Result<TriangleMesh> importFile(const ImportJob& job) {
     const MeshFormat* const format = meshFormat(job.extension);
     if (format == nullptr) {
         return fail(ErrorCode::kUnsupported, "no mesh format has the extension '" + cleanUtf8(job.extension) +
                                                  "'; convert it to glTF, OBJ or PLY");
     }
     ImportFiles files(job.folder, job.file_name, job.bytes);
-    TriangleMesh mesh = RELIEF_TRY(readAsAsked(*format, job, files));
+    TriangleMesh mesh = RELIEF_TRY(readMesh(*format, job, files));
     for (const std::string& refused : files.refused()) {
         mesh.warnings.push_back("left out " + refused);
     }
@@ -117,7 +117,7 @@ struct Import {
 
     void run() {
         try {
-            result.emplace(importWhatItIs(job));
+            result.emplace(importFile(job));
         } catch (const std::bad_alloc&) {
             result.emplace(fail(ErrorCode::kLimit, "out of memory; simplify the mesh"));
         } catch (const std::exception& e) {
@@ -157,15 +157,15 @@ Result<TriangleMesh> importRaw(const ImportJob& job) {
         return fail(ErrorCode::kLimit, job.shown + ": more than " + std::to_string(kAskedNamesMax) +
                                            " names are requested at once; use fewer");
     }
-    ImportJob unmarked = job;
+    ImportJob without_mark = job;
     const std::string_view text(reinterpret_cast<const char*>(job.bytes.data()), job.bytes.size());
-    unmarked.bytes = job.bytes.subspan(job.bytes.size() - withoutByteOrderMark(text).size());
-    const std::optional<std::string> format = otherFormat(job.extension, unmarked.bytes);
+    without_mark.bytes = job.bytes.subspan(job.bytes.size() - withoutByteOrderMark(text).size());
+    const std::optional<std::string> format = otherFormat(job.extension, without_mark.bytes);
     if (format) {
-        unmarked.file_name += "." + *format;
-        unmarked.extension = *format;
+        without_mark.file_name += "." + *format;
+        without_mark.extension = *format;
     }
-    Import import{unmarked, std::nullopt};
+    Import import{without_mark, std::nullopt};
     if (const int failed = startOnDeepStack(import)) {
         return unreadable(
             job, {ErrorCode::kFailure, std::string("no thread could be started (") + std::strerror(failed) +
@@ -178,7 +178,7 @@ Result<TriangleMesh> importRaw(const ImportJob& job) {
     }
     if (format) {
         mesh->warnings.push_back("its contents are those of a ." + *format + ", not of a ." + job.extension +
-                                 ", and are read as such; rename it");
+                                 "; it is read as ." + *format + "; rename it");
     }
     return std::move(mesh);
 }

@@ -11,8 +11,8 @@
 namespace relief {
 namespace {
 
-/// Returns a normal of twice the polygon's area (Newell's formula). Relative to the first corner, for precision far
-/// from the origin.
+/// Returns a normal whose length is twice the polygon's area (Newell's formula). Computes relative to the first corner,
+/// for precision far from the origin.
 glm::dvec3 normalOf(std::span<const glm::vec3> corners) {
     const glm::dvec3 origin(corners[0]);
     glm::dvec3 normal(0.0);
@@ -22,8 +22,8 @@ glm::dvec3 normalOf(std::span<const glm::vec3> corners) {
     return normal;
 }
 
-/// Whether the angle at corner `at` of a quadrilateral exceeds 180°, as the sum of the two angles beside the diagonal.
-/// In float precision, because rounding decides for corners on straight edges.
+/// Whether the angle at corner `at` of a quadrilateral exceeds 180°: the sum of the two angles beside the diagonal.
+/// Uses float precision like assimp, because rounding decides for corners on straight edges.
 bool isDent(std::span<const glm::vec3> corners, std::size_t at) {
     constexpr float kHalfTurn = 3.14159265F;
     const auto towards = [&](std::size_t other) {
@@ -123,7 +123,7 @@ void PolygonCutter::cutEars(Test test) {
     reflexes_.clear();
     for (std::uint32_t i = 0; i < count && test != Test::kRounded; ++i) {
         markReflex(i);
-        // NaN is in no ear and cannot be sorted.
+        // NaN lies in no ear and cannot be sorted.
         if (reflex_[i] != 0 && std::isfinite(points_[i].x) && std::isfinite(points_[i].y)) {
             reflexes_.push_back(i);
         }

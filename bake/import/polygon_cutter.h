@@ -13,13 +13,13 @@ namespace relief {
 /// Triangulates polygons, including concave ones and those with corners on straight edges. Reuses its memory between
 /// polygons.
 ///
-/// Clips ears in corner order, in the coordinate plane closest to the polygon's own. Every ear has a nonzero area: a
+/// Clips ears in corner order, in the coordinate plane closest to the polygon's plane. Every ear has a nonzero area: a
 /// corner on a straight edge becomes part of such an ear, because a triangle without area would be dropped and leave a
 /// slit. If no such triangulation exists, because the polygon crosses itself or has no area, the result has the fewest
-/// flipped or flat triangles. Projected coordinates are the polygon's own, so precision does not depend on the distance
-/// from the origin.
+/// flipped or flat triangles. The projection only drops a coordinate, so precision does not depend on the distance from
+/// the origin.
 ///
-/// The first attempt repeats assimp's tests in float precision, so that baked files keep their bytes. Its result is
+/// The first attempt repeats assimp's tests in float precision, so that baked files stay byte-identical. Its result is
 /// used only if every triangle has an area.
 class PolygonCutter {
   public:
@@ -30,7 +30,7 @@ class PolygonCutter {
     [[nodiscard]] std::span<const glm::uvec3> cut(std::span<const glm::vec3> corners);
 
   private:
-    /// Which other corners disqualify an ear: those inside it, with rounding or exactly, or also those on its edges.
+    /// The other corners that disqualify an ear: corners inside it (rounded or exact), or also corners on its edges.
     enum class Test : std::uint8_t { kRounded, kInside, kTouching };
 
     void project(std::span<const glm::vec3> corners);
@@ -56,9 +56,8 @@ class PolygonCutter {
     std::vector<glm::uvec3> best_;
 };
 
-/// Rotates the corners of a polygon's triangles so that no triangle starts at the vertex at which the previous one
-/// started; shapes do not change. assimp marks polygon boundaries in this way. Using its order keeps the bytes of
-/// baked files.
+/// Rotates the corners of a polygon's triangles so that no triangle has the same first vertex as the previous triangle;
+/// shapes do not change. assimp marks polygon boundaries in this way. Using its order keeps baked files byte-identical.
 class TriangleStarts {
   public:
     /// \param polygon  its triangles, as vertex indices of the mesh.

@@ -20,7 +20,7 @@ class SampleRows {
 
     [[nodiscard]] std::uint64_t columns() const { return columns_; }
     [[nodiscard]] std::uint64_t rows() const { return rows_; }
-    /// The largest integer sample; 0: samples are heights.
+    /// Maximum possible value of integer samples; 0 if samples are heights as floats.
     [[nodiscard]] std::uint32_t most() const { return most_; }
 
     /// Reads the next row, which must exist.

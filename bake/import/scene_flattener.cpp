@@ -61,17 +61,17 @@ class NameMarks {
 
     /// Checks that every selected name was found. Errors: kUsage, with the existing names.
     [[nodiscard]] Result<void> checkAllFound() const {
-        const std::vector<std::string>& asked = job_.options.names;
-        const auto unmet = std::ranges::find_if(
-            asked, [&](const std::string& name) { return !found_.contains(marks_.at(name)); });
-        if (unmet == asked.end()) {
+        const std::vector<std::string>& selected = job_.options.names;
+        const auto unmatched = std::ranges::find_if(
+            selected, [&](const std::string& name) { return !found_.contains(marks_.at(name)); });
+        if (unmatched == selected.end()) {
             return {};
         }
-        std::string text = "no triangle has the name '" + cleanUtf8(*unmet, kAskedNameBytesMax) + "'";
+        std::string text = "no triangle has the name '" + cleanUtf8(*unmatched, kAskedNameBytesMax) + "'";
         const std::vector<std::string_view> known(names_.begin(), names_.end());
-        text += didYouMean(*unmet, known);
+        text += didYouMean(*unmatched, known);
         if (known.empty()) {
-            return fail(ErrorCode::kUsage, text + "; the file has no names: use --as without one");
+            return fail(ErrorCode::kUsage, text + "; the file has no names: use --as without a name");
         }
         text += text.ends_with("?") ? " Its names: " : "; its names: ";
         for (std::size_t i = 0; i < std::min(known.size(), kListedMax); ++i) {
@@ -81,7 +81,7 @@ class NameMarks {
     }
 
   private:
-    /// Limits of the names that are kept for suggestions, and of those that a message lists.
+    /// Limits on the names kept for suggestions, and on the names that a message lists.
     static constexpr std::size_t kNamesMax = 1000;
     static constexpr std::size_t kListedMax = 20;
     static constexpr std::size_t kListedBytesMax = 80;
@@ -143,11 +143,11 @@ class Flattener {
         states_.resize(scene_.nodes.size());
         placed_.resize(scene_.parts.size());
         for (const std::uint32_t root : scene_.roots) {
-            static_cast<void>(RELIEF_TRY(look(root)));
+            static_cast<void>(RELIEF_TRY(findShown(root)));
         }
         mesh_.warnings = std::move(scene_.warnings);
         RELIEF_TRY(countParts());
-        return takeFrame();
+        return applyFrame();
     }
 
     Result<TriangleMesh> finish() {
@@ -251,7 +251,7 @@ class Flattener {
     }
 
     /// Returns whether a node or a descendant has triangles. Recursive; importers run on a deep stack.
-    Result<bool> look(std::uint32_t index) {
+    Result<bool> findShown(std::uint32_t index) {
         if (states_[index] == State::kOpen) {
             return invalidInput("an object contains itself; export it again");
         }
@@ -263,7 +263,7 @@ class Flattener {
             }
             bool shown = hasTriangles(node);
             for (const std::uint32_t child : node.children) {
-                shown = RELIEF_TRY(look(child)) || shown;
+                shown = RELIEF_TRY(findShown(child)) || shown;
             }
             states_[index] = shown ? State::kShown : State::kEmpty;
         }
@@ -286,7 +286,7 @@ class Flattener {
         return {};
     }
 
-    Result<void> takeFrame() {
+    Result<void> applyFrame() {
         const ImportOptions& options = job_.options;
         RELIEF_TRY(checkFrame(scene_.frame, options.unit, options.up));
         const FrameChange change = changeOf(scene_.frame, options.unit, options.up);
@@ -341,7 +341,7 @@ class Flattener {
         return triangles_ <= job_.triangle_max && vertices_ <= 3 * job_.triangle_max;
     }
 
-    /// Adds a part; mirroring transforms flip its triangles. \param first  the position from which indices count.
+    /// Adds a part; mirroring transforms flip its triangles. \param first  index of the position that becomes index 0.
     void add(const SceneNode& node, const ScenePart& part, const Transform& transform, std::uint8_t mark,
              std::uint32_t first = 0) {
         if (part.triangles.empty()) {

@@ -12,8 +12,8 @@
 namespace relief {
 namespace {
 
-/// More loose vertices than 1 in kLooseShare cause a warning.
-constexpr std::uint64_t kLooseShare = 10;
+/// Warns if more than 1 in kLooseOneIn vertices is loose.
+constexpr std::uint64_t kLooseOneIn = 10;
 
 /// Returns "1 line, 3 points and 2 free-form curves or surfaces"; "" if there are none.
 std::string othersText(const MeshParts& parts) {
@@ -41,8 +41,8 @@ class PolygonRuns {
           apart_(apart),
           has_polygons_(std::ranges::any_of(polygons.sizes, [](std::uint32_t size) { return size > 3; })) {}
 
-    /// Triangulates the next polygons. \param end  end index. \param other  they belong to another surface than the
-    /// previous run.
+    /// Triangulates the polygons from the end of the previous run to index `end`.
+    /// \param other  whether they belong to a different surface than the previous run.
     ScenePart upTo(std::size_t end, bool other) {
         ScenePart part;
         std::vector<glm::vec3> places;
@@ -81,7 +81,7 @@ class PolygonRuns {
     }
 
   private:
-    /// Count after which the indices for TriangleStarts restart. Keeps the bytes of bakes.
+    /// Number of vertices after which the indices for TriangleStarts restart, so that bakes stay byte-identical.
     static constexpr std::uint32_t kHeldMax = 100'000;
 
     const PolygonMesh& polygons_;
@@ -183,7 +183,7 @@ void warnOfParts(const MeshParts& parts, std::vector<std::string>& warnings) {
         warnings.push_back("left out " + std::to_string(parts.unplaced) + " of its " +
                            std::to_string(parts.meshes) + " meshes: no node of its scene places them");
     }
-    if (parts.loose > parts.vertices / kLooseShare) {
+    if (parts.loose > parts.vertices / kLooseOneIn) {
         warnings.push_back(std::to_string(parts.loose) + " of its " + std::to_string(parts.vertices) +
                            (parts.loose == 1 ? " vertices belongs" : " vertices belong") +
                            " to no polygon: faces may be missing; compare its triangle count "

@@ -73,7 +73,7 @@ void replacePair(std::string& text, const FbxString& first, std::string_view new
     }
 }
 
-/// Changes the type of a property `name` from a type of the same name, unknown to assimp, to a number.
+/// Changes the type of the property `name` to a number. assimp does not support the original type, also called `name`.
 bool typeAsNumber(std::string& text, std::string_view name) {
     const std::string start = quoted(text, name);
     bool any = false;
@@ -117,14 +117,14 @@ bool markLodGroups(std::string& text) {
     for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
         const std::size_t end = at + word.size();
         const auto written = binary ? std::nullopt : stringAfter(text, at);
-        const auto its_class = stringAfter(text, written ? endOf(text, *written) : end);
-        if (!its_class || std::string_view(text).substr(its_class->begin, its_class->size) != kLodGroup) {
+        const auto node_class = stringAfter(text, written ? endOf(text, *written) : end);
+        if (!node_class || std::string_view(text).substr(node_class->begin, node_class->size) != kLodGroup) {
             continue;
         }
         if (const auto name = binary ? stringBefore(text, end) : written) {
             std::string marked = text.substr(name->begin, name->size);
             marked.insert(marked.size() - (binary ? word.size() : 0), kLodGroupMark);
-            replacePair(text, *name, marked, *its_class, "");
+            replacePair(text, *name, marked, *node_class, "");
             any = true;
         }
     }
@@ -229,11 +229,11 @@ class ColladaReader {
         const auto found = objects_.find(url.substr(1));
         const pugi::xml_node object = found == objects_.end() ? pugi::xml_node() : found->second;
         if (!object) {
-            return miss(node, instance, url, "does not exist");
+            return addMissing(node, instance, url, "does not exist");
         }
         const std::string_view kind = object.name();
         if (kind == "geometry") {
-            return object.child("mesh") ? Result<void>() : miss(node, instance, url, "has no <mesh>");
+            return object.child("mesh") ? Result<void>() : addMissing(node, instance, url, "has no <mesh>");
         }
         if (kind == "controller") {
             const char* const source = object.child("skin").attribute("source").as_string(
@@ -245,8 +245,8 @@ class ColladaReader {
         return {};
     }
 
-    Result<void> miss(const pugi::xml_node& node, const pugi::xml_node& instance, const std::string& url,
-                      const char* what) {
+    Result<void> addMissing(const pugi::xml_node& node, const pugi::xml_node& instance,
+                            const std::string& url, const char* what) {
         if (missing_++ == 0) {
             nodes_.missing =
                 placeOf(node, instance) + " instances '" + cleanUtf8(url, kUrlMax) + "', which " + what;

@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kSamples = 400'000;
 /// Maximum distance between a contact and its mesh point, in local texels.
 constexpr double kReach = 1.5;
-/// Precision of a contact's position, relative to that distance.
+/// Precision of a contact's position, as a fraction of kReach.
 constexpr double kNear = 0.03;
 
 struct SurfacePoint {
@@ -39,8 +39,8 @@ class SurfacePoints {
     }
 
     [[nodiscard]] SurfacePoint at(std::size_t k) const {
-        const double share = (static_cast<double>(k) + 0.5) / static_cast<double>(kSamples);
-        const auto found = std::lower_bound(sums_.begin(), sums_.end(), share * sums_.back());
+        const double fraction = (static_cast<double>(k) + 0.5) / static_cast<double>(kSamples);
+        const auto found = std::lower_bound(sums_.begin(), sums_.end(), fraction * sums_.back());
         const auto index = std::min(static_cast<std::size_t>(found - sums_.begin()), sums_.size() - 1);
         const glm::uvec3& t = source_.triangles[index];
         // Roberts's sequence R2, folded into the triangle.
@@ -61,7 +61,7 @@ class SurfacePoints {
     std::vector<double> sums_;
 };
 
-/// Returns the side of the collider's texels at a point, object units; leaves of patches have their own.
+/// Returns the length of the collider's texels at a point, in object units. It differs between leaves with patches.
 double texelAt(const Collider& collider, const glm::vec3& p, float finest) {
     float texel = finest;
     for (const DepthMap& map : collider.maps) {
@@ -84,25 +84,25 @@ std::optional<SurfacePoint> contactOf(const Collider& collider, const SurfacePoi
     double low = -reach;
     double high = reach;
     FieldSample within;
-    const auto look = [&](double along) {
+    const auto probe = [&](double along) {
         const FieldSample sample = evaluate(collider, glm::vec3(from.at + along * from.normal));
         (sample.inside() ? low : high) = along;
         within = sample.inside() ? sample : within;
         return sample.inside();
     };
     // Most points that no contact reaches have a solid in front of them.
-    if (evaluateInside(collider, glm::vec3(from.at + high * from.normal)).inside || !look(low)) {
+    if (evaluateInside(collider, glm::vec3(from.at + high * from.normal)).inside || !probe(low)) {
         return std::nullopt;
     }
-    // The distance leads there in one step, unless it belongs to another or a slanted surface.
+    // A step by the field's distance ends at the contact, unless another surface is closer or the surface is slanted.
     const double guess = low + std::abs(double{within.distance});
     for (const double along : {guess + 0.4 * kNear * reach, guess - 0.4 * kNear * reach}) {
         if (along > low && along < high) {
-            static_cast<void>(look(along));
+            static_cast<void>(probe(along));
         }
     }
     while (high - low > kNear * reach) {
-        static_cast<void>(look(0.5 * (low + high)));
+        static_cast<void>(probe(0.5 * (low + high)));
     }
     return SurfacePoint{from.at + high * from.normal, glm::dvec3(within.normal), from.triangle};
 }
@@ -148,7 +148,7 @@ std::vector<MaterialSample> sampleContacts(const Collider& collider, const Mater
     }
     const SurfacePoints points(source);
     const float finest = finestTexel(collider);
-    const std::size_t sides = source.sides ? 1 : 2;  // a sheet shows both sides
+    const std::size_t sides = source.sides ? 1 : 2;  // contacts reach both sides of a sheet
     std::vector<std::array<std::optional<MaterialSample>, 2>> all(kSamples);
     tbb::parallel_for(std::size_t{0}, kSamples, [&](std::size_t k) {
         SurfacePoint from = points.at(k);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples contacts with a collider and the materials that they should find. A material tree is fitted to them.
+// Samples contacts with a collider, each with its correct material. A material tree is fitted to the samples.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace relief {
 
-/// Weight of a contact farther than a texel from any other material. Other contacts weigh 1, because texels do
+/// Weight of a contact that is more than a texel away from any other material. Other contacts weigh 1, because texels do
 /// not resolve them.
 inline constexpr std::uint32_t kClearContact = 8;
 
@@ -22,8 +22,8 @@ struct MaterialSample {
     std::uint32_t weight = kClearContact;
 };
 
-/// Samples points spread evenly over the area of the source, and keeps those that a contact can reach, excluding points
-/// within solids. The result does not depend on the number of threads.
+/// Samples points evenly over the area of the source, and keeps the points that a contact can reach; points within
+/// solids are excluded. The result does not depend on the number of threads.
 [[nodiscard]] std::vector<MaterialSample> sampleContacts(const Collider& collider,
                                                          const MaterialSource& source);
 

@@ -10,7 +10,7 @@
 namespace relief {
 namespace {
 
-/// Returns the index of a material by name; the name is new or has the same response as before.
+/// Returns the index of a material by name, and adds new names. Fails if the name has a different response.
 Result<std::size_t> idOf(const SurfaceName& name, const TriangleMesh& mesh,
                          std::map<std::string, std::size_t>& known, std::vector<Material>& list) {
     const auto [found, added] = known.try_emplace(name.material, list.size());
@@ -40,20 +40,20 @@ Result<MaterialSource> materialSource(const TriangleMesh& mesh, bool single) {
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
         const std::uint32_t label = one_surface ? 0 : mesh.labels[i];
         if (label < area.size()) {
-            const double its = 0.5 * length(planeOf(mesh, i).normal);
-            area[label] += its;
-            whole += its;
+            const double triangle_area = 0.5 * length(planeOf(mesh, i).normal);
+            area[label] += triangle_area;
+            whole += triangle_area;
         }
     }
     MaterialSource source;
     std::map<std::string, std::size_t> known;
     std::vector<std::size_t> id_of_label(area.size(), 0);
-    std::vector<double> shares;
+    std::vector<double> fractions;
     for (std::size_t label = 0; label < area.size(); ++label) {
         if (area[label] > 0.0) {
             id_of_label[label] = RELIEF_TRY(idOf(mesh.surface_names[label], mesh, known, source.list));
-            shares.resize(source.list.size(), 0.0);
-            shares[id_of_label[label]] += area[label] / whole;
+            fractions.resize(source.list.size(), 0.0);
+            fractions[id_of_label[label]] += area[label] / whole;
         }
     }
     if (source.list.size() < 2 && !(single && source.list.size() == 1 && !source.list[0].name.empty())) {
@@ -65,8 +65,8 @@ Result<MaterialSource> materialSource(const TriangleMesh& mesh, bool single) {
                                            std::to_string(kMaterialsMax) +
                                            "; merge some, or bake with --materials drop");
     }
-    for (std::size_t i = 0; i < shares.size(); ++i) {
-        source.list[i].area_fraction = static_cast<float>(std::min(shares[i], 1.0));
+    for (std::size_t i = 0; i < fractions.size(); ++i) {
+        source.list[i].area_fraction = static_cast<float>(std::min(fractions[i], 1.0));
     }
     source.positions = mesh.positions;
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {

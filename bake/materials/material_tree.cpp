@@ -27,15 +27,15 @@ constexpr double kSideMin = 0.5;
 constexpr double kDiagonal = 0.70710678118654752;
 /// Nodes to try per node to keep: a split may improve nothing by itself, but its descendants may.
 constexpr std::size_t kTriedPerNode = 2;
-/// Coplanar faces stay in each other's cells down to the smallest cell. Beyond this total, cells are not split.
+/// Maximum number of faces in open cells; beyond it, cells are not split. Coplanar faces share even the smallest cells.
 constexpr std::size_t kFacesHeldMax = std::size_t{1} << 26;
 /// Bytes of a material in the container, excluding its name.
 constexpr std::size_t kMaterialBytes = 40;
 
 struct MaterialTreeOptions {
-    Bounds box;            ///< of the collider
-    double texel = 0.0;    ///< smallest texel of its maps, object units; no cell is smaller than half of it
-    std::size_t most = 0;  ///< budget in bytes; once it is spent, cells are not split
+    Bounds box;              ///< of the collider
+    double texel = 0.0;      ///< smallest texel of its maps, object units; no cell is smaller than half of it
+    std::size_t budget = 0;  ///< bytes; once it is spent, cells are not split
 };
 
 /// A triangle in double precision.
@@ -96,8 +96,8 @@ struct Cell {
     std::vector<std::uint32_t> faces;
     std::vector<std::uint32_t> samples;
     Fit fit;
-    bool final = false;                      ///< further splits cannot separate its surfaces
-    bool kept = false;                       ///< with its octants
+    bool final = false;                      ///< is not split further
+    bool kept = false;                       ///< is a node of the result, with its octants
     std::array<std::uint32_t, 8> octants{};  ///< cells; 0: a leaf
 };
 
@@ -128,7 +128,7 @@ class TreeBuilder {
         held_ = root.faces.size();
         cells_.push_back(std::move(root));
         split({0});
-        std::size_t left = kTriedPerNode * mostNodes(0) - 1;
+        std::size_t left = kTriedPerNode * nodesWithin(0) - 1;
         while (!open_.empty() && left > 0) {
             // A fixed batch size, for parallelism and determinism.
             constexpr std::size_t kAtOnce = 32;
@@ -142,7 +142,7 @@ class TreeBuilder {
         }
         // Pairs of sides use bytes, too, and a tree with fewer nodes may have other pairs.
         for (std::size_t pairs = 0;;) {
-            keepBest(mostNodes(pairs));
+            keepBest(nodesWithin(pairs));
             const std::size_t used = pairsKept();
             if (used <= pairs) {
                 break;
@@ -181,14 +181,14 @@ class TreeBuilder {
         }
     }
 
-    /// \param pairs  pairs of sides.
-    [[nodiscard]] std::size_t mostNodes(std::size_t pairs) const {
-        std::size_t taken = pairs * sizeof(MaterialSides);
+    /// Returns the maximum number of nodes within the budget. \param pairs  number of pairs of sides.
+    [[nodiscard]] std::size_t nodesWithin(std::size_t pairs) const {
+        std::size_t used = pairs * sizeof(MaterialSides);
         for (const Material& one : source_.list) {
-            taken += one.name.size() + kMaterialBytes;
+            used += one.name.size() + kMaterialBytes;
         }
         return std::clamp<std::size_t>(
-            (options_.most - std::min(taken, options_.most)) / sizeof(MaterialNode), 1, kMaterialNodesMax);
+            (options_.budget - std::min(used, options_.budget)) / sizeof(MaterialNode), 1, kMaterialNodesMax);
     }
 
     [[nodiscard]] std::optional<std::uint8_t> singleOf(const std::vector<std::uint32_t>& faces) const {
@@ -205,7 +205,7 @@ class TreeBuilder {
         return (axis < 3 ? 1.0 : kDiagonal) * alongMaterialAxis(normal, axis);
     }
 
-    /// Returns the sides that separate all of these faces.
+    /// Returns sides that separate the materials of the faces; nullopt if there are none.
     [[nodiscard]] std::optional<MaterialSides> sidesOf(const std::vector<std::uint32_t>& faces) const {
         for (int axis = 0; axis < kMaterialAxes && source_.sides; ++axis) {
             std::array<int, 2> ids{-1, -1};  // of faces along the axis, and against it
@@ -235,8 +235,8 @@ class TreeBuilder {
         return id;
     }
 
-    /// Returns the most frequent index (the first of equals), and the total of all other counts.
-    static std::pair<std::uint8_t, std::size_t> most(const std::vector<std::size_t>& counts) {
+    /// Returns the most frequent index (the lowest in a tie), and the total of all other counts.
+    static std::pair<std::uint8_t, std::size_t> mostFrequent(const std::vector<std::size_t>& counts) {
         const auto found = std::ranges::max_element(counts);
         std::size_t all = 0;
         for (const std::size_t count : counts) {
@@ -267,15 +267,15 @@ class TreeBuilder {
         for (const std::uint32_t i : samples) {
             counts[samples_[i].id] += samples_[i].weight;
         }
-        std::tie(best.single, best.wrong) = most(counts);
+        std::tie(best.single, best.wrong) = mostFrequent(counts);
         for (int axis = 0; axis < kMaterialAxes && best.wrong > 0; ++axis) {
             std::array<std::vector<std::size_t>, 2> sides{std::vector<std::size_t>(counts.size()),
                                                           std::vector<std::size_t>(counts.size())};
             for (const std::uint32_t i : samples) {
                 sides[along(samples_[i].normal, axis) < 0.0 ? 1 : 0][samples_[i].id] += samples_[i].weight;
             }
-            const auto [towards, wrong_towards] = most(sides[0]);
-            const auto [against, wrong_against] = most(sides[1]);
+            const auto [towards, wrong_towards] = mostFrequent(sides[0]);
+            const auto [against, wrong_against] = mostFrequent(sides[1]);
             if (wrong_towards + wrong_against < best.wrong) {
                 best.sides = MaterialSides{static_cast<std::uint8_t>(axis), towards, against};
                 best.wrong = wrong_towards + wrong_against;
@@ -311,7 +311,7 @@ class TreeBuilder {
             octant.fit.wrong = wrongOf(octant.fit, octant.samples);
             decided = octant.fit.wrong == 0;
         }
-        if (!decided) {  // decided by the samples: contacts may lie farther off than faces are searched
+        if (!decided) {  // fits the samples: a contact's face may be farther from the cell than margin_
             octant.fit = fitOf(octant.samples,
                                nearest(octant.faces.empty() ? cell.faces : octant.faces, octant.center));
         }
@@ -328,7 +328,7 @@ class TreeBuilder {
             cells_[cells[i / 8]].octants[i % 8] = number;
             held_ += octants[i].faces.size();
             if (!octants[i].final && held_ <= kFacesHeldMax) {
-                open_.push({octants[i].fit.wrong, ~number});  // the first of equals
+                open_.push({octants[i].fit.wrong, ~number});  // in a tie, the first cell
             } else {
                 held_ -= octants[i].faces.size();
                 octants[i].faces = {};
@@ -359,8 +359,9 @@ class TreeBuilder {
         return static_cast<std::uint8_t>(result_.list.size() + index);
     }
 
-    /// Chooses, bottom-up, the cells with octants that minimize wrong + least · nodes. \return the number of nodes.
-    std::size_t keepCheapest(double least) {
+    /// Chooses, bottom-up, which cells keep their octants, to minimize wrong + node_cost · nodes.
+    /// \return the number of nodes.
+    std::size_t keepCheapest(double node_cost) {
         std::vector<double> cost(cells_.size());
         for (std::size_t i = cells_.size(); i-- > 0;) {
             Cell& cell = cells_[i];
@@ -368,12 +369,12 @@ class TreeBuilder {
             if (cell.octants[0] == 0) {
                 continue;
             }
-            double split = least;
+            double split = node_cost;
             for (const std::uint32_t octant : cell.octants) {
                 split += cost[octant];
             }
-            // A split that costs nothing also separates surfaces between samples.
-            cell.kept = i == 0 || (least > 0.0 ? split < cost[i] : split <= cost[i]);
+            // If nodes are free, splits without gain are kept, too: they separate surfaces between samples.
+            cell.kept = i == 0 || (node_cost > 0.0 ? split < cost[i] : split <= cost[i]);
             cost[i] = cell.kept ? split : cost[i];
         }
         std::size_t nodes = 1;
@@ -399,32 +400,32 @@ class TreeBuilder {
         return order;
     }
 
-    /// Keeps the tree with the lowest error for at most `most` nodes. Breiman et al., "Classification and Regression
-    /// Trees" (1984), chapter 3: each cost per node has its own best tree, and these trees are nested.
-    void keepBest(std::size_t most) {
+    /// Keeps the tree with the lowest error and at most `nodes_max` nodes. Breiman et al., "Classification and
+    /// Regression Trees" (1984), chapter 3: each cost per node has its own best tree, and these trees are nested.
+    void keepBest(std::size_t nodes_max) {
         double small = 0.0;  // keeps too many
-        if (keepCheapest(small) <= most) {
+        if (keepCheapest(small) <= nodes_max) {
             return;
         }
         double large = static_cast<double>(kClearContact) * static_cast<double>(samples_.size()) + 1.0;
         constexpr int kHalvings = 30;
         for (int i = 0; i < kHalvings; ++i) {
             const double middle = 0.5 * (small + large);
-            (keepCheapest(middle) > most ? small : large) = middle;
+            (keepCheapest(middle) > nodes_max ? small : large) = middle;
         }
         static_cast<void>(keepCheapest(small));
-        const std::vector<std::uint32_t> worth = keptNodes();
-        std::vector<char> may(cells_.size(), 0);
-        for (const std::uint32_t node : worth) {
-            may[node] = 1;
+        const std::vector<std::uint32_t> candidates = keptNodes();
+        std::vector<char> is_candidate(cells_.size(), 0);
+        for (const std::uint32_t node : candidates) {
+            is_candidate[node] = 1;
         }
-        std::size_t left = most - keepCheapest(large);
-        // Fills the remaining nodes with nodes of equal value, upper levels first.
+        std::size_t left = nodes_max - keepCheapest(large);
+        // Spends the remaining nodes on splits of equal value, upper levels first.
         std::vector<std::uint32_t> order{0};
         for (std::size_t i = 0; i < order.size(); ++i) {
             for (const std::uint32_t octant : cells_[order[i]].octants) {
                 Cell& cell = cells_[octant];
-                if (!cell.kept && may[octant] != 0 && left > 0) {
+                if (!cell.kept && is_candidate[octant] != 0 && left > 0) {
                     cell.kept = true;
                     --left;
                 }
@@ -490,7 +491,7 @@ Materials materialsFor(const Collider& collider, const MaterialSource* source) {
     MaterialTreeOptions options;
     options.box = collider.bounds;
     options.texel = double{finestTexel(collider)};
-    options.most =
+    options.budget =
         std::max(static_cast<std::size_t>(kMaterialsShare * static_cast<double>(collider.texelBytes())),
                  kMaterialsBytesMin);
     return TreeBuilder(*source, options, sampleContacts(collider, *source)).build();

@@ -19,7 +19,7 @@ namespace relief {
 /// Configuration for rtcNewDevice(). By default, Embree uses the processor's widest instruction set. Fused multiply-add
 /// changes which rays hit an edge; vector width changes which of two surfaces at equal depth comes first. The bytes of
 /// a bake would then depend on the processor. This string selects an instruction set that every processor since 2008
-/// supports; on others, Embree returns an error. It costs about a tenth of a bake's time.
+/// supports; on others, Embree returns an error. The restriction costs about a tenth of a bake's time.
 #if defined(__x86_64__)
 inline constexpr const char* kEmbreeConfig = "isa=sse4.2";
 #else
@@ -67,7 +67,7 @@ class RayQuery {
     void intersect(RTCScene scene, RTCRayHit& ray) {
         rtcIntersect1(scene, &context_, &ray);
     }
-    /// Traces those of the sixteen rays whose `valid` is −1.
+    /// Traces up to sixteen rays: the rays whose `valid` is −1.
     void intersect(RTCScene scene, const int* valid, RTCRayHit16& rays) {
         rtcIntersect16(valid, scene, &context_, &rays);
     }

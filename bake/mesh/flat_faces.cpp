@@ -17,8 +17,8 @@ constexpr double kFlat = 1e-4;
 /// Rounding of coordinates, relative to the mesh's longest side: six decimals are common at unit size.
 constexpr double kRounding = 1e-6;
 
-/// Radians; rounding may rotate slivers by any angle.
-constexpr double kTurnMost = 0.01;
+/// Maximum rotation attributed to rounding, in radians; rounding may rotate slivers by any angle.
+constexpr double kTurnMax = 0.01;
 
 double longestEdge(const TriangleMesh& mesh, std::uint32_t triangle) {
     const auto [a, b, c] = cornersOf(mesh, triangle);
@@ -62,7 +62,7 @@ std::vector<FlatFace> flatFacesOf(const TriangleMesh& mesh) {
                 const double both = length(normal) * length(other);
                 if (dot(normal, other) > 0.0 &&
                     length(cross(normal, other)) <
-                        std::max(kFlat, std::min(turn + turnOf(next, other), kTurnMost)) * both) {
+                        std::max(kFlat, std::min(turn + turnOf(next, other), kTurnMax)) * both) {
                     seen[next] = true;
                     face.push_back(next);
                 }

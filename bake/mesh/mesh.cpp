@@ -10,7 +10,7 @@
 namespace relief {
 namespace {
 
-// Object units. Squares of map coordinates and the scales of a map stay within the range of floats.
+// Limits in object units, so that squares of map coordinates and the scales of a map fit into floats.
 constexpr float kCoordinateMax = 1e15F;
 constexpr float kSizeMin = 1e-15F;
 
@@ -31,7 +31,7 @@ tl::unexpected<Error> noArea(const TriangleMesh& mesh) {
                               : "export the surface as polygons, not as points or lines"));
 }
 
-/// The count of an ordinary mesh for affordableRays().
+/// Maximum boxesOnLine() of an ordinary mesh.
 constexpr double kOrdinaryBoxes = 32.0;
 
 double halfArea(const Bounds& box) {

@@ -30,7 +30,7 @@ inline constexpr std::size_t kSurfaceNamesMax = 65'536;
 
 /// Node and material of a surface in its file.
 struct SurfaceName {
-    std::uint32_t node_index = 0;  ///< index among the nodes that show something
+    std::uint32_t node_index = 0;  ///< identifies the node in its file, or an instance of it
     std::string node;              ///< for OBJ, the group or object; "" if unnamed
     std::string material;          ///< "" if unnamed
     float restitution = 1.0F;      ///< of the material in the file, if any (formats/materials.h)
@@ -39,7 +39,7 @@ struct SurfaceName {
     friend auto operator<=>(const SurfaceName&, const SurfaceName&) = default;
 };
 
-/// A distinct mesh of a level: how many of the next positions and triangles of an importer's TriangleMesh belong to it.
+/// A distinct mesh of a level. It consists of the next `positions` and `triangles` of an importer's TriangleMesh.
 struct LevelMesh {
     std::string name;
     std::uint64_t positions = 0;
@@ -77,7 +77,7 @@ struct TriangleMesh {
     /// shells, and ground below terrains (bake/shape). Measurements exclude them.
     std::uint64_t cap_triangles = 0;
     std::uint64_t closed_holes = 0;
-    std::uint64_t source_triangles = 0;  ///< of the file, if it differs from `triangles` without caps; else 0
+    std::uint64_t source_triangles = 0;  ///< in the file, if different from surfaceTriangles(); else 0
     double shell_thickness = 0.0;        ///< of its thickest shell (bake/shape), object units; 0: no shells
     Bounds bounds;                       ///< of positions
     std::vector<std::string>
@@ -87,7 +87,7 @@ struct TriangleMesh {
     /// Set only for a level between the importer and cutLevel() (bake/import/level.h); else empty.
     std::vector<LevelMesh> level_meshes;
     std::vector<LevelBody> level_bodies;
-    /// Set only for an animated mesh, likewise (bake/import/animated_import.h): a serialized AnimatedMesh.
+    /// A serialized AnimatedMesh; set only between the importer and ImportSource::finishAnimated().
     std::vector<std::byte> animation;
 
     [[nodiscard]] std::uint64_t surfaceTriangles() const { return triangles.size() - cap_triangles; }

@@ -30,23 +30,23 @@ static_assert(6 * kTriangleMax < std::uint64_t{1} << 30);
 
 std::vector<std::uint32_t> weldedVertices(const TriangleMesh& mesh) {
     const std::size_t count = mesh.positions.size();
-    // Linear probing, at most half full, over indices + 1. The table contains only lower vertices, so the first of
-    // equal positions is found, whatever the hashes are. The salt depends on all positions, so a hostile file cannot
-    // force collisions.
+    // A hash table of vertex indices + 1, with linear probing, at most half full. It contains only lower vertices, so a
+    // lookup finds the first of equal positions for any hash. The salt depends on all positions, so a hostile file
+    // cannot force collisions.
     const std::uint64_t salt = xxh3_64(std::as_bytes(std::span(mesh.positions)));
     std::vector<std::uint32_t> slots(std::bit_ceil(2 * count + 1), 0);
     const std::size_t mask = slots.size() - 1;
     std::vector<std::uint32_t> welded(count);
-    std::vector<std::uint32_t> wanted(count);
+    std::vector<std::uint32_t> home(count);
     forEachIndex(0, count, 4096, [&](std::size_t i) {
-        wanted[i] = static_cast<std::uint32_t>(hashOf(mesh.positions[i], salt) & mask);
+        home[i] = static_cast<std::uint32_t>(hashOf(mesh.positions[i], salt) & mask);
     });
     constexpr std::uint32_t kAhead = 16;  // vertices to prefetch
     for (std::uint32_t i = 0; i < count; ++i) {
         if (i + kAhead < count) {
-            __builtin_prefetch(&slots[wanted[i + kAhead]], 1);
+            __builtin_prefetch(&slots[home[i + kAhead]], 1);
         }
-        std::size_t slot = wanted[i];
+        std::size_t slot = home[i];
         while (slots[slot] != 0 && mesh.positions[slots[slot] - 1] != mesh.positions[i]) {
             slot = (slot + 1) & mask;
         }

@@ -161,8 +161,8 @@ void visitNear(S& search, float radius) {
     rtcPointQuery(search.tree.scene.get(), &query, &context, S::visit, &search);
 }
 
-/// The parity directions, each possibly reversed to leave the box sooner, shortest first. Rays then hit fewer of many
-/// layers, such as leaves or grass.
+/// The parity directions, each possibly reversed to leave the box sooner, shortest first. Rays then cross fewer layers,
+/// such as leaves or grass.
 class ParityRays {
   public:
     ParityRays(const Bounds& box, const glm::vec3& p) {
@@ -267,8 +267,8 @@ bool MeshQuery::inBody(const glm::vec3& p) const {
             return false;
         }
     }
-    // On closed surfaces of a union, only rays through an edge disagree. With parity, the mesh may be open, and its
-    // winding is irrelevant.
+    // If all bodies of a union are closed, only rays through an edge disagree, so three rays suffice. A mesh that uses
+    // parity may be open, so seven rays vote.
     const std::size_t rays = !bodies_.empty() && shells_ ? 3 : kParityDirections.size();
     std::size_t votes[2] = {0, 0};
     const ParityRays rays_out(box, p);
@@ -285,14 +285,14 @@ bool MeshQuery::inVoid(const glm::dvec3& p) const {
     }
     const Voids& voids = mesh_.voids();
     const glm::ivec3 cell(glm::floor((p - voids.origin) / voids.step));
-    int of_void = 0;
-    int of_outside = 0;
+    int void_nodes = 0;
+    int outside_nodes = 0;
     voids.eachNode(cell, cell + 1, [&](const glm::ivec3&, Place place) {
-        of_void += place == Place::kVoid ? 1 : 0;
-        of_outside += place == Place::kOutside ? 1 : 0;
+        void_nodes += place == Place::kVoid ? 1 : 0;
+        outside_nodes += place == Place::kOutside ? 1 : 0;
     });
-    if (of_void == 8 || of_outside == 8 || (of_void == 0 && !voids.meet(cell - 1, cell + 2))) {
-        return of_void == 8;
+    if (void_nodes == 8 || outside_nodes == 8 || (void_nodes == 0 && !voids.meet(cell - 1, cell + 2))) {
+        return void_nodes == 8;
     }
     // A visible node is on the same side. If none is visible, as in a crease, the nearest node decides.
     std::optional<Place> seen;

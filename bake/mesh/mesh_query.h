@@ -76,10 +76,10 @@ class MeshQuery {
     [[nodiscard]] const PreparedMesh& prepared() const { return mesh_; }
     [[nodiscard]] const TriangleMesh& mesh() const { return *mesh_; }
 
-    /// Classifies a point by the majority of seven rays, kParityDirections. This is independent of the
-    /// winding and tolerates holes for most points. For PreparedMesh::woundShells the winding number decides, so that
-    /// the overlap of two solids is inside. In a union (PreparedMesh::unionOf) each body is tested separately, by two
-    /// of three rays. Voids (PreparedMesh::voids) are inside.
+    /// Classifies a point by the majority of seven rays, kParityDirections. Their parity is independent of the winding
+    /// and tolerates holes for most points. For PreparedMesh::woundShells, the winding number decides, so that the
+    /// overlap of two solids is inside. In a union (PreparedMesh::unionOf), each body that uses parity is tested
+    /// separately; if the winding number decides for all bodies, three rays vote. Voids (PreparedMesh::voids) are inside.
     [[nodiscard]] bool inside(const glm::vec3& p) const;
 
     /// Like inside(), without voids.

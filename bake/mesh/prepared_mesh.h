@@ -61,8 +61,8 @@ struct Voids {
 };
 
 /// A handle to an immutable mesh. Copies are cheap and share the derived data, which is computed once, on first use.
-/// First use is not thread-safe: MeshQuery and RayScene trigger what they need when they are built, and are thread-safe
-/// afterwards.
+/// First use is not thread-safe: MeshQuery and RayScene compute the data that they need when they are built, and are
+/// thread-safe afterwards.
 class PreparedMesh {
   public:
     /// Implicit, so that a plain mesh can be passed for a single query. Move large meshes.
@@ -80,8 +80,8 @@ class PreparedMesh {
     /// isSeveralShells() of a closed mesh after windOutwards. The winding number then classifies points, not the parity
     /// of ray crossings.
     [[nodiscard]] bool woundShells() const;
-    /// Returns −1 if the mesh is closed and inside out (triangles are clockwise seen from outside), else 1. Closed
-    /// means that the triangles' area vectors sum to zero; the sign is that of the enclosed volume.
+    /// Returns −1 if the mesh is closed and inside out (triangles are clockwise seen from outside), else 1. Here,
+    /// closed means that the triangles' area vectors sum to zero; the sign is that of the enclosed volume.
     [[nodiscard]] double orientation() const;
     [[nodiscard]] const AreaTable& areas() const;
     /// Returns the Embree scene, which lives as long as any copy of this handle. Errors: those of EmbreeMesh::build.
@@ -104,7 +104,7 @@ class PreparedMesh {
     [[nodiscard]] PreparedMesh withVoids(Voids voids) &&;
     [[nodiscard]] const Voids& voids() const { return state_->voids; }
 
-    /// Returns another mesh, with caps, that inherits the state of this one's winding.
+    /// Wraps `mesh`, which is this mesh with caps, and keeps whether it is wound outwards.
     [[nodiscard]] PreparedMesh capped(TriangleMesh mesh) const;
 
   private:

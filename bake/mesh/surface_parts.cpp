@@ -9,7 +9,7 @@
 namespace relief {
 namespace {
 
-/// Maximum area of outliers, and of the longest side of the remaining box, as fractions.
+/// Maximum area of outliers, and maximum longest side of the remaining box, as fractions of the whole.
 constexpr double kOutlierAreaMax = 0.01;
 constexpr double kRestMax = 0.1;
 

@@ -24,11 +24,11 @@ struct SurfacePart {
     std::string node;              ///< "" if unnamed
     std::string material;          ///< "" if unnamed
     Bounds bounds;                 ///< of its triangles in the source, object units
-    double area = 0.0;             ///< of the same triangles
-    std::uint64_t triangles = 0;   ///< number of them
+    double area = 0.0;             ///< of its triangles in the source
+    std::uint64_t triangles = 0;   ///< number in the source
     double thickness = 0.0;        ///< of the shell that represents a sheet, object units; else 0
-    /// The portion of `thickness` that counts as correct. A requested thickness counts completely, a default one up to
-    /// a tenth of the longest side.
+    /// The portion of `thickness` that counts as correct: all of a requested thickness; at most a tenth of the longest
+    /// side if the thickness is a default.
     double right_thickness = 0.0;
 
     [[nodiscard]] double size() const { return static_cast<double>(bounds.longestSide()); }

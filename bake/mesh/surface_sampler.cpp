@@ -14,8 +14,8 @@ AreaTable::AreaTable(const TriangleMesh& mesh) {
     }
 }
 
-std::uint32_t AreaTable::triangleAt(double share) const {
-    const auto found = std::upper_bound(up_to_.begin(), up_to_.end() - 1, share * up_to_.back());
+std::uint32_t AreaTable::triangleAt(double fraction) const {
+    const auto found = std::upper_bound(up_to_.begin(), up_to_.end() - 1, fraction * up_to_.back());
     return static_cast<std::uint32_t>(found - up_to_.begin());
 }
 

@@ -56,8 +56,8 @@ class MersenneRandom {
 class AreaTable {
   public:
     explicit AreaTable(const TriangleMesh& mesh);
-    /// Returns the triangle at a fraction of the total area. \param share  in [0, 1].
-    [[nodiscard]] std::uint32_t triangleAt(double share) const;
+    /// Returns the triangle at a fraction of the total area. \param fraction  in [0, 1].
+    [[nodiscard]] std::uint32_t triangleAt(double fraction) const;
 
   private:
     std::vector<double> up_to_;  // per triangle, twice the cumulative area, including the triangle

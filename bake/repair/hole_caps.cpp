@@ -168,17 +168,18 @@ class Capper {
 /// Returns the number of clear votes that the closed mesh contradicts, relative to the clear votes for inside.
 double contradictedFraction(const std::vector<Vote>& votes, const MeshQuery& closed) {
     std::size_t inside = 0;
-    std::size_t turned = 0;
+    std::size_t contradicted = 0;
     for (const Vote& vote : votes) {
         if (vote.clear()) {
             inside += vote.inside() ? 1U : 0U;
-            turned += vote.inside() != closed.inside(vote.position) ? 1U : 0U;
+            contradicted += vote.inside() != closed.inside(vote.position) ? 1U : 0U;
         }
     }
-    return static_cast<double>(turned) / static_cast<double>(std::max<std::size_t>(inside, 1));
+    return static_cast<double>(contradicted) / static_cast<double>(std::max<std::size_t>(inside, 1));
 }
 
-/// Tests points on and off the surface: caps of patches whose seams do not meet would cross the inside.
+/// Whether the caps swap inside and outside, on or off the surface: caps of patches whose seams do not meet would cross
+/// the inside.
 bool swapsSides(const std::vector<std::array<Vote, 2>>& votes, const MeshQuery& open,
                 const MeshQuery& closed) {
     std::vector<Vote> sides;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Closes the holes of nearly closed meshes: a scan without its bottom, a model whose exporter lost a triangle.
-// Otherwise views through a hole see the back of the surface and classify the inside as free.
+// Otherwise, views through a hole hit the back of the surface and classify the inside as free.
 #pragma once
 
 #include <cstddef>
@@ -51,7 +51,7 @@ using BorderLoop = std::vector<BorderStep>;
 /// Returns the mesh unchanged if it is closed or not nearly closed: a terrain, a sheet, or a bowl without thickness, up
 /// to half a sphere. About one ray in seven may lead out through a hole. Also returns it unchanged if the caps would
 /// swap parts of inside and outside (patches whose seams do not meet).
-/// \param probes  number on the surface, and in the box; fewer suffice for a small part of a mesh.
+/// \param probes  number of test points on the surface, and in the box; fewer suffice for a small part of a mesh.
 /// Errors: those of MeshQuery::build.
 [[nodiscard]] Result<PreparedMesh> closeHoles(const PreparedMesh& mesh,
                                               std::size_t probes = kEnclosureProbes);

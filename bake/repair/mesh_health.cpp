@@ -38,7 +38,7 @@ class Inspection {
         : mesh_(*mesh),
           welded_(mesh.edges().welded),
           component_of_(mesh->triangles.size()),
-          // Corners of triangles; those that share an edge at their vertex are joined.
+          // Corners of triangles. Corners at a vertex are joined if their triangles share an edge there.
           corners_(3 * mesh->triangles.size()),
           uses_(mesh.edges().uses) {
         health_.inside_out = mesh.orientation() < 0.0;

@@ -26,8 +26,8 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 using SurfaceMesh = CGAL::Surface_mesh<Point>;
 
-/// Distinct points and triangles for CGAL. Units are the longest side, relative to the middle of the box, so that no
-/// product of coordinates overflows a double.
+/// Distinct points and triangles for CGAL. Coordinates are relative to the center of the box, in units of its longest
+/// side rounded down to a power of two, so that no product of coordinates overflows a double.
 struct Soup {
     glm::dvec3 center{0.0};
     double side = 1.0;

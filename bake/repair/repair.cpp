@@ -60,7 +60,7 @@ Result<RepairedMesh> repairMesh(PreparedMesh mesh, const RepairOptions& options)
 void fields(FieldVisitor& visit, RepairOptions& options) {
     visit("strict", options.strict,
           {.help = "Reject a mesh that is not a closed solid with outward winding (exit code 3)",
-           .details = "With --repair, it rejects a repaired mesh that is still open."});
+           .details = "With --repair, the repaired mesh must be a closed solid, even without --strict."});
     visit("repair", options.method,
           {.help = "Bake a closed surface wrapped around the mesh, which spans gaps of up to ALPHA times "
                    "the longest side of the mesh (default: 0.01)",

@@ -18,11 +18,11 @@ namespace {
 
 /// Maximum number of samples per patch, spread evenly over its list of triangles.
 constexpr std::size_t kSamplesMax = 63;
-/// Minimum fraction of samples, votes in favour minus votes against, to flip an open patch.
-constexpr double kClearShare = 0.5;
+/// An open patch is flipped if votes in favour minus votes against exceed this fraction of its samples.
+constexpr double kFlipFraction = 0.5;
 /// Surfaces closer than this along a line coincide; in units of the longest side.
 constexpr double kCoincident = 1e-10;
-/// With more patches, open ones are sampled by lines, too. Separate rays for each patch would take quadratic time if
+/// If there are more patches, lines also sample open patches. Separate rays for each patch would take quadratic time if
 /// the patches coincide.
 constexpr std::size_t kManyPatches = 1000;
 constexpr std::size_t kLinesAtOnce = 64;
@@ -43,7 +43,7 @@ class Winder {
 
     /// Returns, per triangle, whether to flip it.
     Result<std::vector<bool>> run() {
-        if (isOnePatchWoundAlike()) {
+        if (isOneConsistentPatch()) {
             return std::vector<bool>(turn_.size(), false);
         }
         findPatches();
@@ -62,7 +62,7 @@ class Winder {
         Nesting(*this, query).run();
         tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t i) {
             const Patch& patch = patches_[i];
-            if (looksInwards(patch, query)) {
+            if (facesInwards(patch, query)) {
                 for (const std::uint32_t triangle : patch.triangles) {
                     turn_[triangle] ^= 1U;
                 }
@@ -72,19 +72,19 @@ class Winder {
     }
 
   private:
-    /// The common case.
-    [[nodiscard]] bool isOnePatchWoundAlike() const {
+    /// Whether the mesh is a single, consistently wound patch: the common case.
+    [[nodiscard]] bool isOneConsistentPatch() const {
         const std::vector<EdgeUse>& uses = prepared_.edges().uses;
         DisjointSets patches(turn_.size());
         std::size_t count = turn_.size();
-        bool alike = true;
+        bool consistent = true;
         forEachEdge(uses, [&](std::size_t begin, std::size_t end) {
             if (end - begin == 2) {
-                alike = alike && uses[begin].down != uses[begin + 1].down;
+                consistent = consistent && uses[begin].down != uses[begin + 1].down;
                 count -= patches.join(uses[begin].triangle, uses[begin + 1].triangle) ? 1U : 0U;
             }
         });
-        return alike && count == 1;
+        return consistent && count == 1;
     }
 
     void findPatches() {
@@ -148,7 +148,7 @@ class Winder {
         return {isInside(on + normal, query), isInside(on - normal, query)};
     }
 
-    /// Off the middle, which is more often on a line of symmetry.
+    /// Returns a point off the middle, because the middle is more often on a line of symmetry.
     [[nodiscard]] glm::dvec3 sampleOn(std::uint32_t triangle) const {
         return pointOn(mesh_, triangle, 0.37, 0.29);
     }
@@ -162,7 +162,7 @@ class Winder {
         return odd > kParityDirections.size() / 2;
     }
 
-    [[nodiscard]] bool looksInwards(const Patch& patch, const MeshQuery& query) const {
+    [[nodiscard]] bool facesInwards(const Patch& patch, const MeshQuery& query) const {
         const std::size_t samples = std::min(patch.triangles.size(), kSamplesMax);
         const auto sample = [&](std::size_t i) {
             return sidesOf(patch.triangles[i * patch.triangles.size() / samples], query);
@@ -187,7 +187,7 @@ class Winder {
             const std::array<bool, 2> inside = sample(i);
             sum += static_cast<double>(inside[0]) - static_cast<double>(inside[1]);
         }
-        return sum > kClearShare * static_cast<double>(samples);
+        return sum > kFlipFraction * static_cast<double>(samples);
     }
 
     /// Finds the closed patches that are cavities in others, and the orientation of many open patches. One line
@@ -228,7 +228,7 @@ class Winder {
                 if (patches_[i].closed && (known.outside || known.samples > 0)) {
                     patches_[i].hollow = !known.outside;
                 } else if (!patches_[i].closed && patches_.size() > kManyPatches && known.samples > 0) {
-                    patches_[i].inwards = known.facing > kClearShare * static_cast<double>(known.samples);
+                    patches_[i].inwards = known.facing > kFlipFraction * static_cast<double>(known.samples);
                 }
             }
         }
@@ -281,7 +281,7 @@ class Winder {
         }
 
         /// Traces the next line through a patch, and classifies all patches that it crosses: whether a point just
-        /// outwards of their own surface is inside an odd number of others. Returns no places if the crossings do not
+        /// outside its surface is inside an odd number of other patches. Returns no places if the crossings do not
         /// balance.
         void traceLine(std::uint32_t patch, std::vector<Place>& places) const {
             places.clear();
@@ -347,7 +347,7 @@ class Winder {
                              std::vector<Place>& places) {
             const std::uint32_t hit = own[i].second;
             const bool enters = (i - begin) % 2 == 0;
-            // Counts crossings before the place, or up to its end, minus those of the patch itself.
+            // Counts crossings up to the point just outside the patch, without those of the patch itself.
             const std::uint32_t before = enters ? first[hit] : last[hit] + 1;
             std::size_t mine = i - begin;
             while (enters && mine > 0 && own[begin + mine - 1].second >= before) {

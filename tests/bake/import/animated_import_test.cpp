@@ -335,7 +335,7 @@ TEST(AnimatedImport, InvalidFilesAreRejectedInOneLine) {
         {"accessors[77], which does not exist", robot, set(kOutput, 77)},
         {"has the interpolation 'QUADRATIC'", robot,
          set(kAnimation + "/samplers/0/interpolation", "QUADRATIC")},
-        {"has no target, or one without a path", robot, erased(kAnimation + "/channels/0", "target")},
+        {"has no target, or its target has no path", robot, erased(kAnimation + "/channels/0", "target")},
         {"moves the morph targets of nodes[2], which has none", robot,
          set(kAnimation + "/channels/0/target/path", "weights")},
         {"moves 7 vertices, but the primitive has 8", morphingCube,

@@ -98,7 +98,7 @@ TEST(ImportNames, GltfNamesAreNodesMeshesAndMaterials) {
                  {{"door-1"}, {1, 1, 1, 1, 1, 1}}});
     expectUnknown("c.gltf", text, {"door"}, "Its names: ");
     expectUnknown("s.stl", tetrahedronStl(), {"nothing"}, "its names: ");
-    expectUnknown("p.ply", tetrahedronPly(), {"nothing"}, "the file has no names: use --as without one");
+    expectUnknown("p.ply", tetrahedronPly(), {"nothing"}, "the file has no names: use --as without a name");
 }
 
 TEST(ImportNames, HostileNamesAreSanitized) {

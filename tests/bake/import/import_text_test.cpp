@@ -93,13 +93,14 @@ TEST(ImportText, Off) {
          "STCNOFF 4 4 6\n0 0 0 0 0 1 9 9 9 9 .5 .5\n1 0 0 0 0 1 9 9 9 9 0 0\n"
          "0 2 0 0 0 1 9 9 9 9 0 0\n0 0 3 0 0 1 9 9 9 9 0 0\n" +
              faces});
-    expectWrong("a.off", {{replaced(kOff, "3 1 2 3", "3 1 2 4"), "line 9: face 2 uses the vertex '4'"},
-                          {replaced(kOff, "3 0 3 2\n", "3 0 3\n"), "line 10: it ends in face 3"},
-                          {replaced(kOff, "3 0 1 3\n", "3 0 1\n"), "line 10: it ends after face 3 of 4"},
-                          {replaced(kOff, "4 4 0", "4 5 6"), "line 10: it ends after face 4 of 5"},
-                          {replaced(kOff, "4 4 0", "4 3 6"), "line 10: '3' follows the last"},
-                          {replaced(kOff, "OFF", "OFF BINARY"), "binary"},
-                          {replaced(kOff, "OFF", "nOFF"), "three-dimensional"}});
+    expectWrong("a.off",
+                {{replaced(kOff, "3 1 2 3", "3 1 2 4"), "line 9: face 2 uses the vertex '4'"},
+                 {replaced(kOff, "3 0 3 2\n", "3 0 3\n"), "line 10: it ends in face 3"},
+                 {replaced(kOff, "3 0 1 3\n", "3 0 1\n"), "line 10: it ends after face 3 of 4"},
+                 {replaced(kOff, "4 4 0", "4 5 6"), "line 10: it ends after face 4 of 5"},
+                 {replaced(kOff, "4 4 0", "4 3 6"), "line 10: '3' follows the 4 vertices and 3 faces"},
+                 {replaced(kOff, "OFF", "OFF BINARY"), "binary"},
+                 {replaced(kOff, "OFF", "nOFF"), "three-dimensional"}});
     // A convex polygon with many corners on a parabola. assimp read polygons up to 9 corners and skipped the others.
     std::string corners;
     std::string face = "100";

@@ -263,7 +263,7 @@ TEST(Ac3d, OddFilesWarnOrFailWithTheLine) {
     const TriangleMesh fewer =
         imported("a.ac", kAc3dHead + "OBJECT world\nkids 3\n" + tetrahedron("t", "subdiv 2\n"));
     EXPECT_EQ(fewer.warnings.size(), 2U);
-    EXPECT_TRUE(warns(fewer, "it has 2 objects fewer than its 'kids' declare"));
+    EXPECT_TRUE(warns(fewer, "it has 2 fewer objects than its 'kids' declare"));
     EXPECT_TRUE(warns(fewer, "1 of its objects use subdivision"));
     for (std::size_t length = kAc3dHead.size(); length + 8 < one.size(); length += 7) {
         ASSERT_FALSE(importText("a.ac", one.substr(0, length))) << "truncated to " << length << " bytes";
