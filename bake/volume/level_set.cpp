@@ -173,7 +173,8 @@ class Voxels {
             }
         });
     }
-    /// Whether a surface with an inside behind it passes through the ball around a voxel. \param p  the voxel's centre, outside.
+    /// Whether a surface with an inside behind it passes through the ball around a voxel.
+    /// \param p  the centre of the voxel, which is outside.
     [[nodiscard]] bool touchesSurface(const glm::vec3& p) const {
         const auto reach = static_cast<float>(0.5 * std::numbers::sqrt3 * size_);
         const FieldSample vote = evaluate(collider_, p);  // most voxels are far, and their votes are cheap
