@@ -139,7 +139,7 @@ FittedMapOptions fitOptions(const TriangleMesh& mesh, const View& view, const Ba
     options.samples = quality == Quality::kFast ? 1 : quality == Quality::kNormal ? 4 : 6;
     options.refinements = quality == Quality::kFast ? 0 : 3;
     options.reach = 0.02 * side;
-    // A hundredth of a texel, which no texel can resolve.
+    // A hundredth of a texel, which is below the resolution of the map.
     options.good_enough = 0.01 * side / std::max(view.width, view.height);
     options.cautious = bake.prefer == Prefer::kInside;
     options.inward_shift = bake.prefer == Prefer::kOutside ? 0.4 : 0.0;

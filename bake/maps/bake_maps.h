@@ -36,8 +36,8 @@ struct BakeOptions {
     std::uint32_t resolution = 512;  ///< texels along a side, for maps whose spec has no size
     Quality quality = Quality::kNormal;
     Prefer prefer = Prefer::kNeither;
-    std::uint64_t budget = 0;  ///< of patches, bytes, recorded in the collider; 0: none
-    /// For patches baked for a budget, object units: MapSpec::texel. 0: limited by the budget.
+    std::uint64_t budget = 0;  ///< bytes of patches, only recorded in the collider; 0: none
+    /// Object units: MapSpec::texel for bakePatchesWithin(). 0: limited only by the budget.
     float texel = 0.0F;
     std::optional<Bounds> roots_hold{};  ///< PatchOptions::roots_hold
     unsigned threads = 0;                ///< 0: all cores; the result does not depend on it
@@ -82,7 +82,7 @@ struct Baked {
 /// mesh, regardless of the maps. Depends on the spacing of floats at the farthest corner, relative to the standard
 /// deviation of the points' distance from the surface. At most 50.
 [[nodiscard]] double wrongByFloats(const TriangleMesh& mesh);
-/// Whether floats cause more than half of the percentage, so that more bytes do not help.
+/// Returns whether floats cause more than half of a percentage of wrong points, so that more bytes do not help.
 [[nodiscard]] inline bool floatsLimit(const TriangleMesh& mesh, double wrong_percent) {
     return 2.0 * wrongByFloats(mesh) > wrong_percent;
 }

@@ -28,8 +28,8 @@ std::string percentText(double percent) {
     return text;
 }
 
-/// The budget is too small for the maps of the mesh, or for any ray to hit it: try a larger one.
-bool isTooFew(const Error& error) {
+/// Whether a bake may have failed because the budget was too small.
+bool mayBeTooSmall(const Error& error) {
     return error.code == ErrorCode::kUsage || error.code == ErrorCode::kFailure;
 }
 
@@ -43,12 +43,12 @@ class Search {
         std::uint64_t failed = 0;
         for (std::uint64_t budget = std::min(options_.budget_min, most);;
              budget = std::min(budget * kGrowth, most)) {
-            const Result<bool> kept = keeps(budget);
-            const bool too_few = !kept && isTooFew(kept.error()) && budget < most;
-            if (!kept && !too_few) {
-                return forward(kept);
+            const Result<bool> met = meetsLimit(budget);
+            const bool too_small = !met && mayBeTooSmall(met.error()) && budget < most;
+            if (!met && !too_small) {
+                return forward(met);
             }
-            if (kept && *kept) {
+            if (met && *met) {
                 break;
             }
             if (budget == most) {
@@ -59,11 +59,11 @@ class Search {
         for (int i = 0; i < kBisections && failed > 0; ++i) {
             const auto middle = static_cast<std::uint64_t>(
                 std::sqrt(static_cast<double>(failed) * static_cast<double>(best_->chosen.budget)));
-            const Result<bool> kept = keeps(middle);
-            if (!kept && !isTooFew(kept.error())) {
-                return forward(kept);
+            const Result<bool> met = meetsLimit(middle);
+            if (!met && !mayBeTooSmall(met.error())) {
+                return forward(met);
             }
-            if (!kept || !*kept) {
+            if (!met || !*met) {
                 failed = middle;
             }
         }
@@ -73,18 +73,18 @@ class Search {
 
   private:
     /// Bakes with this budget. Stores the result as the best so far if it meets the error limit.
-    Result<bool> keeps(std::uint64_t budget) {
+    Result<bool> meetsLimit(std::uint64_t budget) {
         Baked baked = RELIEF_TRY(bakePatchesWithin(query_, budget, options_.bake));
         const double wrong = measureField(truth_, fieldOf(baked.collider)).near.total();
-        const BudgetTry made{budget, baked.collider.texelBytes(), wrong};
-        tries_.push_back(made);
+        const BudgetTry attempt{budget, baked.collider.texelBytes(), wrong};
+        tries_.push_back(attempt);
         if (options_.tried) {
-            options_.tried(made);
+            options_.tried(attempt);
         }
         if (!(wrong <= options_.max_error_percent)) {
             return false;
         }
-        best_ = BudgetSearchResult{std::move(baked), made, {}};
+        best_ = BudgetSearchResult{std::move(baked), attempt, {}};
         return true;
     }
 
@@ -127,10 +127,10 @@ Result<BudgetSearchResult> bakeForError(const MeshQuery& query, const MeshQuery&
     return Search(query, truth, options).run();
 }
 
-void fields(FieldVisitor& visit, const BudgetTry& made) {
-    visit("budget", made.budget, {"Maximum bytes of texels"});
-    visit("bytes", made.bytes, {"Actual bytes of texels"});
-    visit("wrong_percent", made.wrong_percent,
+void fields(FieldVisitor& visit, const BudgetTry& attempt) {
+    visit("budget", attempt.budget, {"Maximum bytes of texels"});
+    visit("bytes", attempt.bytes, {"Actual bytes of texels"});
+    visit("wrong_percent", attempt.wrong_percent,
           {"Points near the surface that are on the wrong side", "%", kPercentRange});
 }
 

@@ -30,7 +30,7 @@ struct BudgetTry {
     double wrong_percent = 0.0;  ///< misclassified points near the surface (FieldAccuracy::near)
 };
 
-void fields(FieldVisitor& visit, const BudgetTry& made);
+void fields(FieldVisitor& visit, const BudgetTry& attempt);
 
 struct BudgetSearchOptions {
     double max_error_percent = 1.0;

@@ -23,11 +23,11 @@ constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 constexpr double kFarFace = 1.25;
 constexpr double kFarFaceShare = 1e-3;
 
-/// Sums in sample order, so that results do not depend on threads.
 struct Spread {
     double mean = 0.0;
     double p99 = 0.0;
 };
+/// Sums in sample order, so that the result does not depend on the number of threads.
 Spread spreadOf(std::vector<double> values) {
     if (values.empty()) {
         return {};

@@ -182,10 +182,10 @@ struct Box {
     glm::dvec3 centre{0.0};      ///< map space
     double half = 0.5;           ///< half its side, map space
     std::uint32_t cell = 0;      ///< index
-    std::uint32_t triangle = 0;  ///< a near one
+    std::uint32_t triangle = 0;  ///< a nearby triangle
     Side truth = Side::kBoth;
     float bound = 0.0F;    ///< of the depth of its wrong points, object units; 0: there are none
-    float deepest = 0.0F;  ///< depth of its centre, if that is wrong
+    float deepest = 0.0F;  ///< depth of its centre if the centre is wrong, else 0
 };
 
 class Prover {
@@ -230,7 +230,7 @@ class Prover {
                glm::all(glm::lessThan(farthest_, glm::dvec3(kRangeMax)));
     }
 
-    [[nodiscard]] bool rootsHoldMesh() const {
+    [[nodiscard]] bool rootsContainMesh() const {
         const glm::dvec3 roots(patchTreeSize(texels_).roots);
         const Bounds& box = query_.mesh().bounds;
         bool hold = true;
@@ -326,7 +326,7 @@ class Prover {
         };
         const Side first = sideIn(0);
         const Side second = sideIn(1);
-        // The outside of one patch decides an intersection; the inside of one, a union.
+        // One patch with outside decides an intersection; one patch with inside decides a union.
         const Side enough = (cell.record.low & 16U) != 0 ? Side::kOutside : Side::kInside;
         return first == enough || second == enough ? enough : first == second ? first : Side::kBoth;
     }
@@ -399,7 +399,7 @@ DepthProof proveDepth(const MeshQuery& query, const Collider& collider, const De
         proof.unproven = "the map has coordinates or distances out of range";
         return proof;
     }
-    if (!prover.rootsHoldMesh()) {
+    if (!prover.rootsContainMesh()) {
         proof.unproven = "the mesh reaches outside the cells of the map";
         return proof;
     }

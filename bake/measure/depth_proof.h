@@ -8,8 +8,8 @@
 //     the truth     has one side if d > r, because no triangle meets the box
 //     the field     has one side in a leaf without heights, and in a patch where the bounds of w − H have one sign
 //     both agree    no point of the box is wrong
-//     otherwise     a wrong point is at most d + r deep; at most r − d if the field has only the side of c, because the
-//                   segment from c to that point crosses the surface
+//     otherwise     a wrong point is at most d + r deep; at most r − d if the field has the true side of c in the whole
+//                   box, because the segment from c to the point crosses the surface
 //
 // A box with a bound above the deepest error found is divided into eight. The centres of boxes are tested as well, so
 // that the bound and the deepest error converge.
@@ -41,9 +41,9 @@ struct DepthProof {
     std::uint64_t boxes = 0;  ///< examined
 };
 
-/// Unproven: maps other than one map of patches, or with more than four million cells or numbers above 10³⁰; a mesh that
-/// is not watertight, has filled cavities, or reaches outside the roots. Triangles inside the solid, where parts overlap,
-/// count like others. The result does not depend on the number of threads.
+/// Proves nothing if the collider is not a single map of patches, if the map has more than four million cells or numbers
+/// above 10³⁰, or if the mesh is not watertight, has filled cavities, or reaches outside the roots. Triangles inside the
+/// solid, where parts overlap, count like others. The result does not depend on the number of threads.
 /// \param query  of the solid that the collider represents.
 [[nodiscard]] DepthProof proveDepth(const MeshQuery& query, const Collider& collider,
                                     const DepthProofOptions& options = {});

@@ -91,7 +91,7 @@ class PartMeter {
         [[nodiscard]] bool absent() const { return 2 * missed >= inside; }
     };
 
-    /// Measures at the part's own scale, and closer if the part is thinner than that and seems to be missing.
+    /// Measures at the part's own scale, and at smaller distances if most of the part seems to be missing: it may be thin.
     [[nodiscard]] PartAccuracy judge(std::uint32_t part, std::uint32_t points) const {
         const double size = parts_.parts[part].size();
         const double least = leastSigma(part);
@@ -226,7 +226,7 @@ bool isMissing(const PartAccuracy& part) {
 }
 
 /// Returns the percentage of points near the exposed surface that minor and coarse parts miss. Excludes surfaces that
-/// are too thick: the measurement of the whole includes them, but rarely has points inside a thin part.
+/// are too thick: the measurement of the whole mesh includes them, but rarely has points inside a thin part.
 double minorMissed(const PartsAccuracy& all, const SurfaceParts& parts) {
     double missed = 0.0;
     double area = 0.0;

@@ -26,8 +26,8 @@ struct PartOptions {
     double scale = 1.0;  ///< of the object in its world, for defaultMinPart
 };
 
-/// Returns kNoticeableShare of the diagonal of the parts without outliers. If `unit` is metres, at most
-/// kNoticeableMetres in the world.
+/// Returns kNoticeableShare times the diagonal of the bounds of all parts except outliers; at most kNoticeableMetres in
+/// the world if `unit` is metres.
 [[nodiscard]] double defaultMinPart(const SurfaceParts& parts, const std::string& unit, double scale = 1.0);
 
 enum class PartVerdict : std::uint8_t {
@@ -51,7 +51,7 @@ struct PartAccuracy {
     double sigma = 0.0;        ///< standard deviation of their distance from the part, object units
 };
 
-/// A node or material with several parts: their points, weighted by area.
+/// The accuracy of all parts of a node or material, weighted by area.
 struct GroupAccuracy {
     std::string name;
     bool is_material = false;
@@ -75,13 +75,13 @@ struct IgnoredParts {
 
 struct PartsAccuracy {
     double min_part = 0.0;  ///< object units
-    std::vector<PartAccuracy>
-        parts;  ///< by state: lost, coarse, and so on; within a state by wrong points times size
+    /// By state: lost, coarse, and so on; within a state by wrong points times size.
+    std::vector<PartAccuracy> parts;
     /// Nodes, then materials, with a name and several parts; least accurate first.
     std::vector<GroupAccuracy> groups;
     std::uint64_t count[kPartVerdicts] = {};  ///< number of parts in each state
-    bool minor_counts =
-        false;  ///< minor and coarse parts together make more than kGoodPercent of the surface wrong
+    /// Minor and coarse parts together make more than kGoodPercent of the surface wrong.
+    bool minor_counts = false;
     IgnoredParts ignored;
 
     [[nodiscard]] std::uint64_t countOf(PartVerdict state) const {
@@ -94,9 +94,9 @@ struct PartsAccuracy {
 /// except that a shell ends at its right_thickness. If fewer than 256 points classify a part as lost, it is measured
 /// again with 256.
 ///
-/// A lost part is minor if it is shorter than `min_part`. It is also minor if it is not missing, and points at
-/// kNoticeableExcess of `min_part` are on the right side. Exception: if PartsAccuracy::minor_counts is set and `min_part`
-/// is the default, missing minor parts are lost.
+/// A lost part is minor if it is shorter than `min_part`. It is also minor if it is not missing, and enough points at a
+/// distance of kNoticeableExcess times `min_part` are on the right side. Exception: if PartsAccuracy::minor_counts is
+/// set and `min_part` is the default, missing minor parts are lost.
 /// The result does not depend on the number of threads.
 /// \param query  of the solid of `parts`.
 [[nodiscard]] PartsAccuracy measureParts(const MeshQuery& query, const SurfaceParts& parts,

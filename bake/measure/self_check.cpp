@@ -11,7 +11,7 @@ namespace {
 
 /// Enough to measure a fraction of 1 % with a relative error of one sixth.
 constexpr std::uint32_t kPoints = 4000;
-/// At least a quarter of a lost part's points are wrong.
+/// Few points detect a lost part, because at least a quarter of them are wrong.
 const PartOptions kParts{
     .points = 64, .points_min = 16, .points_all = 16'384, .parts_max = 1024, .min_part = {}};
 

@@ -169,7 +169,7 @@ class Causes {
     const Sights& sights_;
 };
 
-/// Returns the index of the largest count (the lowest of equals), and that count.
+/// Returns the index of the largest count, the lowest index if several are equal, and the count.
 std::pair<std::size_t, std::size_t> mostFrequent(const std::vector<std::size_t>& counts) {
     const auto most = std::max_element(counts.begin(), counts.end());
     return {static_cast<std::size_t>(most - counts.begin()), *most};

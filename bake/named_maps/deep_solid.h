@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Deep solid: points around which the whole cross-section of the texel is solid. No plane may cut them.
+// Deep solid: points around which the whole cross-section of the texel is solid. No plane may cut them off.
 //
-// The rays of a footprint end at the surface. A steep plane reaches far deeper, where no ray detects what it cuts. This
+// The rays of a footprint end at the surface. A steep plane reaches far deeper, where no ray detects the loss. This
 // test therefore intersects a few lines along the texel with the solid. A ball with the radius of the texel's diagonal
 // covers the texel's cross-section:
 //

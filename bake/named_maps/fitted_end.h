@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One end of a view for fitting its texels (plane_fit.h), seen from the start of its rays.
+// One end of a view, seen from the start of its rays, for fitting planes to texels (plane_fit.h).
 #pragma once
 
 #include <algorithm>
@@ -13,14 +13,14 @@
 namespace relief {
 
 struct FittedMapOptions {
-    std::uint32_t samples =
-        4;                ///< rays along each side of a texel's footprint, at the centres of equal parts
+    /// Rays along each side of a texel's footprint, at the centres of equal parts.
+    std::uint32_t samples = 4;
     int refinements = 3;  ///< rounds of search among neighbouring normals
     /// Object units. Free space behind a plane counts only up to this length along a ray, because other texels usually
     /// decide points that are farther away.
     double reach = 1.0;
-    double good_enough =
-        0.0;  ///< a plane with less mean free space behind it is not improved further, object units
+    /// Object units: a plane with less mean free space behind it is not improved further.
+    double good_enough = 0.0;
     /// If true, surface points up to half a sample beyond the texel may not lie in front of its plane either. This
     /// halves the number of points that are wrongly outside, and increases the number that are wrongly inside by half.
     bool cautious = false;

@@ -112,8 +112,8 @@ class EndFitter {
         }
         const TexelRay centre = view_.ray(face, x, y);
         deep_.setTexel((std::size_t{face} * view_.height + y) * view_.width + x);
-        // For a single ray, the plane that it hits is the best one: a plane facing the viewer would cut more of a
-        // slope.
+        // A single ray already hits the best plane, so deep_ must not reject it: the fallback, a plane that faces the
+        // viewer, would cut more off a slope.
         const std::optional<FittedPlane> plane = fitSupportingPlane(
             rays_, [&] { return lookAround(here); }, edge_, end_.fromViewer(centre), centre.origin, fit_,
             samples_ > 1 || !starts_free_ || may_start_inside_ ? &deep_ : nullptr);
@@ -214,8 +214,8 @@ class EndFitter {
         return around_;
     }
 
-    /// Finds the edges of surfaces in the texel: between neighbouring rays of which only one hits, the last ray with a
-    /// hit. One of the two may belong to the ring, for walls up to an eighth of a texel inside the border.
+    /// Finds the edges of surfaces in the texel. The edge between two neighbouring rays of which only one hits is the last
+    /// ray with a hit. One of the two rays may belong to the ring, for walls up to an eighth of a texel inside the border.
     void findEdge(const Footprint& here) {
         forEachAround(here, [&](std::uint32_t column, std::uint32_t row) {
             for (const auto& [right, up] : {std::pair{1U, 0U}, std::pair{0U, 1U}}) {
@@ -245,7 +245,7 @@ class EndFitter {
         if (meets == !here.hits[indexOf(here, column + right, row + up)].empty()) {
             return;
         }
-        // In the finest grid. An odd number of parts has one at the centre of each sample.
+        // In the finest grid. An odd number of parts puts one at the centre of each sample.
         std::uint32_t on[2] = {column * kEdgeParts + kEdgeParts / 2, row * kEdgeParts + kEdgeParts / 2};
         std::uint32_t off[2] = {on[0] + right * kEdgeParts, on[1] + up * kEdgeParts};
         if (!meets) {

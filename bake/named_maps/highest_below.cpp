@@ -10,7 +10,7 @@
 namespace relief {
 namespace {
 
-/// Random points take about a dozen exchanges; more mean that rounding makes them cycle.
+/// Maximum number of exchanges. Random points take about a dozen; more mean that rounding makes the search cycle.
 constexpr int kExchanges = 64;
 /// Tolerance for rounding, in units of the points' extent.
 constexpr double kTiny = 1e-9;
@@ -47,7 +47,7 @@ std::optional<glm::dvec2> highestBelow(std::span<const glm::dvec3> points) {
     const double far = 8.0 * (extent.x + extent.y);
     const double high = 1e3 * (extent.z + extent.x + extent.y);
     std::array<glm::dvec3, 3> corners = {{{-far, -far, high}, {far, -far, high}, {0.0, far, high}}};
-    std::array<bool, 3> helps = {true, true, true};
+    std::array<bool, 3> is_auxiliary = {true, true, true};
     std::array<double, 3> origin = weightsOf(corners, 0.0, 0.0);
     for (int exchange = 0; exchange < kExchanges; ++exchange) {
         const glm::dvec2 slope = slopeOf(corners);
@@ -62,8 +62,8 @@ std::optional<glm::dvec2> highestBelow(std::span<const glm::dvec3> points) {
             }
         }
         if (lowest == nullptr) {
-            const bool helped = helps[0] || helps[1] || helps[2];
-            return helped ? std::nullopt : std::optional(slope);
+            const bool any_auxiliary = is_auxiliary[0] || is_auxiliary[1] || is_auxiliary[2];
+            return any_auxiliary ? std::nullopt : std::optional(slope);
         }
         // Replace the corner whose weight vanishes first as the weight of the new corner grows.
         const std::array<double, 3> weights = weightsOf(corners, lowest->x, lowest->y);
@@ -82,7 +82,7 @@ std::optional<glm::dvec2> highestBelow(std::span<const glm::dvec3> points) {
             origin[i] = i == leaves ? most : std::max(0.0, origin[i] - most * weights[i]);
         }
         corners[leaves] = *lowest;
-        helps[leaves] = false;
+        is_auxiliary[leaves] = false;
     }
     return std::nullopt;
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Among the planes that lie below all points of a set, finds the plane with the highest mean over the points. This is
-// the supporting plane of a texel (plane_fit.h) whose rays are parallel and all hit a surface.
+// Finds the plane with the highest mean over a set of points among the planes that lie below all of them. This is the
+// supporting plane of a texel (plane_fit.h) whose rays are parallel and all hit a surface.
 //
-// With the points centred on the origin, it is the facet of their lower convex hull over the origin. The search starts
-// from three points whose triangle contains the origin. While some point is below their plane, the lowest such point
-// replaces one of the three (the dual simplex method):
+// The plane is the facet of the points' lower convex hull over their mean, which is the origin. The search starts from
+// three points whose triangle contains the origin. While some point is below their plane, the lowest such point replaces
+// one of the three (the dual simplex method):
 //
 //      ·       ·
 //        \   ·          · points, heights upwards

@@ -134,15 +134,15 @@ class PointTable {
         : blocks_((rays.size() + kLanes - 1) / kLanes) {
         assert(rays.size() <= kFootprintRaysMax);
         for (std::size_t i = 0; i < blocks_ * kLanes; ++i) {
-            const FootprintRay& ray =
-                rays[std::min(i, rays.size() - 1)];  // a repeated point changes no maximum
+            // A repeated point changes no maximum, and contributes 0 to sums.
+            const FootprintRay& ray = rays[std::min(i, rays.size() - 1)];
             Block& block = table_[i / kLanes];
             const std::size_t lane = i % kLanes;
             const glm::dvec3 point = ray.origin + ray.u * ray.direction - origin;
             for (int axis = 0; axis < 3; ++axis) {
                 block.point[axis][lane] = point[axis];
             }
-            block.most[lane] = i < rays.size() ? std::min(ray.u, reach) : 0.0;  // nor a sum
+            block.most[lane] = i < rays.size() ? std::min(ray.u, reach) : 0.0;
         }
     }
 
@@ -326,9 +326,9 @@ class PlaneSearch {
         if (cost >= best_cost_) {
             return;
         }
-        const bool vouched =
+        const bool justified =
             options_.starts_free && options_.inward_shift == 0.0 && -cosine > options_.rays_apart;
-        if (!vouched && isDeep(normal, stored)) {
+        if (!justified && isDeep(normal, stored)) {
             return;
         }
         best_cost_ = cost;

@@ -16,7 +16,7 @@ constexpr double kBeside = 0x1p-17;
 constexpr double kTouching = 1e-6;
 constexpr int kBesideRays = 8;
 
-/// Sines and cosines of the positions of these rays: the first two are opposite, and none is along an edge of a grid.
+/// Sines and cosines of the directions to these rays. The first two are opposite; none is along an edge of a grid.
 constexpr std::array<std::array<double, 2>, kBesideRays> kBesideDirections = {{{0.1951, 0.9808},
                                                                                {-0.2588, -0.9659},
                                                                                {0.9877, -0.1564},
@@ -63,7 +63,7 @@ Hit RayProbe::trace(std::uint32_t face, std::uint32_t x, std::uint32_t y) {
     }
     const Hit hit = hitOf(face, x, y, query.hit.primID);
     // Only a hit on the inner side of a closed mesh is doubtful: no ray from free space can reach it.
-    return scene_.closed() && metInside(hit) ? traceBeside(face, x, y, hit) : hit;
+    return scene_.closed() && hitsInnerSide(hit) ? traceBeside(face, x, y, hit) : hit;
 }
 
 RTCRayHit RayProbe::traced(const Segment& segment) const {

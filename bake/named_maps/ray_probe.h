@@ -34,8 +34,8 @@ class RayProbe {
     [[nodiscard]] Segment segmentOf(const TexelRay& ray) const;
     /// The hit of a texel's ray on a triangle.
     [[nodiscard]] Hit hitOf(std::uint32_t face, std::uint32_t x, std::uint32_t y, std::uint32_t triangle);
-    /// The ray hit the inner side of a closed mesh.
-    [[nodiscard]] bool metInside(const Hit& hit) const { return hit.fromBehind() != scene_.insideOut(); }
+    /// Whether the ray hit the inner side of a closed mesh.
+    [[nodiscard]] bool hitsInnerSide(const Hit& hit) const { return hit.fromBehind() != scene_.insideOut(); }
     /// Traces again beside the ray, because Embree misses some vertices and edges that a ray hits exactly, even in
     /// robust mode. A triangle that such a ray hits before `hit` counts if the original ray touches it.
     [[nodiscard]] Hit traceBeside(std::uint32_t face, std::uint32_t x, std::uint32_t y, const Hit& hit);
@@ -56,8 +56,8 @@ class RayProbe {
     RayEnd end_;
     bool may_start_inside_;
     SeenPlanes planes_;
-    std::array<SeenPlane, kKnownPlanes>
-        known_planes_;  // neighbouring texels usually hit the same few triangles
+    /// A cache: neighbouring texels usually hit the same few triangles.
+    std::array<SeenPlane, kKnownPlanes> known_planes_;
 };
 
 }  // namespace relief

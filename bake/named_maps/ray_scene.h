@@ -59,8 +59,8 @@ class RayScene : public MeshQuery {
     bool closed_;
 };
 
-/// Returns whether a ray of this end that first hits the inner side of a surface started in the solid, because the
-/// centre lies on the surface of a closed solid. Empty texels may mean outside nevertheless.
+/// Returns whether a ray of this end that first hits the inner side of a surface has started in the solid, because the
+/// centre lies on the surface of a closed solid. Empty texels may still mean outside.
 [[nodiscard]] inline bool mayStartInside(const RayScene& scene, const View& view, RayEnd end) {
     return view.centre_on_surface && end == RayEnd::kNear && scene.closed();
 }

@@ -15,8 +15,8 @@
 namespace relief {
 namespace {
 
-/// Within this distance of an edge, in barycentric coordinates, a hit may belong to the neighbour. Surfaces within this
-/// depth then meet.
+/// A hit may belong to the neighbouring triangle if it is within kEdgeWidth of an edge, in barycentric coordinates. Two
+/// such hits belong to surfaces that meet there if their depths differ by at most kTieDepth.
 constexpr double kEdgeWidth = 1e-4;
 constexpr double kTieDepth = 1e-5;
 /// Surfaces within this depth are the same, even away from edges.
@@ -130,7 +130,7 @@ class ScanConverter::Shape {
         double high = -low;
         int behind = 0;
         for (const glm::dvec3& corner : corners_) {
-            if (!(corner.z > kLeastHeight)) {
+            if (!(corner.z > kHeightMin)) {
                 ++behind;
                 continue;
             }
@@ -162,7 +162,7 @@ class ScanConverter::Shape {
 
   private:
     /// Minimum height of a corner in front of the centre, in half sides of the cube.
-    static constexpr double kLeastHeight = 1e-6;
+    static constexpr double kHeightMin = 1e-6;
 
     static std::array<glm::dvec3, 3> cornersOf(const ScanConverter& scan, std::uint32_t triangle,
                                                const Grid& grid) {
@@ -377,7 +377,7 @@ bool ScanConverter::isBetter(std::uint32_t triangle, double depth, const Hit& th
     if (may_start_inside_[static_cast<std::size_t>(end)] && faces != (other_score > 0.0)) {
         return faces != startsInside(depth, end, face, x, y);
     }
-    return score > other_score;  // of equal ones, the first, which has the lower index
+    return score > other_score;  // of equal triangles, keeps the first, which has the lower index
 }
 
 bool ScanConverter::startsInside(double depth, RayEnd end, std::uint32_t face, std::uint32_t x,

@@ -434,8 +434,8 @@ LineGrid::LineGrid(const PatchFrame& frame, unsigned across)
         leaves_.push_back(static_cast<float>(line.leaves));
         lengths_.push_back(line.leaves - line.enters);
     }
-    // The same order as PatchFitter's sum of the inside, so that a cell that is inside everywhere has exactly zero
-    // volume outside.
+    // Sums in the same order as PatchFitter, so that a cell that is entirely inside has a volume of exactly zero
+    // outside.
     std::array<double, 4> sums{};
     for (std::size_t i = 0; i < lengths_.size(); ++i) {
         sums[i % 4] += lengths_[i];
@@ -512,7 +512,7 @@ CellColumns::CellColumns(const MeshQuery& query, const MeshCell& cell,
     thread_local std::vector<Hit> room;
     hits.clear(columns_.size());
     crossings.clear();
-    bool wound = cell.bodies.odd.empty();  // only body 0 there
+    bool wound = cell.bodies.odd.empty();  // only body 0 may contain kKnown
     const Path path(query, cell, triangles);
     for (std::uint32_t i = 0; i < triangles.size(); ++i) {
         UnitTriangle over = triangles[i];

@@ -74,7 +74,7 @@ struct CellPlane {
 class LineGrid {
   public:
     /// Distance from the side of the cube to the first line, in line spacings. Not 0.5, because models are built on
-    /// even numbers.
+    /// round numbers.
     static constexpr double kOffset = 0.5371;
 
     /// \param across  a multiple of 4.
@@ -168,8 +168,8 @@ struct CellColumn {
         }
         return length + (in ? std::max(0.0, w - from) : 0.0);
     }
-    /// Returns the weighted length that is misclassified by "inside where w < height", or by "w ≥ height" with
-    /// outside_below.
+    /// Returns the weighted length that is misclassified by "inside where w < height", or by "inside where w ≥ height"
+    /// with outside_below.
     [[nodiscard]] double wrongAt(double height, bool outside_below, const ErrorCosts& costs) const;
 };
 
@@ -200,7 +200,7 @@ class CellColumns {
         std::uint32_t first = 0;
         std::uint32_t count = 0;
     };
-    /// Treats voids as inside. \param first  of the line's turns, which are the last in turns_.
+    /// Treats voids as inside. \param first  index in turns_ of the line's first turn; no other line's turns follow.
     void fillVoids(const MeshQuery& query, const MeshCell& cell, const LineGrid::Start& start,
                    std::size_t first);
 

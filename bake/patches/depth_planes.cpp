@@ -18,19 +18,19 @@ namespace {
 /// A cell is sampled at its center, and at eight points this far from its sides.
 constexpr double kBesideCorner = 0.02;
 constexpr std::size_t kSamples = 9;
-/// Distance error, in cells, with the weight of a unit difference of the normals.
+/// Distance error, in cells, that weighs as much as a difference of 1 between the normals.
 constexpr double kTurn = 0.25;
 /// Planes are added only if they lower the mean error by this much, in cells, ...
 constexpr double kGain = 0.004;
-/// ... and, in a leaf without a surface, leave less than this fraction of it.
-constexpr double kLeftAtMost = 0.6;
+/// ... and, in a leaf without a surface, lower it to less than this fraction.
+constexpr double kErrorRatioMax = 0.6;
 /// Assumed maximum mean error, in cells: cells are skipped if planes would not pay off even at this error.
-constexpr double kErrorMost = 1.0;
+constexpr double kErrorMax = 1.0;
 /// The corners of a cell lie at least this far behind its depth planes, in cells.
 constexpr double kBehind = 1.0 / 256.0;
-/// Maximum height of the lowest code of a patch, in cells, and maximum height. Higher codes are too coarse for a normal.
-constexpr double kBaseHighest = 3.9;
-constexpr double kHighest = 7.8;
+/// Maximum heights in a patch, in cells: of the lowest code, and of any code. Higher codes are too coarse for a normal.
+constexpr double kBaseMax = 3.9;
+constexpr double kPatchHeightMax = 7.8;
 /// Below this distance, in cells, the direction to the surface is unknown.
 constexpr double kNoDirection = 1e-6;
 /// Points this far beyond a boundary of the solid are outside, in cells.
@@ -42,19 +42,19 @@ constexpr double kFaceLength = 4.0;
 /// ... within this distance of their centers, in cells, ...
 constexpr double kFaceNear = 2.0;
 /// ... and tilted by more than this angle, in radians, relative to the plane that the leaves would otherwise have.
-/// The angle is clamped to kFaceTurnMost, the maximum error of a coarse plane of 7 + 7 bits.
+/// The angle is clamped to kFaceTurnMax, the maximum error of a coarse plane of 7 + 7 bits.
 constexpr double kFaceTurn = 0.016;
-constexpr double kFaceTurnMost = 0.03;
+constexpr double kFaceTurnMax = 0.03;
 /// Tolerance of the flatness test, in cells: the distances of the leaf's corners to the mesh and to the plane of the
 /// face agree within this.
 constexpr double kFaceFlat = 1e-3;
 /// Weight of that angle (radians times the volume of the cell), relative to misclassified volume.
 constexpr double kFaceWorth = 0.01;
-/// Factor of upper bounds of errors, because queries round points to floats.
-constexpr double kAboveRounding = 1.01;
-/// The search in a leaf ends if its errors are this many times too small, so that searches for planes worth a little
-/// less need not repeat it.
-constexpr double kClearly = 1.6;
+/// Safety factor for upper bounds of errors, because queries round points to floats.
+constexpr double kRoundingMargin = 1.01;
+/// The search in a leaf ends early only if the errors of the leaf are too small by this factor. Later searches for planes
+/// worth slightly less then need not repeat it.
+constexpr double kEarlyEndFactor = 1.6;
 /// Bytes of one plane in its own record; bytes of the records of a second plane, or of two.
 constexpr double kOneBytes = DepthGain::kBytesMin;
 constexpr double kPairBytes = 2.0 * kPatchTexelBytes;
@@ -82,7 +82,7 @@ struct Sample {
     }
 };
 
-/// A sample before the search for the nearest surface, with bounds of its distance by those of other samples.
+/// A sample before the search for its nearest surface, with bounds on its distance from the results of other samples.
 struct Candidate {
     Sample sample;
     double least = 0.0;
@@ -96,7 +96,7 @@ struct Candidate {
             hint = triangle;
         }
     }
-    [[nodiscard]] double errorMost() const {
+    [[nodiscard]] double maxError() const {
         const double vote = sample.without.distance;
         return std::max(std::abs(vote + least), std::abs(vote + most)) + 2.0 * kTurn;
     }
@@ -116,7 +116,7 @@ class SmallTree {
     std::size_t count_ = 1;
 };
 
-/// Votes of points in a cell, by the texels of its own tree or of a tree in which it is an octant.
+/// Computes votes at points of a cell, from the cell's own tree or from a tree in which the cell is an octant.
 class Cell {
   public:
     Cell() = default;
@@ -135,13 +135,13 @@ class Cell {
     double size_ = 1.0;
 };
 
-/// Encodes 2² heights. Starts the codes at a lower height if the heights exceed kBaseHighest.
+/// Encodes 2² heights, which may exceed the limit of PatchHeights::of(). The lowest code is at most kBaseMax.
 PatchHeights heightsOf(const std::array<double, 4>& heights) {
-    const double above = std::max(0.0, std::ranges::max(heights) - kBaseHighest);
+    const double above = std::max(0.0, std::ranges::max(heights) - kBaseMax);
     const int shift = static_cast<int>(std::ceil(512.0 * above));
     std::array<double, 5> held{};
     std::ranges::copy(heights, held.begin());
-    held[4] = std::min(std::ranges::min(heights), kBaseHighest);
+    held[4] = std::min(std::ranges::min(heights), kBaseMax);
     for (double& height : held) {
         height -= shift / 512.0;
     }
@@ -167,11 +167,11 @@ std::optional<PatchRecord> patchOf(CellPlane plane) {
         corner[(first + 2) % 3] = i >> 1U;
         heights[i] = -plane.at(corner) / plane.normal[first];
     }
-    const bool mirrored = std::ranges::min(heights) < -kBaseHighest;
+    const bool mirrored = std::ranges::min(heights) < -kBaseMax;
     for (double& height : heights) {
         height = mirrored ? 1.0 - height : height;
     }
-    if (!(std::ranges::min(heights) >= -kBaseHighest && std::ranges::max(heights) <= kHighest)) {
+    if (!(std::ranges::min(heights) >= -kBaseMax && std::ranges::max(heights) <= kPatchHeightMax)) {
         return std::nullopt;
     }
     const PatchFrame frame{.first = first, .mirrored = static_cast<std::uint8_t>(mirrored ? 1 : 0)};
@@ -200,7 +200,7 @@ struct Best {
     }
 };
 
-/// The planes of a leaf without depth planes.
+/// The tree that determines the votes in a leaf without depth planes.
 struct Baseline {
     Cell cell;
     SmallTree tree;
@@ -218,16 +218,16 @@ class LeafChooser {
     /// Adds the planes of the leaf unless none can be worth more than `byte`.
     void addTo(FamilyGains& found, double byte) {
         const double bytes = node_.surface() ? kPairBytes : kOneBytes;
-        const auto worthMost = [&](double error) { return error > kGain ? volume(error) / bytes : 0.0; };
-        double error = takeSamples([&](double most) { return worthMost(kClearly * most) <= byte; });
-        if (worthMost(error) > byte) {
-            dropSamplesWithin();
+        const auto maxWorth = [&](double error) { return error > kGain ? volume(error) / bytes : 0.0; };
+        double error = takeSamples([&](double most) { return maxWorth(kEarlyEndFactor * most) <= byte; });
+        if (maxWorth(error) > byte) {
+            dropBuriedSamples();
             error = errorWithout();
         }
-        if (worthMost(error) > byte) {
+        if (maxWorth(error) > byte) {
             node_.surface() ? addSurface(found.gains) : addEmpty(found.gains);
         } else {
-            found.rest = std::max(found.rest, worthMost(error));
+            found.rest = std::max(found.rest, maxWorth(error));
         }
     }
 
@@ -244,9 +244,9 @@ class LeafChooser {
         std::ranges::transform(samples_, votes.begin(), &Sample::without);
         return votes;
     }
-    [[nodiscard]] double errorWithout() const { return baseline_ ? errorOf(votesWithout()) : kErrorMost; }
+    [[nodiscard]] double errorWithout() const { return baseline_ ? errorOf(votesWithout()) : kErrorMax; }
 
-    /// \param hopeless  whether planes do not pay if the mean error is at most its argument: ends the search.
+    /// \param hopeless  whether planes cannot pay off at a given mean error; if true for the upper bound, the search ends.
     /// \return an upper bound of the mean error; exact after a complete search.
     template <class Hopeless>
     double takeSamples(const Hopeless& hopeless) {
@@ -256,9 +256,9 @@ class LeafChooser {
         for (std::size_t i = 0; i < candidates.size(); ++i) {
             double most = sum;
             for (std::size_t k = i; k < candidates.size(); ++k) {
-                most += candidates[k].errorMost();
+                most += candidates[k].maxError();
             }
-            most *= kAboveRounding / static_cast<double>(kSamples);
+            most *= kRoundingMargin / static_cast<double>(kSamples);
             if (baseline_ && hopeless(most)) {
                 return most;
             }
@@ -297,7 +297,7 @@ class LeafChooser {
     }
     /// Drops samples whose nearest surface is not a boundary of the solid: it lies within another body or in a filled
     /// void. Samples that are outside, in a corner that the surface of the leaf omits, get a negative distance.
-    void dropSamplesWithin() {
+    void dropBuriedSamples() {
         const auto inside = [&](const glm::dvec3& at) {
             return query_.inside(glm::vec3(node_.cell.low + node_.cell.size * at));
         };
@@ -362,7 +362,7 @@ class LeafChooser {
                              [](const DepthGain& gain) { return gain.to != DepthPlanes::kNone; });
     }
 
-    /// For a leaf with a single surface: adds a face outside the cell that is nearer for some points.
+    /// For a leaf with a single surface: adds the plane of a face outside the cell that is nearer for some points.
     void addSurface(std::vector<DepthGain>& gains) const {
         const std::vector<Patch> patches = patchesOf();
         const Best best = bestWith(votesWithout(), patches);
@@ -374,7 +374,7 @@ class LeafChooser {
     }
 
     static bool pays(double before, double after) {
-        return before - after > kGain && after < kLeftAtMost * before;
+        return before - after > kGain && after < kErrorRatioMax * before;
     }
     [[nodiscard]] double volume(double error) const {
         return kWorth * error * node_.cell.size * node_.cell.size * node_.cell.size;
@@ -386,7 +386,7 @@ class LeafChooser {
                                [&](const Sample& sample) { return Cell().vote(tree, sample.at); });
         return votes;
     }
-    /// A plane of a sample whose nearest surface lies outside the cell.
+    /// A plane of a sample with the whole cell behind it.
     struct Patch {
         PatchRecord record;
         Votes votes;
@@ -404,7 +404,7 @@ class LeafChooser {
         }
         return patches;
     }
-    /// The best of several patches, combined in a pair with another patch.
+    /// Returns the patch with the lowest error in a pair with another patch, whose votes are `other`.
     [[nodiscard]] Best bestWith(const Votes& other, std::span<const Patch> patches) const {
         Best best;
         for (const Patch& patch : patches) {
@@ -460,7 +460,7 @@ std::optional<DepthGain> facePlane(const MeshQuery& query, std::span<const FlatF
     DepthGain gain{.node = &leaf, .to = DepthPlanes::kOne, .bytes = kOneBytes};
     gain.records[0] = PatchRecord::flat(leaf.inside(), glm::vec3(plane.normal),
                                         static_cast<float>(roots_per_cell * plane.offset));
-    gain.volume = kFaceWorth * std::min(turn, kFaceTurnMost) * cell.size * cell.size * cell.size;
+    gain.volume = kFaceWorth * std::min(turn, kFaceTurnMax) * cell.size * cell.size * cell.size;
     return gain;
 }
 
@@ -510,7 +510,7 @@ FamilyGains gainsOf(const MeshQuery& query, std::span<const FlatFace> faces, Pat
                     double root_size, double byte, double least_byte) {
     FamilyGains found;
     const auto mayPay = [&](const PatchNode& leaf, double bytes) {
-        return kWorth * kErrorMost * leaf.cell.size * leaf.cell.size * leaf.cell.size > least_byte * bytes;
+        return kWorth * kErrorMax * leaf.cell.size * leaf.cell.size * leaf.cell.size > least_byte * bytes;
     };
     const bool flat = family.split && std::ranges::any_of(family.cell.triangles, [&](std::uint32_t triangle) {
                           return faces[triangle].length >= 0.5 * kFaceLength * family.cell.size;
@@ -558,7 +558,7 @@ CellPlane planeOfSplit(const MeshQuery& query, const PatchNode& node) {
             agree += (plane.at(octantMiddle(i)) < 0.0) == child.inside() ? 1 : -1;
         }
     }
-    if (agree < 0) {  // the mesh is not wound
+    if (agree < 0) {  // the mesh is not wound outwards
         plane = {-plane.normal, -plane.offset};
     }
     return plane;

@@ -49,19 +49,20 @@ class DepthPlaneChoice {
     DepthPlaneChoice(const MeshQuery& query, std::span<const FlatFace> faces)
         : query_(query), faces_(faces) {}
 
-    /// Finds the planes of a tree. Later calls reuse the planes of unchanged leaves. Ignores planes already taken.
+    /// Finds the planes of a tree. Later calls reuse the planes of unchanged leaves. Does not depend on the planes that
+    /// take() has set.
     /// \param roots  borrowed for the lifetime of this object.
-    /// \param byte  misclassified volume, object units cubed: planes that gain less per byte are not found.
+    /// \param byte  minimum gain per byte of the planes: misclassified volume, object units cubed.
     /// \param least_byte  the lowest `byte` of later calls for the same tree.
     /// \param progress  called often, from any thread; its exceptions end the search and propagate.
     void find(std::span<PatchNode> roots, double byte, double least_byte,
               const std::function<void()>& progress);
 
-    /// Returns the total bytes of the planes that gain more than `byte` per byte.
+    /// Returns the total size in bytes of the planes whose gain per byte exceeds `byte`.
     /// \param byte  misclassified volume, object units cubed.
     [[nodiscard]] double bytesWorth(double byte) const;
     /// Sets PatchNode::planes and PatchNode::depth for the planes with the largest gain per byte, up to `bytes` bytes
-    /// in total. Skips planes of earlier calls for the same tree.
+    /// in total. Skips planes that earlier calls for the same tree have set.
     /// \return the bytes left.
     double take(double bytes) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chooses the axis of a cell's patches by the normals of the surface in it.
+// Chooses the axis of a cell's patches from the normals of the surface in the cell.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@ struct FrameChoice {
 };
 
 /// Returns the frame that sees most of the surface from one side. If the cell has surfaces that face both ways, as in a
-/// thin wall, returns the frame that sees most of them from above and below together. In other frames, sampling
-/// lines may be parallel to the wall and miss it, so that no error is detected.
+/// thin wall, returns the frame that sees most of them from above and below together. The sampling lines of another
+/// frame may be parallel to the wall and miss it, so that its error is not detected.
 [[nodiscard]] FrameChoice chooseFrame(std::span<const ClippedTriangle> pieces);
 
 }  // namespace relief

@@ -14,8 +14,8 @@ namespace {
 constexpr int kRounds = 2;
 constexpr int kFinalRounds = 3;
 constexpr int kFinalPairRounds = 4;
-/// Shapes that would pay off at this fraction of a byte's worth are tried at once, because a later step would have to
-/// recompute the columns of the cell.
+/// Shapes that would pay off at this fraction of a byte's worth are tried in the same step, because a later step would
+/// have to recompute the columns of the cell.
 constexpr double kForesight = 0.5;
 /// Parts are assumed to lie between lines if the lines hit less than this fraction of the expected number of triangles
 /// that face one way. Their volume is estimated as kVolumePassedBy times the missing area to the power of 3/2.
@@ -189,9 +189,9 @@ bool LeafFitter::hold(PatchNode& node, double within, double byte) const {
     LeafTrial trial(query_, costs_, grids_, node);
     SurfaceProbe probe(query_, node.cell, trial.triangles(), within / node.cell.size);
     const PatchFrame& frame = patchFrames()[node.frame.index];
-    const double wrong_most = kMeanShare * within * node.cell.size * node.cell.size;
+    const double wrong_max = kMeanShare * within * node.cell.size * node.cell.size;
     const auto holds = [&](std::size_t index) {
-        if (node.errors[index] > wrong_most) {
+        if (node.errors[index] > wrong_max) {
             return false;
         }
         const PatchShape& shape = kPatchShapes[index];

@@ -21,8 +21,8 @@ constexpr double kSteep = 0.1;
 /// All errors below this have the same weight, in units of w.
 constexpr float kSmallError = 4e-3F;
 
-/// A symmetric system for kSide² heights. The bilinear basis couples a node with those up to one row and one column
-/// ahead; second differences couple it with those two rows ahead.
+/// A symmetric system for kSide² heights. The bilinear basis couples a node with the nodes up to one row and one
+/// column ahead; second differences couple it with the nodes two rows ahead.
 template <std::size_t kSide>
 class HeightSystem {
   public:
@@ -161,7 +161,7 @@ class HeightLanes {
     std::size_t quarter_;
     float per_line_;
     Lanes first_;        // position of the first lanes in their squares, in lines
-    Lanes left_[kSide];  // per row of heights, those beside the square of each lane
+    Lanes left_[kSide];  // by row of heights: the left height of each lane's square
     Lanes right_[kSide];
 };
 
@@ -171,7 +171,7 @@ struct RowSums {
     Lanes right[2] = {};
 };
 
-/// The heights of a plane, or nothing if it is too steep in the frame.
+/// Returns the heights of a plane; zeros if the plane is too steep in the frame.
 template <std::size_t kSide>
 std::array<double, kSide * kSide> heightsOf(const PatchFrame& frame, const CellPlane& plane) {
     std::array<double, kSide * kSide> heights{};
@@ -211,9 +211,9 @@ void fitRound(const LineGrid& grid, const HeightTargets& targets,
     const HeightLanes<kSide> anchored(grid, anchors);
     std::size_t line = 0;
     for (std::size_t square = 0; square + 1 < kSide; ++square) {
-        RowSums lower;  // both rows' heights the lower one's share, ...
-        RowSums upper;
-        Lanes mixed[3] = {};
+        RowSums lower;        // products of weights in the lower row of heights
+        RowSums upper;        // the same in the upper row
+        Lanes mixed[3] = {};  // products of a weight in each row
         for (std::size_t j = 0; j < before.lines(); ++j) {
             const float t = before.rowShare(j);
             const auto row = before.row(square, t);
@@ -288,7 +288,7 @@ double betweenTo(const CellColumn& column, double w, bool walls) {
     return walls ? inside : w - column.enters - inside;
 }
 
-/// The best part of a line to lie between the surfaces of a pair.
+/// The part of a line that should lie between the surfaces of a pair.
 struct Part {
     double begin = 0.0;
     double end = 0.0;

@@ -17,7 +17,7 @@ namespace relief {
 struct HeightTarget {
     double height = 0.0;
     /// Costs of errors above and below the height. If a line has no surface, one of them is zero, because all greater
-    /// or all smaller heights are right. Both are zero if the line misses the cube.
+    /// or all smaller heights are correct. Both are zero if the line misses the cube.
     double above = 0.0;
     double below = 0.0;
 };
@@ -60,7 +60,7 @@ class PairFitter {
   public:
     /// \param columns  borrowed.
     /// \param normal  of the planes that provide heights where no line meets the surface.
-    /// \param walls  chosen by the columns if not given.
+    /// \param walls  whether to fit a wall or a gap; nullopt: the one with the smaller bound least().
     PairFitter(const CellColumns& columns, const ErrorCosts& costs, const glm::dvec3& normal,
                std::optional<bool> walls = {});
 
@@ -90,7 +90,7 @@ class PatchFitter {
   public:
     /// \param columns  borrowed.
     /// \param mean  the plane that provides heights where no line meets the surface.
-    /// \param outside_below  chosen by the columns if not given.
+    /// \param outside_below  whether the outside is below the patch; nullopt: derived from the columns.
     PatchFitter(const CellColumns& columns, const ErrorCosts& costs, const CellPlane& mean,
                 std::optional<bool> outside_below = {});
 
@@ -102,7 +102,7 @@ class PatchFitter {
     [[nodiscard]] double insideVolume() const { return inside_volume_; }
 
   private:
-    /// \param by_error  set if the misclassified length equals the height error within the cube.
+    /// \param by_error  cleared if the misclassified length may differ from the height error within the cube.
     [[nodiscard]] HeightTarget targetOf(const CellColumn& column, bool& by_error) const;
     template <std::size_t kSide>
     [[nodiscard]] FittedPatch fitOf(int rounds) const;
@@ -117,7 +117,7 @@ class PatchFitter {
     CellPlane mean_;
     bool outside_below_ = false;
     HeightTargets targets_;
-    std::vector<float> by_error_;  // per line: 0 if in not_by_error_, else 1; empty if that is empty
+    std::vector<float> by_error_;  // per line: 0 if in not_by_error_, else 1; empty if not_by_error_ is
     std::vector<std::uint32_t> not_by_error_;  // lines for which targetOf() clears by_error
     double inside_volume_ = 0.0;
 };

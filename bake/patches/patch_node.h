@@ -62,8 +62,8 @@ struct PatchNode {
     std::array<PatchRecord, 2> depth;     ///< records of `planes`
 
     [[nodiscard]] bool empty() const { return cell.triangles.empty(); }
-    /// The same as empty() after a trial, but does not access the cell, which is rarely in the CPU cache: a node with
-    /// triangles has tried both shapes without a surface.
+    /// Equals empty() after a trial, but does not access the cell, which is rarely in the CPU cache. A node with
+    /// triangles has tried at least two shapes: outside and inside without a surface.
     [[nodiscard]] bool seenEmpty() const { return tried == 1; }
     [[nodiscard]] const PatchShape& shape() const { return kPatchShapes[chosen]; }
     [[nodiscard]] bool surface() const { return shape().side > 0; }

@@ -23,45 +23,45 @@ namespace relief {
 namespace {
 
 /// A tree spends at most this fraction of its bytes on depth planes (depth_planes.h).
-constexpr double kDepthShareMost = 0.45;
-/// kSpare for a tree that is followed by depth planes, which fill the unused bytes.
+constexpr double kDepthShareMax = 0.45;
+/// Like kSpare, for a tree whose unused bytes are then filled with depth planes.
 constexpr double kSpareForDepth = 3e-3;
-/// The worth of a byte that is unused once the tree is chosen, relative to other bytes.
+/// The worth of a byte that the chosen tree leaves unused, relative to a byte of the tree.
 constexpr double kSpareByte = 0.25;
-/// Factor of the worth of a byte from one search for depth planes to the next.
+/// Factor by which the worth of a byte falls from one search for depth planes to the next.
 constexpr double kNextPlanes = 0.7;
 /// Minimum bytes per root.
 constexpr double kBytesPerRoot = 168.4;
 /// PatchOptions::trial_bytes is multiplied by the ratio of the errors with 3² heights to those with 5², clamped to this
-/// range. On a smooth surface, more heights in one patch help a lot, and eight patches cost more.
+/// range. More heights in one patch help a smooth surface a lot, and cost less than eight patches.
 constexpr double kTrialFactorMin = 1.2;
 constexpr double kTrialFactorMax = 2.5;
 constexpr std::uint32_t kLevels = 10;
 constexpr int kSteps = 60;
-/// Fraction of the time spent on the search.
+/// Fraction of the reported progress that belongs to the search.
 constexpr double kSearchShare = 0.7;
 constexpr int kNarrowings = 12;
 /// A tree is large enough if it leaves less than this fraction of the bytes unused.
 constexpr double kSpare = 3e-4;
-/// The same for a curve, so that it does not end long before the limit.
+/// The same for an error curve, whose largest tree only has to be near the limit.
 constexpr double kSpareOfCurve = 0.3;
 /// Minimum factor by which the worth of a byte grows to reach the next smaller tree.
-constexpr double kDearer = 1.05;
+constexpr double kByteWorthGrowth = 1.05;
 /// Maximum number of cells visited per byte, a few times the number used. If a byte is worth almost nothing, as among
 /// flat faces, trees would grow without limit.
 constexpr double kCellsPerByte = 0.6;
 /// Minimum worth of a byte below a root with a flat face, in units of the face's area times its length. At this limit,
 /// the mean error of a cube is about 1e-6 of its side. Curved meshes of many triangles are not affected at any usual
 /// size.
-constexpr double kLeastByte = 2.5e-12;
-/// Keeps cell boundaries off the planes of even numbers, where models have walls.
+constexpr double kByteWorthMin = 2.5e-12;
+/// Keeps cell boundaries away from round coordinates, where models often have walls.
 constexpr double kBesideMesh = 1.01;
 constexpr double kBesideRoots = 1.00137;
-constexpr glm::dvec3 kOriginShift{0.4171, 0.5337,
-                                  0.4623};  // fraction of the slack of whole roots on the low side
+/// Fraction of the space between the mesh and the sides of the roots that is on the low side, per axis.
+constexpr glm::dvec3 kOriginShift{0.4171, 0.5337, 0.4623};
 
-/// By texel: maximum number of roots, unless that would take too many levels.
-constexpr double kRootsMost = 64.0;
+/// Maximum number of roots of a tree by texel, unless the tree would then have too many levels.
+constexpr double kRootsMax = 64.0;
 /// Side of the finest cells, in texels. A feature two texels thick then has two surfaces in most cells, and spans at
 /// most three.
 constexpr double kTexelsPerCell = 2.0;
@@ -70,7 +70,7 @@ constexpr double kHeldWithin = 0.25;
 /// The worth of a byte in a cell that is split no further, in texels cubed.
 constexpr double kByteOfTexel = 0.005;
 /// Maximum distance from the origin, in texels: a float resolves a sixteenth of a texel there.
-constexpr double kTexelsMost = 1 << 20;
+constexpr double kDistanceInTexelsMax = 1 << 20;
 constexpr int kTexelNarrowings = 3;
 /// If a tree is to be cut, the maximum fraction of its bytes in the records of its roots.
 constexpr double kRootsShare = 1.0 / 16.0;
@@ -95,11 +95,11 @@ class Planner {
     Result<PatchTree> run() {
         if (options_.texel > 0.0) {
             RELIEF_TRY(searchTexel());
-            const double most = (1.0 + kDepthShareMost) * takenBytes();
+            const double most = (1.0 + kDepthShareMax) * takenBytes();
             if (most > static_cast<double>(options_.tile_bytes) && !splitRoots()) {
                 planTexel(texel_);
             }
-            takeDepthPlanes(byteOfTexel(), byteOfTexel());
+            takeDepthPlanes(byteWorthOfTexel(), byteWorthOfTexel());
         } else {
             roots_.size = rootSizeByBytes();
             makeRoots();
@@ -160,7 +160,7 @@ class Planner {
             glm::dvec3(held_.min) - kOriginShift * (glm::dvec3(roots_.count) * roots_.size - size);
         nodes_.clear();
         nodes_.resize(std::size_t{roots_.count.x} * roots_.count.y * roots_.count.z);
-        root_bytes_.resize(nodes_.size());
+        root_byte_worths_.resize(nodes_.size());
         for (std::size_t i = 0; i < nodes_.size(); ++i) {
             const glm::dvec3 at(i % roots_.count.x, i / roots_.count.x % roots_.count.y,
                                 i / roots_.count.x / roots_.count.y);
@@ -194,19 +194,19 @@ class Planner {
         forEachIndex(0, nodes_.size(), 16, [&](std::size_t i) {
             MeshCell& cell = nodes_[i].cell;
             cell.bodies = query_.bodiesAt(glm::vec3(cell.low + cell.size * MeshCell::kKnown));
-            root_bytes_[i] = leastByte(cell);
+            root_byte_worths_[i] = minByteWorth(cell);
         });
     }
 
     /// Minimum misclassified volume, object units cubed, that a byte must save below a root; infinity without
-    /// triangles. The value is shared by a root and all its descendants. With a value per cell, a split that finds
-    /// errors missed by the lines of its cell would not pay off if it also splits a flat face.
-    [[nodiscard]] double leastByte(const MeshCell& cell) const {
+    /// triangles. The value is shared by a root and all its descendants. A value per cell would reject a split that
+    /// reveals errors missed by the lines of the cell, if the split also divides a flat face.
+    [[nodiscard]] double minByteWorth(const MeshCell& cell) const {
         double least = std::numeric_limits<double>::infinity();
         for (const std::uint32_t triangle : cell.triangles) {
             const FlatFace& face = faces_[triangle];
             if (face.area > 0.0) {
-                least = std::min(least, kLeastByte * face.area * face.length);
+                least = std::min(least, kByteWorthMin * face.area * face.length);
             }
         }
         return least;
@@ -260,11 +260,11 @@ class Planner {
     /// \return the bytes of the whole tree, or infinity if it is far too large.
     double chooseAll(double byte) {
         visited_ = 0;
-        all_least_ = true;
+        at_minimum_ = true;
         forEachIndex(0, nodes_.size(), 4, [&](std::size_t i) {
-            const double least = root_bytes_[i];
+            const double least = root_byte_worths_[i];
             if (byte > least) {
-                all_least_ = false;
+                at_minimum_ = false;
             }
             choose(nodes_[i], std::isfinite(least) ? std::max(byte, least) : byte, 0);
             report(kSearchShare * std::min(1.0, taken_ / bytes_));
@@ -293,24 +293,24 @@ class Planner {
         return double{kPatchTexelBytes} * size.width * size.height;
     }
 
-    /// A bracket of the worth of a byte, with the bytes of the trees: `dear` fits, `cheap` does not; `cheap` is 0 if
-    /// all fit.
-    struct ByteRange {
-        double dear = 0.0;
-        double taken_dear = 0.0;
-        double cheap = 0.0;
-        double taken_cheap = 0.0;
+    /// A bracket of the worth of a byte, with the bytes of both trees. The tree of `high_worth` fits, the tree of
+    /// `low_worth` does not; `low_worth` is 0 if all trees fit.
+    struct WorthRange {
+        double high_worth = 0.0;
+        double bytes_at_high = 0.0;
+        double low_worth = 0.0;
+        double bytes_at_low = 0.0;
     };
 
     /// Plans ever larger trees until one does not fit, has no errors, or gains too little from more bytes.
-    ByteRange descend() {
+    WorthRange descend() {
         double byte = 1e-3 * static_cast<double>(roots_.size * roots_.size * roots_.size);
-        ByteRange range{.dear = byte};
+        WorthRange range{.high_worth = byte};
         double taken = chooseAll(byte);
         for (int i = 0; i < kSteps && taken <= bytes_; ++i) {
-            range.dear = byte;
-            range.taken_dear = taken;
-            if (!(wrong_ > 0.0) || all_least_) {
+            range.high_worth = byte;
+            range.bytes_at_high = taken;
+            if (!(wrong_ > 0.0) || at_minimum_) {
                 return range;
             }
             // The size is roughly proportional to 1/√(worth of a byte).
@@ -318,8 +318,8 @@ class Planner {
             byte *= std::clamp(share * share, 1.0 / 16.0, 0.8);
             taken = chooseAll(byte);
         }
-        range.cheap = byte;
-        range.taken_cheap = taken;
+        range.low_worth = byte;
+        range.bytes_at_low = taken;
         return range;
     }
 
@@ -354,17 +354,17 @@ class Planner {
         if (takenBytes(wanted) <= bytes_) {
             return byte;
         }
-        bytes_ -= std::min(wanted, kDepthShareMost * bytes_);
-        ByteRange range{.dear = byte, .taken_dear = taken_};
-        while (range.taken_dear > bytes_) {
-            range.cheap = range.dear;
-            range.taken_cheap = range.taken_dear;
+        bytes_ -= std::min(wanted, kDepthShareMax * bytes_);
+        WorthRange range{.high_worth = byte, .bytes_at_high = taken_};
+        while (range.bytes_at_high > bytes_) {
+            range.low_worth = range.high_worth;
+            range.bytes_at_low = range.bytes_at_high;
             // chooseAll() returns infinity for a tree that is far too large.
-            const double factor = range.taken_dear / bytes_ * range.taken_dear / bytes_;
-            range.dear *= std::isfinite(factor) ? std::max(kDearer, factor) : 2.0;
-            range.taken_dear = chooseAll(range.dear);
+            const double factor = range.bytes_at_high / bytes_ * range.bytes_at_high / bytes_;
+            range.high_worth *= std::isfinite(factor) ? std::max(kByteWorthGrowth, factor) : 2.0;
+            range.bytes_at_high = chooseAll(range.high_worth);
         }
-        byte = range.cheap > 0.0 ? narrow(range, kSpareForDepth) : byte;
+        byte = range.low_worth > 0.0 ? narrow(range, kSpareForDepth) : byte;
         bytes_ = static_cast<double>(options_.bytes);
         return byte;
     }
@@ -372,36 +372,36 @@ class Planner {
     /// Finds the lowest worth of a byte whose tree fits, and chooses that tree.
     /// \param spare  fraction of the bytes that the tree may leave unused.
     /// \return the worth of a byte.
-    double narrow(ByteRange range, double spare) {
-        if (!(range.cheap > 0.0)) {
-            return range.dear;
+    double narrow(WorthRange range, double spare) {
+        if (!(range.low_worth > 0.0)) {
+            return range.high_worth;
         }
-        double byte = range.cheap;
+        double byte = range.low_worth;
         const auto square = [](double x) { return x * x; };
-        for (int i = 0; i < kNarrowings && range.taken_dear < (1.0 - spare) * bytes_; ++i) {
-            const double share = (square(bytes_ / range.taken_dear) - 1.0) /
-                                 (square(bytes_ / range.taken_dear) - square(bytes_ / range.taken_cheap));
-            byte = range.dear + std::clamp(share, 0.1, 0.9) * (range.cheap - range.dear);
+        for (int i = 0; i < kNarrowings && range.bytes_at_high < (1.0 - spare) * bytes_; ++i) {
+            const double share = (square(bytes_ / range.bytes_at_high) - 1.0) /
+                                 (square(bytes_ / range.bytes_at_high) - square(bytes_ / range.bytes_at_low));
+            byte = range.high_worth + std::clamp(share, 0.1, 0.9) * (range.low_worth - range.high_worth);
             const double taken = chooseAll(byte);
-            (taken > bytes_ ? range.cheap : range.dear) = byte;
-            (taken > bytes_ ? range.taken_cheap : range.taken_dear) = taken;
+            (taken > bytes_ ? range.low_worth : range.high_worth) = byte;
+            (taken > bytes_ ? range.bytes_at_low : range.bytes_at_high) = taken;
         }
-        if (byte != range.dear) {
-            chooseAll(range.dear);
+        if (byte != range.high_worth) {
+            chooseAll(range.high_worth);
         }
-        return range.dear;
+        return range.high_worth;
     }
 
     /// Splits cells that do not represent the surface, down to the cell size of the texel.
     void refine(PatchNode& node, std::uint32_t levels) {
-        if (texels_ > texels_most_) {
+        if (texels_ > texels_max_) {
             return;  // planTexel() discards the result
         }
-        const bool held = fitter_.hold(node, kHeldWithin * texel_, byteOfTexel());
+        const bool held = fitter_.hold(node, kHeldWithin * texel_, byteWorthOfTexel());
         if (!held && levels > 0) {
             if (node.cell.triangles.size() >= kManyTriangles) {
-                report(kSearchShare *
-                       rootsDone());  // frequent enough to cancel if all triangles are in one root
+                // A bake must be cancellable even if all triangles are in one root.
+                report(kSearchShare * rootsDone());
             }
             makeChildren(node);
             node.split = true;
@@ -420,7 +420,7 @@ class Planner {
     }
 
     /// Misclassified volume that a byte is worth in a tree by texel; 0 in a tree by bytes.
-    [[nodiscard]] double byteOfTexel() const { return kByteOfTexel * texel_ * texel_ * texel_; }
+    [[nodiscard]] double byteWorthOfTexel() const { return kByteOfTexel * texel_ * texel_ * texel_; }
 
     [[nodiscard]] double rootsDone() const {
         return static_cast<double>(roots_done_) / static_cast<double>(nodes_.size());
@@ -448,7 +448,7 @@ class Planner {
     bool planTexel(double texel) {
         texel_ = texel;
         const double longest = static_cast<double>(query_.mesh().bounds.longestSide());
-        const auto tooMany = [](const glm::dvec3& n) { return n.x * n.y * n.z > kRootsMost; };
+        const auto tooMany = [](const glm::dvec3& n) { return n.x * n.y * n.z > kRootsMax; };
         levels_ = 0;
         roots_.size = kTexelsPerCell * texel;
         while (levels_ < kPatchLevelsMax && roots_.size < kBesideMesh * longest &&
@@ -458,14 +458,14 @@ class Planner {
         }
         makeRoots();
         texels_ = 0;
-        texels_most_ = options_.bytes / kPatchTexelBytes;
+        texels_max_ = options_.bytes / kPatchTexelBytes;
         roots_done_ = 0;
         forEachIndex(0, nodes_.size(), 1, [&](std::size_t i) {
             refine(nodes_[i], levels_);
             ++roots_done_;
             report(kSearchShare * rootsDone());
         });
-        return texels_ <= texels_most_ && takenBytes() <= bytes_;
+        return texels_ <= texels_max_ && takenBytes() <= bytes_;
     }
 
     /// Replaces the roots with their children while the records of the roots are a small fraction of the tree.
@@ -496,7 +496,7 @@ class Planner {
             nodes_ = std::move(children);
             roots_.count = to;
             roots_.size *= 0.5;
-            if (texels_ > texels_most_ || takenBytes() > bytes_) {
+            if (texels_ > texels_max_ || takenBytes() > bytes_) {
                 return false;
             }
         }
@@ -506,7 +506,7 @@ class Planner {
     /// Plans with the given texel. If it takes too many bytes, finds the finest texel that fits, within an eighth of an
     /// octave.
     Result<void> searchTexel() {
-        const double finest = farthest() / kTexelsMost;
+        const double finest = farthest() / kDistanceInTexelsMax;
         if (options_.texel < finest) {
             return fail(ErrorCode::kUsage,
                         query_.mesh().name + ": --texel is " + shortest(static_cast<float>(options_.texel)) +
@@ -553,18 +553,17 @@ class Planner {
     LeafFitter fitter_;
     PatchRoots roots_;
     std::vector<PatchNode> nodes_;
-    std::vector<double> root_bytes_;  // leastByte() of each
+    std::vector<double> root_byte_worths_;  // minByteWorth() of each
     DepthPlaneChoice depth_planes_;
     double wrong_ = 0.0;
     double taken_ = 0.0;  // bytes of the last tree tried
     std::vector<ErrorPoint> tried_;
     std::atomic<std::size_t> visited_ = 0;
-    std::atomic<bool> all_least_ =
-        false;                  // the last tree tried used the minimum worth of a byte below each root
-    double texel_ = 0.0;        // of the chosen nodes
-    std::uint32_t levels_ = 0;  // below the roots, for a tree by texel
+    std::atomic<bool> at_minimum_ = false;  // the last tree tried used the minimum worth of a byte everywhere
+    double texel_ = 0.0;                    // of the chosen nodes
+    std::uint32_t levels_ = 0;              // below the roots, for a tree by texel
     std::atomic<std::uint64_t> texels_ = 0;  // of the leaves so far, for a tree by texel
-    std::uint64_t texels_most_ = 0;
+    std::uint64_t texels_max_ = 0;
     std::atomic<std::size_t> roots_done_ = 0;
     mutable std::mutex report_;
 };

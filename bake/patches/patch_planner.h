@@ -17,10 +17,10 @@
 namespace relief {
 
 struct PatchOptions {
-    /// Size of the tree, kPatchBytesMin to kPatchBytesMax; its upper limit if `texel` is set.
+    /// Size of the tree in bytes, kPatchBytesMin to kPatchBytesMax; an upper limit if `texel` is set.
     std::uint64_t bytes = 1'000'000;
-    /// Object units. If above 0, it determines the tree instead of the bytes: a cell is split while the error of its
-    /// patch exceeds a quarter of the texel and its side is longer than two texels.
+    /// Object units. If above 0, the texel determines the tree instead of the bytes: a cell is split while the error of
+    /// its patch exceeds a quarter of the texel and the cell's side is longer than two texels.
     double texel = 0.0;
     bool coarsen = false;  ///< if the tree exceeds the bytes, uses a larger texel
     /// Object units: a box that the roots contain in addition to the mesh.
@@ -40,13 +40,13 @@ struct PatchOptions {
 
 struct PatchTree {
     DepthMap map;        ///< of MapFormat::kPatches
-    double texel = 0.0;  ///< object units: the option's, or a larger one if coarsened; 0: by bytes
+    double texel = 0.0;  ///< object units: that of the options, or larger if coarsened; 0: a tree by bytes
 };
 
 /// The size of a tree and its errors.
 struct ErrorPoint {
     double bytes = 0.0;
-    double wrong = 0.0;  ///< its errors: weighted volume, object units cubed
+    double wrong = 0.0;  ///< weighted volume of the errors, object units cubed
 
     bool operator==(const ErrorPoint&) const = default;
 };

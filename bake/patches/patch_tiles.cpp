@@ -11,7 +11,7 @@ namespace relief {
 namespace {
 
 /// Minimum number of roots along the side of a tile, without the extra ones.
-constexpr std::uint32_t kRootsLeast = 4;
+constexpr std::uint32_t kRootsMin = 4;
 
 std::uint32_t childCount(const PatchRecord& split) {
     return static_cast<std::uint32_t>(std::popcount(split.children()));
@@ -29,7 +29,7 @@ std::uint32_t leafTexels(PatchTexels texels, const PatchRecord& leaf) {
            heightTexels(patchTexel(texels, leaf.first() + 1).side());
 }
 
-PatchRecord leadingTo(PatchRecord record, std::uint32_t first) {
+PatchRecord withFirstTexel(PatchRecord record, std::uint32_t first) {
     record.high = (record.high & 0xff000000U) | first;
     return record;
 }
@@ -44,7 +44,7 @@ class Copier {
         std::uint32_t next = 1 + static_cast<std::uint32_t>(records_.size());
         for (std::size_t i = 0; i < records_.size(); ++i) {
             if (!isSplit(records_[i])) {
-                leads_to_[i] = next;
+                first_texels_[i] = next;
                 next += leafTexels(from_, records_[i]);
             }
         }
@@ -52,9 +52,9 @@ class Copier {
         texels_[0] = {count.x | count.y << 16U, count.z | levels_ << 16U};
         for (std::size_t i = 0; i < records_.size(); ++i) {
             const PatchRecord& record = records_[i];
-            texels_[1 + i] = isSplit(record)   ? leadingTo(record, leads_to_[i])
-                             : record.isPair() ? copyPair(record, leads_to_[i])
-                                               : copyPatch(record, leads_to_[i]);
+            texels_[1 + i] = isSplit(record)   ? withFirstTexel(record, first_texels_[i])
+                             : record.isPair() ? copyPair(record, first_texels_[i])
+                                               : copyPatch(record, first_texels_[i]);
         }
         return std::move(texels_);
     }
@@ -75,7 +75,7 @@ class Copier {
         for (std::size_t at = 0, end = records_.size(); at < records_.size(); end = records_.size()) {
             bool any = false;
             for (; at < end; ++at) {
-                leads_to_.push_back(1 + static_cast<std::uint32_t>(records_.size()));
+                first_texels_.push_back(1 + static_cast<std::uint32_t>(records_.size()));
                 const PatchRecord record = records_[at];
                 for (std::uint32_t k = 0; isSplit(record) && k < childCount(record); ++k) {
                     records_.push_back(patchTexel(from_, record.first() + k));
@@ -92,7 +92,7 @@ class Copier {
         for (std::uint32_t k = 0; k < heights; ++k) {
             texels_[to + k] = patchTexel(from_, record.first() + k);
         }
-        return heights > 0 ? leadingTo(record, to) : record;
+        return heights > 0 ? withFirstTexel(record, to) : record;
     }
 
     PatchRecord copyPair(const PatchRecord& record, std::uint32_t to) {
@@ -102,12 +102,12 @@ class Copier {
             texels_[to + k] = copyPatch(patch, heights);
             heights += heightTexels(patch.side());
         }
-        return leadingTo(record, to);
+        return withFirstTexel(record, to);
     }
 
     PatchTexels from_;
-    std::vector<PatchRecord> records_;     // copied from the whole tree
-    std::vector<std::uint32_t> leads_to_;  // index of the first texel of each record, in the copy
+    std::vector<PatchRecord> records_;         // copied from the whole tree
+    std::vector<std::uint32_t> first_texels_;  // by record: index of its first texel, in the copy
     std::uint32_t levels_ = 0;
     std::vector<PatchRecord> texels_;
 };
@@ -135,7 +135,7 @@ class Cutter {
             ++grid[axis];
             std::vector<PatchTile> tiles = tilesOf(grid);
             const Sizes sizes = sizeOf(tiles);
-            if (roots_[axis] / grid[axis] < kRootsLeast || grid.x * grid.y * grid.z > options_.most ||
+            if (roots_[axis] / grid[axis] < kRootsMin || grid.x * grid.y * grid.z > options_.most ||
                 sizes.total > options_.total) {
                 break;
             }
@@ -168,7 +168,7 @@ class Cutter {
     }
 
     template <class Visitor>
-    void forRoots(const glm::uvec3& first, const glm::uvec3& count, const Visitor& visit) const {
+    void forEachRoot(const glm::uvec3& first, const glm::uvec3& count, const Visitor& visit) const {
         for (std::uint32_t z = first.z; z < first.z + count.z; ++z) {
             for (std::uint32_t y = first.y; y < first.y + count.y; ++y) {
                 for (std::uint32_t x = first.x; x < first.x + count.x; ++x) {
@@ -186,8 +186,8 @@ class Cutter {
             tile.first = tile.place * roots_ / grid;
             tile.own = (tile.place + 1U) * roots_ / grid - tile.first;
             bool outside = true;
-            forRoots(tile.first, tile.own,
-                     [&](std::size_t root) { outside = outside && outside_[root] != 0; });
+            forEachRoot(tile.first, tile.own,
+                        [&](std::size_t root) { outside = outside && outside_[root] != 0; });
             if (!outside) {
                 tiles.push_back(std::move(tile));
             }
@@ -203,7 +203,7 @@ class Cutter {
         Sizes sizes;
         for (const PatchTile& tile : tiles) {
             std::size_t texels = 1;
-            forRoots(tile.first, withRim(tile), [&](std::size_t root) { texels += 1 + below_[root]; });
+            forEachRoot(tile.first, withRim(tile), [&](std::size_t root) { texels += 1 + below_[root]; });
             const PatchMapSize size = patchMapSize(texels);
             const std::uint64_t bytes = std::uint64_t{size.width} * size.height * texelSize(whole_.format);
             sizes.largest = std::max(sizes.largest, bytes);

@@ -34,14 +34,15 @@ struct PatchTile {
     DepthMap map{};
 };
 
-/// Adds cuts across the longest side of the tiles until each is small enough, or a limit of the options or the number
-/// of roots is reached. Omits tiles whose own roots are all outside: their points are far outside of all other tiles.
+/// Cuts a tree into a grid of tiles. Adds cuts across the longest side of the tiles until every tile is small enough, or
+/// until another cut would exceed a limit of the options or make a tile narrower than four roots. Omits tiles whose own
+/// roots are all outside, because every other tile classifies their points as far outside.
 /// \param whole  a valid map of patches.
-/// \return the tiles, x fastest. If the tree needs no cut, a single tile without texels: use `whole`.
+/// \return the tiles, x fastest; a single tile without texels if the tree needs no cut (then use `whole`).
 [[nodiscard]] std::vector<PatchTile> cutIntoTiles(const DepthMap& whole, const PatchTileOptions& options);
 
-/// Returns a tree of some roots with all their descendants. For all roots of a tree from encodePatches(), returns
-/// identical texels.
+/// Returns a tree of some roots with all their descendants. The texels are identical to those of `whole` if it is from
+/// encodePatches() and the range contains all its roots.
 /// \param whole  a valid map of patches.
 /// \param count  number of roots along each axis; the range must lie within the roots of `whole`.
 [[nodiscard]] DepthMap cutPatches(const DepthMap& whole, const glm::uvec3& first, const glm::uvec3& count);

@@ -6,8 +6,8 @@
 namespace relief {
 namespace {
 
-/// Triangles below this area, in cell sides squared, have one point on each side: 5² heights are a quarter of the cell
-/// apart.
+/// A piece of a triangle gets only one point on each side up to this area, in cell sides squared, because 5² heights
+/// are a quarter of the cell apart.
 constexpr double kSmallArea = 1.0 / 256.0;
 /// Fractions of the way from the center of a piece to its corners.
 constexpr double kNearCorner = 0.97;

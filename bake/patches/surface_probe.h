@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points near the surface in a cell, which test whether a patch represents it.
+// Tests at points near the surface of a cell whether a patch represents the surface.
 #pragma once
 
 #include <array>

@@ -24,12 +24,12 @@ namespace {
 /// Sight samples of all open parts together, and the minimum for each part.
 constexpr std::size_t kSightPoints = 4096;
 constexpr std::size_t kSightPointsMin = 8;
-/// Sheet: more than this fraction of the rays from its darker side escape.
+/// A part is a sheet if more than this fraction of the rays from its darker side escape.
 constexpr double kSheetSight = 0.1;
-/// Visible part: more than this fraction of the rays from its lighter side escape.
+/// A part is visible if more than this fraction of the rays from its lighter side escape.
 constexpr double kSeen = 0.02;
-/// A sheet that may be a solid with larger holes has at least this fraction of the mesh's extent. At most the second
-/// fraction of its projected area has no opposite.
+/// A sheet may be a solid with larger holes if it has at least the fraction kBodyExtent of the mesh's extent, and at most
+/// the fraction kMouthMax of its projected area has no opposite side.
 constexpr double kBodyExtent = 0.25;
 constexpr double kMouthMax = 0.5;
 /// Minimum fraction of its rectangle that a terrain covers, minimum number of triangles, and minimum fraction of the
@@ -64,7 +64,7 @@ std::array<double, 2> sightOf(const Sheet& sheet, std::size_t samples, const Mes
     return {out[0] / rays, out[1] / rays};
 }
 
-/// Returns the mesh without future shells, which have free space on both sides, however dark.
+/// Returns the mesh without the triangles named as shells: rays pass through shells, which have free space on both sides.
 PreparedMesh opaque(const PreparedMesh& prepared, std::span<const ShapeAs> kinds) {
     const TriangleMesh& whole = *prepared;
     TriangleMesh mesh;
@@ -116,9 +116,9 @@ int flattestAxis(const Sheet& sheet) {
 
 /// Minimum number of probes for closing the holes of a part.
 constexpr std::size_t kPartProbesMin = 64;
-/// A body cut off at its foot. The hole is flat: the mean normal of its triangles has at least this length. It faces
-/// down by at least this cosine. At least this fraction of the surface does not see the hole from behind, tested at
-/// this many points.
+/// Criteria of a body cut off at its foot. The hole is flat: the mean normal of its triangles is at least kFootFlat long.
+/// It faces down with a cosine of at least kFootDown. More than the fraction kFootHidden of the surface does not see the
+/// hole from behind, tested with kFootPoints points of the hole.
 constexpr double kFootFlat = 0.9;
 constexpr double kFootDown = 0.5;
 constexpr double kFootHidden = 0.05;

@@ -142,7 +142,7 @@ std::optional<double> distanceBetween(const TriangleMesh& mesh, const Solid& a, 
             return std::nullopt;
         }
     }
-    // Now all of b is within reach of a's bounds, as its cells require.
+    // All of b is now within reach of a's bounds, so no cell index is negative.
     const Corners of_a(mesh, a, reach);
     const Corners of_b(mesh, b, reach);
     const std::optional<double> one = of_a.farthestOf(of_b);
@@ -268,7 +268,7 @@ std::string NearCopies::text() const {
     const bool one = parts == 1;
     return std::to_string(parts) + (one ? " closed part lies" : " closed parts lie") + " within " +
            shortest(static_cast<float>(farthest)) +
-           " of another part; only the largest of such copies counts, and nothing between them is hollow";
+           " of another part; only the largest copy is baked, and the gap between the copies is filled";
 }
 
 NearCopies nearCopies(const TriangleMesh& mesh, std::span<const Part* const> solids) {

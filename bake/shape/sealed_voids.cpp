@@ -102,7 +102,7 @@ class Grid {
         const int across = (axis + 1) % 3;
         const int along = (axis + 2) % 3;
         const auto count = static_cast<double>(voids_.nodes[axis]);
-        // Lines of different rows share no byte.
+        // Rows run in parallel: lines of different rows share no byte of flags_.
         tbb::parallel_for(0, voids_.nodes[along], [&](int row) {
             std::vector<LineHit> hits;
             std::vector<LineSpan> spans;
@@ -202,7 +202,7 @@ std::array<glm::dvec3, 2> boxOf(const Voids& voids) {
 /// Whether a triangle faces only voids and the inside of other bodies, and at least one void.
 bool facesVoids(const MeshQuery& query, std::uint32_t triangle) {
     if (query.bodyOf(triangle) != 0) {
-        return false;  // not wound
+        return false;  // its body uses parity, so its normal may face inwards
     }
     const auto corners = cornersOf(query.mesh(), triangle);
     const glm::dvec3 a(corners[0]);

@@ -24,7 +24,7 @@
 namespace relief {
 namespace {
 
-/// Two-sided sheet: this fraction of a closed part's triangles coincide in pairs.
+/// A closed part is a two-sided sheet if more than this fraction of its triangles coincide in pairs.
 constexpr double kTwice = 0.9;
 /// Depth of the ground below a terrain, in units of the longest side.
 constexpr double kGround = 0.05;
@@ -371,7 +371,7 @@ class Shaper {
         return {};
     }
 
-    /// Shells on request have free space on both sides.
+    /// Whether a part can seal a void. Shells requested with --as cannot: they have free space on both sides.
     static bool seals(const OpenPart& part) {
         return part.role.kind == OpenKind::kSheet && part.as != ShapeAs::kShell;
     }

@@ -37,10 +37,10 @@ struct ShapeReport {
     std::uint64_t solids_with_holes = 0;
     std::uint64_t sheets = 0;
     std::uint64_t closable_sheets = 0;  ///< large sheets that would be solids if their holes were closed
-    std::uint64_t unjoined_shells =
-        0;  ///< open shells within another shell, with rims too far apart to join; the space inside is solid
-    std::uint64_t ambiguous_walls =
-        0;  ///< walls of two joined shells whose winding does not distinguish a lining from a body
+    /// Open shells within another shell, with rims too far apart to join; the space inside is solid.
+    std::uint64_t unjoined_shells = 0;
+    /// Walls of two joined shells whose winding does not distinguish a lining from a body.
+    std::uint64_t ambiguous_walls = 0;
     std::uint64_t terrains = 0;
     std::uint64_t voids = 0;  ///< sealed by sheets, and filled
     /// Dropped from sheets, and from solids that are closed without them.

@@ -48,7 +48,7 @@ std::vector<std::string> ShapeOptions::names() const {
 
 Result<ShapeOptions> parseShapeOptions(const std::vector<std::string>& words) {
     ShapeOptions options;
-    bool said = false;
+    bool has_default = false;
     for (const std::string& word : words) {
         const std::size_t equals = word.rfind('=');
         const bool is_named = equals != std::string::npos;
@@ -61,17 +61,17 @@ Result<ShapeOptions> parseShapeOptions(const std::vector<std::string>& words) {
                         "--as is '" + cleanUtf8(word, 2 * kAskedNameBytesMax) + "' but " + why);
         };
         if (!as) {
-            return wrong((is_named ? "what follows the last = must be one of " : "must be one of ") +
+            return wrong((is_named ? "the kind after the last = must be one of " : "must be one of ") +
                          listed(kAsNames) + (is_named ? "" : ", or NAME= and one of them") +
                          didYouMean(kind, kAsNames));
         }
         if (!is_named) {
-            if (said) {
+            if (has_default) {
                 return wrong("another --as gives " + std::string(wordOf(options.as)) +
                              " for everything without a name; leave one out");
             }
             options.as = *as;
-            said = true;
+            has_default = true;
             continue;
         }
         if (name.empty()) {

@@ -44,7 +44,7 @@ void windConsistently(Sheet& sheet, const std::vector<std::array<bool, 3>>& same
                 }
             }
         }
-        // The patch's majority decides.
+        // The majority of the patch keeps its winding.
         const auto turned = static_cast<std::size_t>(
             std::ranges::count(queue, 2, [&](std::uint32_t triangle) { return state[triangle]; }));
         for (const std::uint32_t triangle : queue) {

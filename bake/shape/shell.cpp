@@ -18,7 +18,7 @@ namespace {
 /// An offset that would meet the opposite offset ends at this fraction of the distance to the other side, so that both
 /// overlap slightly.
 constexpr double kThinReach = 0.55;
-/// A corner's ray starts this far towards the middle of its triangle, as a fraction of that distance and of the offset.
+/// A corner's ray starts towards the middle of its triangle, at most this fraction of that distance and of the offset.
 /// Rays from vertices would hit the edges of symmetric meshes.
 constexpr double kThinStart = 0.01;
 
@@ -48,7 +48,7 @@ std::array<double, 2> clearanceAt(const MeshQuery& query, const glm::dvec3& star
     return room;
 }
 
-/// Closes a surface where a region's offset is omitted.
+/// A fan of triangles that closes a surface where a region's offset is omitted.
 struct Fan {
     BorderLoop loop;
     glm::vec3 apex{0.0F};
@@ -150,8 +150,8 @@ class Thickener {
         return ends_[roots_[3 * triangle + corner]];
     }
 
-    /// Ignores triangles at the same vertex. \param but_cut  does not ignore triangles that are cut from the corner.
-    [[nodiscard]] std::array<double, 2> clearanceAtCorner(std::uint32_t corner, bool but_cut) const {
+    /// Ignores triangles at the corner's vertex. \param count_cut  does not ignore triangles cut from the corner.
+    [[nodiscard]] std::array<double, 2> clearanceAtCorner(std::uint32_t corner, bool count_cut) const {
         const glm::uvec3& t = sheet_.triangles[corner / 3];
         const std::uint32_t vertex = t[static_cast<int>(corner % 3)];
         const glm::dvec3 inwards = middleOf(sheet_, t) - placeOf(corner);
@@ -160,17 +160,17 @@ class Thickener {
                            [&](std::uint32_t other) {
                                for (std::uint32_t k = 0; k < 3; ++k) {
                                    if (sheet_.triangles[other][static_cast<int>(k)] == vertex) {
-                                       return !but_cut || !fans_.areCut(corner, 3 * other + k);
+                                       return !count_cut || !fans_.areCut(corner, 3 * other + k);
                                    }
                                }
                                return false;
                            });
     }
 
-    [[nodiscard]] std::vector<std::array<double, 2>> clearanceByRoot(bool but_cut) const {
+    [[nodiscard]] std::vector<std::array<double, 2>> clearanceByRoot(bool count_cut) const {
         std::vector<std::array<double, 2>> room(roots_.size());
         tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(roots_.size()),
-                          [&](std::uint32_t i) { room[i] = clearanceAtCorner(i, but_cut); });
+                          [&](std::uint32_t i) { room[i] = clearanceAtCorner(i, count_cut); });
         for (std::uint32_t i = 0; i < roots_.size(); ++i) {
             for (const std::size_t face : {0U, 1U}) {
                 room[roots_[i]][face] = std::min(room[roots_[i]][face], room[i][face]);
@@ -181,26 +181,26 @@ class Thickener {
 
     /// Returns, by root, whether an edge there would flip in the offset above or below.
     [[nodiscard]] std::vector<std::array<bool, 2>> flipsOver() const {
-        std::vector<std::array<bool, 2>> turns(roots_.size());
+        std::vector<std::array<bool, 2>> flips(roots_.size());
         for (std::uint32_t i = 0; i < roots_.size(); ++i) {
             const std::uint32_t next = i % 3 == 2 ? i - 2 : i + 1;
             const glm::dvec3 side = placeOf(next) - placeOf(i);
             const double change = dot(side, offsetOf(next) - offsetOf(i));
             for (const std::uint32_t k : {i, next}) {
-                turns[roots_[k]][0] = turns[roots_[k]][0] || dot(side, side) + change < 0.0;
-                turns[roots_[k]][1] = turns[roots_[k]][1] || dot(side, side) - change < 0.0;
+                flips[roots_[k]][0] = flips[roots_[k]][0] || dot(side, side) + change < 0.0;
+                flips[roots_[k]][1] = flips[roots_[k]][1] || dot(side, side) - change < 0.0;
             }
         }
-        return turns;
+        return flips;
     }
 
-    /// \param turns  flipsOver(): there, the offset ends before the opposite surface.
-    void placeEnds(const std::vector<std::array<bool, 2>>& turns) {
+    /// \param flips  from flipsOver(). The offset of a flipping corner ends before the opposite surface.
+    void placeEnds(const std::vector<std::array<bool, 2>>& flips) {
         ends_.resize(roots_.size());
         for (std::uint32_t i = 0; i < roots_.size(); ++i) {
             if (roots_[i] == i) {
                 const auto reach = [&](std::size_t face) {
-                    return turns[i][face] ? std::min(1.0, kThinReach * clearance_[i][face]) : 1.0;
+                    return flips[i][face] ? std::min(1.0, kThinReach * clearance_[i][face]) : 1.0;
                 };
                 ends_[i] = {builder_.addPosition(placeOf(i) + reach(0) * offsetOf(i)),
                             builder_.addPosition(placeOf(i) - reach(1) * offsetOf(i))};

@@ -31,7 +31,8 @@ constexpr double kNearRimGap = 1.5;
 constexpr double kUnmatchedArea = 0.5;
 /// Maximum volume of a wall, as a fraction of the volume within its outer shell.
 constexpr double kWallVolume = 0.95;
-/// A spike's base is shorter than this fraction of its sides, and at most one in so many corners is a spike.
+/// A spike's base is shorter than this fraction of its sides. Spikes are kept if more than one in kSpikesOfCorners
+/// corners is a spike.
 constexpr double kSpike = 0.5;
 constexpr std::size_t kSpikesOfCorners = 8;
 constexpr std::size_t kRimPairs = 100'000'000;
@@ -42,7 +43,7 @@ struct Rim {
     std::vector<glm::dvec3> places;  ///< positions of the vertices
     Bounds bounds;
     glm::dvec3 normal{0.0};  ///< Newell's normal
-    /// Triangles at the rim that the mesh lacks; the corners beside them are neighbours.
+    /// Triangles, absent from the mesh, that fill the spikes cut off the rim.
     std::vector<glm::uvec3> missing;
 };
 

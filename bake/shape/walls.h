@@ -23,8 +23,8 @@ struct ShellWall {
 
 struct ShellWalls {
     std::vector<ShellWall> walls;
-    /// Pairs of outer and inner candidates with nearly facing mouths, one per inner one that is in no wall. Either may
-    /// be a solid.
+    /// Pairs of outer and inner candidates with nearly facing mouths, for inner candidates that are in no wall. At least
+    /// one of each pair may be a solid.
     std::vector<std::array<std::size_t, 2>> unjoined;
 };
 
@@ -34,15 +34,15 @@ struct WallCandidate {
     bool may_be_solid = false;  ///< it may be a solid with holes; true for at least one shell of a wall
 };
 
-/// Joins the rims of an outer and an inner candidate of similar size whose bounds contain each other's centre. Holes of
-/// the inner one that face no hole of the outer one must be small. A candidate belongs to at most one wall. Tests only
-/// pairs that overlap along x, because a file may have thousands of open parts.
+/// Joins the rims of an outer and an inner candidate of similar size if the bounds of one contain the centre of the other.
+/// Rims of the inner candidate that face no rim of the outer candidate must be small. A candidate belongs to at most one
+/// wall. Tests only pairs that overlap along x, because a file may have thousands of open parts.
 /// \param name  of the mesh.
 [[nodiscard]] ShellWalls wallsAmong(const std::vector<WallCandidate>& candidates, const std::string& name);
 
 /// Whether the two shells of a wall have the same winding in the file, or one of them has an inconsistent winding.
 /// \param mesh    the mesh of the candidates.
-/// \param turned  per triangle of it: flipped relative to the file.
+/// \param turned  per triangle of `mesh`: flipped relative to the file.
 [[nodiscard]] bool isAmbiguous(const ShellWall& wall, const std::vector<WallCandidate>& candidates,
                                const TriangleMesh& mesh, const std::vector<bool>& turned);
 

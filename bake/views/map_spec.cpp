@@ -22,7 +22,7 @@ constexpr auto kKeys = [] {
     return keys;
 }();
 
-/// Minimum sine of the angle between up and dir: below it, rounding could turn the image.
+/// Minimum sine of the angle between up and dir: below it, rounding could rotate the image.
 constexpr double kUpSineMin = 1e-4;
 
 struct AxisWord {

@@ -27,8 +27,8 @@ inline constexpr std::uint64_t kPatchBytesDefault = 1'000'000;
 
 struct MapKey {
     std::string_view key;
-    std::string_view formats;  ///< that have it
-    std::string_view text;     ///< its meaning, in the manual
+    std::string_view formats;  ///< formats that accept the key
+    std::string_view text;     ///< description for the manual
 };
 inline constexpr std::array kMapKeys = std::to_array<MapKey>({
     {"budget", "patches", "size limit on the GPU as in --budget, 1MB by default"},

@@ -173,7 +173,8 @@ class Voxels {
             }
         });
     }
-    /// For P outside: whether a surface with an inside behind it passes through the ball around this voxel.
+    /// Whether a surface with an inside behind it passes through the ball around a voxel.
+    /// \param p  the centre of the voxel, which is outside.
     [[nodiscard]] bool touchesSurface(const glm::vec3& p) const {
         const auto reach = static_cast<float>(0.5 * std::numbers::sqrt3 * size_);
         const FieldSample vote = evaluate(collider_, p);  // most voxels are far, and their votes are cheap
@@ -214,7 +215,7 @@ Result<Voxels> checkedVoxels(const Collider& collider, const FieldGridOptions& o
     if (!voxels.anyInside()) {
         return invalidInput(
             "no voxel is inside this collider, so it has no surface on this grid; use "
-            "smaller voxels, more of them along the longest side");
+            "more voxels along the longest side");
     }
     if (!voxels.closed()) {
         return invalidInput(
