@@ -13,13 +13,13 @@ namespace {
 
 // Reciprocal of the RMS of the curl of one octave, over all space. The random numbers of a corner, ±1, ±3 … ±15, are
 // independent with variance 85, and there are two corners per unit of volume. The mean square is therefore twice the
-// integral over the ball t > 0 of one corner's, 85 t⁴ (2r² + 3u² + 2u r² + r⁴) with t = 1/2 - r² and u = 4t/3 - 1/2,
-// which is 85 · 8√2 π / 6435 = 0.469488795.
+// integral of 85 t⁴ (2r² + 3u² + 2u r² + r⁴), with t = 1/2 - r² and u = 4t/3 - 1/2, over the ball t > 0 of one corner:
+// 85 · 8√2 π / 6435 = 0.469488795.
 constexpr float kUnitRms = 1.45944383F;
 
 // Lattice units per `scale`. With this value, the mean square of the velocity's nine derivatives, divided by that of
 // the velocity, is 29.1052974 / scale². This equals noise with three gradients per corner and a quintic fade on a cubic
-// lattice of side `scale`. In lattice units the ratio is 330/7, by integrals as above.
+// lattice of side `scale`. In lattice units the ratio is 330/7, by similar integrals.
 constexpr float kUnitsPerScale = 0.785738567F;
 
 bool positive(float x) {

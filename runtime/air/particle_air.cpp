@@ -35,7 +35,7 @@ class ParticleAir : public StepFeature {
 Result<void> setAir(ParticleSystem& particles, const AirSettings& air) {
     const auto* const old = particles.feature<ParticleAir>();
     if (air == (old == nullptr ? AirSettings{} : old->settings())) {
-        return {};  // the change does not require another program
+        return {};  // unchanged: keep the program
     }
     auto block = RELIEF_TRY(AirBlock::create(air));
     if (block.defines().empty()) {

@@ -57,7 +57,7 @@ Result<double> timeBlock(const Work& work, int calls, Times& times) {
     return all;
 }
 
-Result<int> callsOfBlock(const Work& work) {
+Result<int> callsPerBlock(const Work& work) {
     Times ignored;
     int calls = 1;
     while (RELIEF_TRY(timeBlock(work, calls, ignored)) < kBlockMs) {
@@ -94,7 +94,7 @@ Result<Json> timeInTurns(const Bench& bench, const std::vector<Work>& works, con
     for (const Work& work : works) {
         RELIEF_TRY(work.run());
         glFinish();
-        calls.push_back(blocks.calls != 0 ? blocks.calls : RELIEF_TRY(callsOfBlock(work)));
+        calls.push_back(blocks.calls != 0 ? blocks.calls : RELIEF_TRY(callsPerBlock(work)));
     }
     for (int round = 0; round < (bench.rounds != 0 ? bench.rounds : blocks.rounds); ++round) {
         for (std::size_t i = 0; i < works.size(); ++i) {

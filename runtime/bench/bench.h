@@ -65,7 +65,8 @@ void warmUp(const Bench& bench, double ms, const std::function<void()>& run);
 [[nodiscard]] Result<Json> benchPicture(const Bench& bench);
 [[nodiscard]] Result<Json> benchMesh(const Bench& bench);
 [[nodiscard]] Result<Json> benchAnimated(const Bench& bench);
-/// Rows are flights of 2000 frames each, with the median and the slowest frame.
+/// Each row is a hover or a flight of 2000 frames (120 on a software renderer), with the median, the 99th percentile
+/// and the slowest frame.
 [[nodiscard]] Result<Json> benchStream(const Bench& bench);
 
 }  // namespace relief

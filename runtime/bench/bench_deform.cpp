@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Benchmarks: a collider that deforms in waves, and one that plays its first clip. Its three front-back maps are drawn
-// before each step.
+// Benchmarks: a collider that deforms in waves, and an animated collider that plays its first clip. The three front-back
+// maps of the collider are drawn before each step.
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -15,7 +15,7 @@
 namespace relief {
 namespace {
 
-/// Makes a system whose only collider deforms. \param frames  of the collider; must outlive the system.
+/// Makes a system whose only collider deforms. \param frames  the collider's maps; must outlive the system.
 Result<BenchSystem> deformingSystem(const Bench& bench, const Collider& frames, const Pose& pose,
                                     std::uint32_t count) {
     const ColliderBody body{.collider = &frames, .pose = pose, .live = true};
@@ -30,7 +30,7 @@ Result<BenchSystem> deformingSystem(const Bench& bench, const Collider& frames, 
     return system;
 }
 
-/// Times the works, a step, and all of them together.
+/// Times each workload, a step, and all of them together.
 Result<Json> timeWithStep(const Bench& bench, std::vector<Work> works, BenchSystem& system) {
     works.push_back({"step", [&] { return system.particles->step(kBenchDt); }});
     const std::vector<Work> parts = works;

@@ -23,7 +23,7 @@ namespace {
 constexpr std::uint32_t kSortFrames = 30;
 constexpr float kDt = 1e-5F;  // so short that particles hardly move in thousands of steps
 constexpr double kWarmUpMs = 20.0;
-constexpr float kLeastPixels = 1.5F;  // minimum of ParticleRenderer
+constexpr float kPixelsMin = 1.5F;  // minimum of ParticleRenderer
 
 /// Draws bare points.
 class BarePoints {
@@ -41,7 +41,7 @@ class BarePoints {
         program_.use();
         program_.set("u_clip", clip);
         program_.set("u_pixels", diameter * 0.5F * static_cast<float>(target.height) / camera.tanHalfFov());
-        program_.set("u_pixels_min", kLeastPixels);
+        program_.set("u_pixels_min", kPixelsMin);
         useTexture(0, particles.positions());
         glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
         glViewport(0, 0, target.width, target.height);
@@ -131,10 +131,10 @@ Result<Json> benchSize(const Bench& bench, const BenchScene& scene, BenchSystem&
         work.over = "bare";
         work.before = [&] {
             glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
-            const GLfloat nearest_is_one = 1.0F;
+            const GLfloat farthest = 1.0F;
             const std::array<GLfloat, 4> black{};
             glClearBufferfv(GL_COLOR, 0, black.data());
-            glClearBufferfv(GL_DEPTH, 0, &nearest_is_one);
+            glClearBufferfv(GL_DEPTH, 0, &farthest);
             glBindFramebuffer(GL_FRAMEBUFFER, 0);
             warmUp(bench, kWarmUpMs, [&] { (void)work.run(); });
         };

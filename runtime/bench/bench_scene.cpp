@@ -65,9 +65,9 @@ Result<WorldTextures> makeTextures(const BenchScene& scene, const BenchVariant& 
 Result<void> setSixteenTypes(ParticleSystem& particles, const BenchScene& /*scene*/) {
     std::vector<ParticleType> types(kParticleTypesMax, kBenchSnow);
     for (std::size_t i = 0; i < types.size(); ++i) {
-        const float share = static_cast<float>(i) / static_cast<float>(types.size());
-        types[i].mass = 1.0F + share;
-        types[i].restitution = 0.1F * share;
+        const float fraction = static_cast<float>(i) / static_cast<float>(types.size());
+        types[i].mass = 1.0F + fraction;
+        types[i].restitution = 0.1F * fraction;
     }
     return particles.setTypes(types);
 }
@@ -121,7 +121,7 @@ Result<void> recordEvents(ParticleSystem& particles, const BenchScene& /*scene*/
     return setEvents(particles, EventOptions{.lasting = true, .deaths = true});
 }
 
-/// Turns bodies by 0.1° per step, back and forth, so that poses of all blocks are equal within about a degree.
+/// Turns bodies back and forth by 0.1° per step, so that the poses of all blocks differ by at most 1.6°.
 std::function<void()> turning(WorldTextures* textures, std::vector<Pose> poses) {
     return [textures, poses = std::move(poses), step = 0]() mutable {
         const float degrees = 0.1F * static_cast<float>(++step / 16 % 2 == 0 ? step % 16 : 16 - step % 16);

@@ -23,7 +23,7 @@ static_assert(kBenchLifetime > kBenchDt * (kBenchStepsMost + 2));
 inline constexpr float kBenchForever = 1e6F;  ///< seconds
 
 /// Snow as in samples/, but born in the whole box of the collider at once, so that particles collide from the first
-/// step on. Types 0…15 alternate; a system with a single type treats all as that one.
+/// step on. Types 0…15 alternate; a system with a single type uses it for all particles.
 struct BenchScene {
     Collider collider;
     float side = 1.0F;  ///< longest side of the bounds, object units
@@ -73,7 +73,7 @@ struct BenchVariant {
 /// Returns "no_collider", "collider" (the reference), the features one by one, and crowds of bodies.
 [[nodiscard]] std::vector<BenchVariant> benchVariants();
 
-/// Creates a system with the number of particles of the scene. Default variant: "collider".
+/// Creates a system with room for all births of the scene. Default variant: "collider".
 [[nodiscard]] Result<BenchSystem> makeBenchSystem(const BenchScene& scene, StepPath path,
                                                   const BenchVariant& variant = {});
 

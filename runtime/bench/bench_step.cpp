@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Benchmark: the cost of a step relative to a copy of the state, and of each feature. All particles are respawned
-// before each block, so that blocks are equal; births and the first step are not timed.
+// Benchmark: the cost of a step relative to a copy of the state, and the cost of each feature. All particles are
+// respawned before each block, so that blocks are equal; births and the first step are not timed.
 //
 // `copy` is a draw (a dispatch on the compute path) that only copies the two state textures: it reads and writes 32
 // bytes per particle. A step also reads the 16 bytes of the birth texture.
@@ -173,7 +173,7 @@ Result<std::vector<BenchVariant>> variantsFor(const std::string& only,
     return variants;
 }
 
-/// Returns the reference of a variant: "collider"; for that, "no_collider"; for that, the copy.
+/// Returns the reference of a variant: "copy" for "no_collider", "no_collider" for "collider", "collider" for the rest.
 std::string comparedWith(const std::string& variant) {
     return variant == "no_collider" ? "copy" : variant == "collider" ? "no_collider" : "collider";
 }

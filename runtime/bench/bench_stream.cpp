@@ -25,15 +25,15 @@ constexpr int kWarmFrames = 60;
 struct Frames {
     std::vector<double> frame;   // wall clock, with a glFinish at the end
     std::vector<double> gpu;     // GPU time
-    std::vector<double> update;  // of the update() call
+    std::vector<double> update;  // wall clock of update()
 };
 
 Json summaryOf(std::vector<double> ms) {
     std::sort(ms.begin(), ms.end());
-    const auto share = [&](std::size_t part, std::size_t of) { return ms[(ms.size() - 1) * part / of]; };
-    const double median = share(1, 2);
+    const auto percentile = [&](std::size_t p) { return ms[(ms.size() - 1) * p / 100]; };
+    const double median = percentile(50);
     return {{"median", median},
-            {"p99", share(99, 100)},
+            {"p99", percentile(99)},
             {"worst", ms.back()},
             {"worst_over_median", ms.back() / median}};
 }

@@ -30,32 +30,31 @@ Result<void> run(int argc, char** argv) {
         ->transform(CLI::Validator(oneOf(kWords<"step", "picture", "mesh", "animated", "stream">), ""));
     app.add_option(
            "FILE", bench.file,
-           "The collider of step, picture and animated; the .obj or .ply of mesh; the world.json of stream")
+           "Collider (step, picture), animated collider (animated), .obj or .ply (mesh), world.json (stream)")
         ->required();
     app.add_option("--particles", bench.particles,
-                   "Number of particles; a multiple of 1024 for step (default: that of the case)")
+                   "Number of particles; a multiple of 1024 for step (default: depends on the case)")
         ->option_text("N")
         ->transform(CLI::Validator(wholeNumber(4, ParticleSystem::kCapacityMax), ""));
-    app.add_option("--blocks", bench.rounds, "Number of measurement rounds (default: that of the case)")
+    app.add_option("--blocks", bench.rounds, "Number of measurement rounds (default: depends on the case)")
         ->option_text("N")
         ->transform(CLI::Validator(wholeNumber(1, 1000), ""));
     addWords(app, "--path", bench.path,
              WordsFor<StepPath>{{"fragment", StepPath::kFragment}, {"compute", StepPath::kCompute}},
              "Shaders of particle steps (default: fragment)");
-    app.add_option("--only", bench.only, "Run only one variant of step, and those that it is compared with");
-    app.add_option(
-           "--bricks", bench.bricks,
-           "Files of relief-accuracy --atlas for the same mesh, as further variants of step, named by "
-           "file")
+    app.add_option("--only", bench.only, "Run only one variant of step, and its references");
+    app.add_option("--bricks", bench.bricks,
+                   "Files written by relief-accuracy --atlas for the same mesh; each adds a variant of step, "
+                   "named after the file")
         ->option_text("FILE...");
     app.add_option("--exact", bench.exact,
-                   "The mesh of the collider (.obj or .ply), for two further variants of step with the exact "
-                   "signed distance: exact, and exact_kept, which keeps distances between steps")
+                   "Mesh of the collider (.obj or .ply); adds two variants of step with exact signed "
+                   "distances: exact, and exact_kept, which keeps distances between steps")
         ->option_text("FILE");
     app.add_option("--stream-bytes", bench.stream_bytes, "GPU budget of stream in bytes (default: 134217728)")
         ->option_text("N")
         ->transform(CLI::Validator(wholeNumber(1, std::uint64_t{1} << 33U), ""));
-    app.add_flag("--large", bench.large, "Use the sizes for a GPU on a software renderer, too");
+    app.add_flag("--large", bench.large, "Use the sizes for a GPU even on a software renderer");
     if (!RELIEF_TRY(parseCommandLine(app, argumentsOf(argc, argv)))) {
         return {};
     }

@@ -19,7 +19,7 @@ constexpr Layout kWords4{GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT};
 constexpr Layout kWords1{GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT};
 constexpr Layout kFloats4{GL_RGBA32F, GL_RGBA, GL_FLOAT};
 
-/// Adds a texture of rows of kTextureWidth texels. Pads the last row with zeros.
+/// Adds a texture that is kTextureWidth texels wide. Pads the last row with zeros.
 template <class Texel>
 Result<void> upload(Rival& rival, const char* sampler, const Layout& layout, std::vector<Texel> texels) {
     const std::size_t rows = (texels.size() + kTextureWidth - 1) / kTextureWidth;

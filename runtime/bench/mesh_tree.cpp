@@ -34,7 +34,7 @@ Bounds united(Bounds a, const Bounds& b) {
     return a;
 }
 
-/// Returns for each position the first one that is equal to it, numbered without gaps, and their number.
+/// Returns a vertex index for each position, the same for equal positions, and the number of vertices.
 std::pair<std::vector<std::uint32_t>, std::uint32_t> mergedVertices(std::span<const glm::vec3> positions) {
     std::vector<std::uint32_t> order(positions.size());
     std::iota(order.begin(), order.end(), 0U);
@@ -80,7 +80,7 @@ CleanMesh cleanMesh(std::span<const glm::vec3> positions, std::span<const glm::u
     return mesh;
 }
 
-/// Returns for each side 3 t + i of a triangle, from corner i to the next, the triangle across it, or t.
+/// Returns the triangle across each side 3 t + i, from corner i of triangle t to its next corner; t if there is none.
 std::vector<std::uint32_t> neighbours(const CleanMesh& mesh, std::size_t& open_edges) {
     struct Side {
         std::uint32_t low, high, side;
@@ -206,8 +206,9 @@ class BinaryTree {
         return split;
     }
     static std::size_t binOf(const Item& item, glm::length_t axis, const Bounds& centers) {
-        const float share = (item.center[axis] - centers.min[axis]) / (centers.max[axis] - centers.min[axis]);
-        return std::min(static_cast<std::size_t>(share * static_cast<float>(kBins)), kBins - 1);
+        const float fraction =
+            (item.center[axis] - centers.min[axis]) / (centers.max[axis] - centers.min[axis]);
+        return std::min(static_cast<std::size_t>(fraction * static_cast<float>(kBins)), kBins - 1);
     }
     std::optional<Plane> bestPlane(const Split& split, const Bounds& centers) {
         std::optional<Plane> best;
@@ -236,7 +237,7 @@ class BinaryTree {
         }
         return best;
     }
-    /// Sorts the items of a split into two halves. Returns the first item of the second, or 0 for a leaf.
+    /// Partitions the items of a split into two parts. Returns the first item of the second part, or 0 for a leaf.
     std::uint32_t cut(const Split& split) {
         Bounds centers;
         for (const Item& item : itemsOf(split)) {
@@ -260,7 +261,7 @@ class BinaryTree {
     std::vector<Split> splits_;
 };
 
-/// Returns up to four descendants of a split that replace it, by opening the largest.
+/// Returns up to four descendants that replace a split, by repeatedly opening the largest one.
 std::vector<std::uint32_t> childrenOf(const std::vector<Split>& splits, std::uint32_t of) {
     std::vector<std::uint32_t> children = {of};
     while (children.size() < MeshTree::kWidth) {
@@ -280,7 +281,7 @@ std::vector<std::uint32_t> childrenOf(const std::vector<Split>& splits, std::uin
     return children;
 }
 
-/// The box units of a node: bytes that enclose a box.
+/// Encodes boxes within the box of a node in 8 bits per face, rounded outwards.
 struct BoxCode {
     glm::vec3 origin;
     std::array<std::uint32_t, 3> exponents{};  // plus 127

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A bounding volume hierarchy over a triangle mesh, packed for closest-point queries on the GPU
-// (shaders/bench/mesh_tree.glsl): a rival of depth maps that makes no errors.
+// (shaders/bench/mesh_tree.glsl): an exact rival of depth maps.
 //
-// Nodes have up to four children, with boxes in 8 bits per face, rounded outwards. Splits minimise the surface area
+// Nodes have up to four children, whose boxes take 8 bits per face, rounded outwards. Splits minimise the surface area
 // heuristic over bins of centroids. Triangles are stored in leaf order. The side of a point is that of the pseudonormal
 // of the closest face, edge or vertex, which is exact for closed meshes: Bærentzen and Aanæs, "Signed distance
 // computation using the angle weighted pseudonormal", IEEE TVCG 11 (2005).
@@ -37,8 +37,8 @@ struct MeshTree {
     ///     2: lower faces z; upper faces x, y, z; in box units from the lowest corner
     /// Child nodes are consecutive, and so are the triangles of the leaves of a node.
     std::vector<glm::uvec4> nodes;
-    /// Three texels per triangle: the corners as float bits, each with the triangle across the edge to the next corner,
-    /// or the triangle itself.
+    /// Three texels per triangle: the corners as float bits, each with the index of the triangle across the edge to the
+    /// next corner, or of the triangle itself if there is none.
     std::vector<glm::uvec4> triangles;
     /// Three per triangle: the vertices of its corners.
     std::vector<std::uint32_t> vertices;

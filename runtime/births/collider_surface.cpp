@@ -50,7 +50,7 @@ class Contour {
     Contour(const Collider& collider, std::uint32_t cells) : collider_(collider) {
         const glm::dvec3 size(collider.bounds.size());
         cell_ = std::max({size.x, size.y, size.z}) / cells;
-        // One extra cell beyond the bounds on each side: parts that end at the bounds get their other side outside.
+        // One extra cell beyond the bounds on each side, so that the surface closes around parts that reach the bounds.
         for (int k = 0; k < 3; ++k) {
             count_[k] = std::max(1, static_cast<int>(std::ceil(size[k] / cell_ - 1e-6))) + 2;
         }
@@ -75,7 +75,7 @@ class Contour {
 
   private:
     [[nodiscard]] std::size_t corners() const { return corner(count_) + 1; }
-    /// Returns the lowest corner of a cell.
+    /// Returns the index of a corner; a cell has the index of its lowest corner.
     [[nodiscard]] std::size_t corner(const glm::ivec3& at) const {
         const auto wide = static_cast<std::size_t>(count_.x) + 1;
         const auto high = static_cast<std::size_t>(count_.y) + 1;
@@ -87,8 +87,7 @@ class Contour {
         return evaluateInside(collider_, glm::vec3(p)).inside;
     }
 
-    /// Calls f for grid edges, from a corner along an axis, whose ends are on different sides, in the order of the
-    /// corners.
+    /// Calls f(corner, axis) for each grid edge whose ends are on different sides, in the order of the corners.
     template <class F>
     void eachCrossing(const F& f) const {
         for (int z = 0; z <= count_.z; ++z) {
@@ -173,10 +172,10 @@ class Contour {
         }
         // Split along the shorter diagonal, so that edges of the surface are not bridged.
         const auto& p = out_.positions;
-        const auto long_by = [&](std::uint32_t a, std::uint32_t b) {
+        const auto squaredLength = [&](std::uint32_t a, std::uint32_t b) {
             return glm::dot(p[a] - p[b], p[a] - p[b]);
         };
-        if (long_by(v[0], v[2]) <= long_by(v[1], v[3])) {
+        if (squaredLength(v[0], v[2]) <= squaredLength(v[1], v[3])) {
             out_.triangles.emplace_back(v[0], v[1], v[2]);
             out_.triangles.emplace_back(v[0], v[2], v[3]);
         } else {
@@ -190,7 +189,7 @@ class Contour {
     glm::ivec3 count_{0};  // cells
     glm::dvec3 low_{0.0};
     std::vector<char> inside_;           // for each corner
-    std::vector<std::uint32_t> planes_;  // for each cell, by its lowest corner: index into the next two
+    std::vector<std::uint32_t> planes_;  // for each cell, by its lowest corner: index into list_ and cells_
     std::vector<Planes> list_;
     std::vector<glm::ivec3> cells_;
     ColliderSurface out_;

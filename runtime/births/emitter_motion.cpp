@@ -50,8 +50,8 @@ void carry(const EmitterMotion& motion, double time, std::span<Birth> births, st
 
 namespace {
 
-/// Transforms an emitter's births from `first` on, and removes those rejected by its filter and those above the room.
-/// \return the number removed because of the room.
+/// Transforms an emitter's births from `first` on. Removes births that its filter rejects or that exceed the room.
+/// \return the number of births that exceeded the room.
 std::uint64_t carryFiltered(const EmitterMotion& motion, double time, const Emitter& emitter,
                             std::uint64_t room, std::size_t first, std::vector<Birth>& births) {
     const std::span<Birth> made = std::span(births).subspan(first);

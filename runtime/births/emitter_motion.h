@@ -34,14 +34,14 @@ struct EmitterMotion {
 };
 
 /// Transforms births into the world. Each birth uses the emitter's pose at `time` minus its `age`.
-/// \param time  start of the step that they enter, in seconds on the clock of the keys.
-/// \param own   velocities of the emitting points in emitter space, inherited in the same way; empty: zero.
+/// \param time  start of the first step of the births, in seconds on the clock of the keys.
+/// \param own   velocities of the emitting points in emitter space, also inherited; empty: zero.
 /// \param velocities  receives the world-space velocities of the emitting points; may be null.
 void carry(const EmitterMotion& motion, double time, std::span<Birth> births,
            std::span<const glm::vec3> own = {}, std::vector<glm::vec3>* velocities = nullptr);
 
 /// Calls emit() for each emitter in turn; if there is too little room, earlier emitters have priority.
-/// \param motions  one for each emitter, or empty: they transform and filter the births. Rejected births use no room.
+/// \param motions  transform and filter the births; one for each emitter, or empty. Rejected births use no room.
 /// \param time     start of the interval of `dt` seconds, on the clock of the motions.
 /// \return the sum of the values that emit() returned.
 std::uint64_t emitAll(std::span<Emitter> emitters, double dt, std::uint64_t room, std::vector<Birth>& births,

@@ -34,7 +34,7 @@ Result<EmitterSurface> EmitterSurface::create(std::span<const glm::uvec3> triang
     }
     if (!std::all_of(weights.begin(), weights.end(),
                      [](float weight) { return weight >= 0.0F && std::isfinite(weight); })) {
-        return fail(ErrorCode::kUsage, "a surface has a weight that is not a number of at least 0");
+        return fail(ErrorCode::kUsage, "the weights of a surface must be finite and at least 0");
     }
     EmitterSurface made;
     for (const glm::uvec3& t : triangles) {
@@ -92,8 +92,8 @@ Bounds EmitterSurface::bounds() const {
 }
 
 /// Samples barycentric coordinates. Spacings of sorted uniform numbers are uniform on a simplex. A linear density on a
-/// triangle is a mixture of three densities, each proportional to the coordinate of one corner; first draws a corner.
-/// Its coordinate is then the sum of two spacings of three numbers.
+/// triangle is a mixture of three densities, each proportional to the coordinate of one corner. The function therefore
+/// draws a corner first; the coordinate of this corner is the sum of two spacings of three numbers.
 glm::vec3 EmitterSurface::cornersShare(Pcg32& random, const glm::uvec3& triangle) const {
     float cuts[3]{};
     if (weights_.empty()) {
@@ -119,7 +119,7 @@ glm::vec3 EmitterSurface::cornersShare(Pcg32& random, const glm::uvec3& triangle
 }
 
 EmitterSurface::Place EmitterSurface::draw(Pcg32& random, float age) const {
-    // Find the first sum above it: never a triangle without area.
+    // The first sum above `at` never belongs to a triangle without area.
     const double at = fineUniform(random) * area();
     const auto found = std::upper_bound(upto_.begin(), upto_.end(), at);
     const std::size_t i = std::min(static_cast<std::size_t>(found - upto_.begin()), triangles_.size() - 1);

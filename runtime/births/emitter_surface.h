@@ -7,8 +7,8 @@
 //
 // Between the two ends of a step, vertices move along straight lines at constant speed. For rotation at ω rad/s at
 // distance r from the axis, positions are off by at most r (ω dt)² / 8 and velocities by r ω² dt / 2. Areas are those
-// at the end of the step. On a stretching surface, the step length therefore changes the triangles of some births.
-// Their fraction is of the order of the stretch within a step.
+// at the end of the step. On a stretching surface, some births therefore change triangles if the step length changes;
+// their fraction is of the order of the stretch within a step.
 #pragma once
 
 #include <cstddef>
@@ -28,7 +28,7 @@ class EmitterSurface : public BirthSurface {
   public:
     static constexpr std::size_t kTrianglesMax = std::size_t{1} << 22;
 
-    /// Has no triangles and emits nothing.
+    /// Creates a surface without triangles, which emits nothing.
     EmitterSurface() = default;
     /// Creates a surface at rest.
     /// \param triangles  indices into positions, counter-clockwise seen from outside. Triangles without area or weight

@@ -13,7 +13,7 @@ namespace relief {
 
 class MeshTrail {
   public:
-    /// Called at most once, when a birth needs the vertices.
+    /// Returns the vertices. Called at most once, when a birth needs them.
     using Vertices = std::function<std::vector<glm::vec3>()>;
 
     /// Records the current pose.
@@ -38,7 +38,7 @@ class MeshTrail {
 
         const std::vector<glm::vec3>& vertices();
     };
-    std::optional<Moment> before_;  // nullopt after a jump
+    std::optional<Moment> before_;  // nullopt after a jump or hold()
     std::optional<Moment> now_;
 };
 

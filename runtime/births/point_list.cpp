@@ -28,7 +28,7 @@ tl::unexpected<Error> wrong(const std::string& where, const std::string& what) {
 Result<void> add(PointList& list, const Fields& fields, bool normals, const std::string& where) {
     for (std::size_t i = 0; i < 3; ++i) {
         if (!(std::abs(fields[i]) <= kPointCoordinateMax)) {
-            return wrong(where, "a coordinate is not a number within 1e9 of 0");
+            return wrong(where, "a coordinate is not a number from -1e9 to 1e9");
         }
     }
     if (list.positions.size() == kPointsMax) {
@@ -69,12 +69,12 @@ Result<PointList> parseCsv(std::string_view text, const std::string& name) {
     PointList list;
     CsvReader reader(text);
     std::size_t columns = 0;
-    bool words_let_pass = false;
+    bool header_skipped = false;
     while (reader.next()) {
         const std::size_t count = reader.fields().size();
         const std::optional<Fields> fields = parseFields(reader.fields());
-        if (columns == 0 && !fields && !words_let_pass) {
-            words_let_pass = true;
+        if (columns == 0 && !fields && !header_skipped) {
+            header_skipped = true;
             continue;
         }
         const std::string where = name + ":" + std::to_string(reader.number());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads points of a surface from a file, for an emitter to emit from.
+// Reads the points of an emitter from a file.
 #pragma once
 
 #include <cstddef>

@@ -60,9 +60,9 @@ std::map<int, std::vector<std::uint32_t>> levelsOf(std::span<const BodyBox> boxe
 }
 
 /// Enumerates the cells of a level that an oriented box intersects.
-class MetCells {
+class IntersectedCells {
   public:
-    MetCells(const BodyBox& box, float cell_size) : box_(box), cell_size_(cell_size) {
+    IntersectedCells(const BodyBox& box, float cell_size) : box_(box), cell_size_(cell_size) {
         for (int i = 0; i < 3; ++i) {
             const float length = glm::length(box.half[i]);
             axis_[i] = length > 0.0F ? box.half[i] / length : glm::vec3(0.0F);
@@ -71,7 +71,7 @@ class MetCells {
         }
     }
     /// Returns false if a side of the box separates it from the cell.
-    [[nodiscard]] bool has(const glm::ivec3& cell) const {
+    [[nodiscard]] bool intersects(const glm::ivec3& cell) const {
         const glm::vec3 from = (glm::vec3(cell) + 0.5F) * cell_size_ - box_.center;
         return std::abs(glm::dot(from, axis_[0])) <= reach_[0] &&
                std::abs(glm::dot(from, axis_[1])) <= reach_[1] &&
@@ -84,7 +84,7 @@ class MetCells {
         for (int z = low.z; z <= high.z; ++z) {
             for (int y = low.y; y <= high.y; ++y) {
                 for (int x = low.x; x <= high.x; ++x) {
-                    if (const glm::ivec3 cell(x, y, z); has(cell)) {
+                    if (const glm::ivec3 cell(x, y, z); intersects(cell)) {
                         visit(cell);
                     }
                 }
@@ -143,9 +143,8 @@ BodyGrid BodyGrid::of(std::span<const BodyBox> boxes, float cell_size) {
         for (const std::uint32_t index : indices) {
             const std::uint32_t body = boxes[index].body;
             if (bounded) {
-                MetCells(boxes[index], std::ldexp(1.0F, exponent)).forEach([&](const glm::ivec3& cell) {
-                    entries.push_back({body, cellHash(cell)});
-                });
+                const IntersectedCells cells(boxes[index], std::ldexp(1.0F, exponent));
+                cells.forEach([&](const glm::ivec3& cell) { entries.push_back({body, cellHash(cell)}); });
             } else {
                 entries.push_back({body, cellHash(glm::ivec3(0))});
             }

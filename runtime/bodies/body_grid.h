@@ -6,8 +6,8 @@
 //
 //     floor(p / cell size)  ──hash──▶  list [first, end)  ──▶  entries: body, hash of its cell
 //
-// A point queries one list per level. Levels with few bodies are merged into the next coarser one because every level
-// costs every point a query.
+// A point queries one list per level. Levels with few bodies are merged into the next coarser one, because each level
+// adds a query per point.
 #pragma once
 
 #include <cstdint>

@@ -15,7 +15,7 @@ static_assert(sizeof(BlockMap) == kWorldMapTexels * sizeof(glm::uvec4));
 static_assert(sizeof(BlockBody) == kWorldBodyTexels * sizeof(glm::uvec4));
 static_assert(2 * kGridLevelsMax <= kWorldLevels);
 
-/// Enlargement of boxes for the rounding of poses and rows, relative to their coordinates.
+/// Enlargement of boxes, relative to their coordinates, that covers the rounding errors of poses and rows.
 constexpr float kSlack = 1e-5F;
 /// Cell sizes (BodyGrid::of). Larger for many bodies, to save memory, and for moving bodies, because their grid is
 /// uploaded at each step.
@@ -188,7 +188,7 @@ void BodyTable::placeMoving() {
 
 bool BodyTable::setPoses(std::span<const Pose> poses) {
     bool changed = false;
-    bool anew = false;
+    bool first_move = false;
     bool moved_any = false;
     std::size_t first = bodies_.size();
     std::size_t end = 0;
@@ -200,7 +200,7 @@ bool BodyTable::setPoses(std::span<const Pose> poses) {
         const Pose before = std::exchange(bodies_[i].pose, moved ? poses[i] : bodies_[i].pose);
         place(i, before);
         settles_[i] = moved ? 1 : 0;
-        anew = anew || (moved && moves_[i] == 0);
+        first_move = first_move || (moved && moves_[i] == 0);
         moves_[i] = moved ? 1 : moves_[i];
         moved_any = moved_any || moved;
         changed = changed || settles_[i] != 0;
@@ -213,7 +213,7 @@ bool BodyTable::setPoses(std::span<const Pose> poses) {
             changes_.push_back({kWorldMapTexels * first, kWorldMapTexels * end});
         }
     }
-    if (anew) {
+    if (first_move) {
         arrange();
     } else if (moved_any) {
         placeMoving();

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Encodes the bodies of a world as texels of the texture that
-// shaders/bodies/world.glsl reads: maps, poses, and separate broad phases for static and moving bodies. Independent of
-// GL.
+// Encodes the bodies of a world as texels of the texture that shaders/bodies/world.glsl reads: maps, poses, and
+// separate broad phases for static and moving bodies. Independent of GL.
 #pragma once
 
 #include <cstddef>

@@ -160,7 +160,7 @@ MaterialTable makeMaterialTable(std::span<const Materials* const> bodies) {
     std::map<const Materials*, MaterialHead> heads;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         if (bodies[i] == nullptr || bodies[i]->empty()) {
-            continue;  // materials follow the bodies, so a first texel of 0 means none
+            continue;  // no material starts at texel 0, so a first texel of 0 means none
         }
         const auto [found, added] = heads.try_emplace(bodies[i]);
         if (added) {

@@ -12,8 +12,8 @@ namespace {
 /// Half-angle cosine below which a rotation counts as a half turn: a rounding error of 0.0002 degrees.
 constexpr float kHalfTurnCosine = 2e-6F;
 
-/// Returns the one of a rotation's two quaternions that is nearer to `from`. Half turns have no shorter way: they keep
-/// the sign of the quaternions.
+/// Returns `to` or -to, two quaternions of the same rotation, whichever is nearer to `from`. Returns `to` for a half
+/// turn, for which both are equally near.
 glm::quat nearTo(const glm::quat& from, const glm::quat& to) {
     return glm::dot(from, to) < -kHalfTurnCosine ? -to : to;
 }
@@ -34,11 +34,11 @@ Pose poseAt(std::span<const PoseKey> keys, double time) {
     }
     const PoseKey& from = keys[next - 1];
     const PoseKey& to = keys[next];
-    const auto share = static_cast<float>((time - from.time) / (to.time - from.time));
+    const auto fraction = static_cast<float>((time - from.time) / (to.time - from.time));
     Pose pose = from.pose;
-    pose.position += share * (to.pose.position - from.pose.position);
+    pose.position += fraction * (to.pose.position - from.pose.position);
     const glm::quat& rotation = from.pose.rotation;
-    pose.rotation = glm::normalize(glm::mix(rotation, nearTo(rotation, to.pose.rotation), share));
+    pose.rotation = glm::normalize(glm::mix(rotation, nearTo(rotation, to.pose.rotation), fraction));
     return pose;
 }
 

@@ -49,18 +49,18 @@ Result<WorldTextures> WorldTextures::create(std::span<const ColliderBody> bodies
         return fail(ErrorCode::kLimit, std::to_string(bodies.size()) + " bodies exceed the limit of " +
                                            std::to_string(kBodiesMax) + "; merge some of them in one bake");
     }
-    const auto share = [](float value) { return value >= 0.0F && value <= 1.0F; };
+    const auto isFraction = [](float value) { return value >= 0.0F && value <= 1.0F; };
     std::vector<PlacedMap> maps;
     std::vector<TableBody> placed;
     std::vector<const Materials*> materials;
-    std::map<const Collider*, std::size_t> known;  // the first body of each
+    std::map<const Collider*, std::size_t> known;  // the first body with each collider
     for (const ColliderBody& body : bodies) {
         if (!(body.pose.scale > 0.0F)) {
             return fail(ErrorCode::kUsage, "the scale of a collider must be above 0");
         }
         if (!isFinite(body.pose.position) ||
             !std::isfinite(glm::dot(body.pose.rotation, body.pose.rotation)) ||
-            !std::isfinite(body.pose.scale) || !share(body.restitution) || !share(body.friction)) {
+            !std::isfinite(body.pose.scale) || !isFraction(body.restitution) || !isFraction(body.friction)) {
             return fail(ErrorCode::kUsage,
                         "the pose of a collider must be finite, and its restitution and friction must be "
                         "from 0 to 1");
@@ -120,7 +120,7 @@ void WorldTextures::upload(std::size_t first, std::span<const std::byte> texels)
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, world_->upload.name());
     glBufferData(GL_PIXEL_UNPACK_BUFFER, static_cast<GLsizeiptr>(texels.size()), texels.data(),
                  GL_STREAM_DRAW);
-    // The end of a row, whole rows, and the start of a row.
+    // Copy the end of a row, whole rows, and the start of a row.
     for (std::size_t at = first; at < end;) {
         const std::size_t x = at % width;
         const std::size_t rows = x == 0 ? std::max<std::size_t>((end - at) / width, 1) : 1;
@@ -176,7 +176,7 @@ void WorldTextures::updateWorld() const {
         useTexture(0, world_->texture);
         glBindBuffer(GL_PIXEL_UNPACK_BUFFER, world_->upload.name());
         for (const auto& [first, end] : changes) {
-            // Upload through a new buffer: the previous step may still read the texture, and this must not wait for it.
+            // Upload through a new buffer, so that the upload does not wait for a step that still reads the texture.
             const std::span<const glm::uvec4> rows = words.subspan(first * width, (end - first) * width);
             glBufferData(GL_PIXEL_UNPACK_BUFFER, static_cast<GLsizeiptr>(rows.size_bytes()), rows.data(),
                          GL_STREAM_DRAW);

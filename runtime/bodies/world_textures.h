@@ -4,8 +4,8 @@
 // (material_table.h), which only steps read.
 //
 // The maps of a live body (runtime/live) have no texels at first. Each is rendered into a rectangle of its layout's
-// texture, below the packed texels. Each also gets a rectangle of the float texture (RGBA32F) for the motion of the
-// surface in each texel: one half for the front and one above it for the back.
+// texture, below the packed texels. Each map also has a rectangle of the float texture (RGBA32F) for the motion of the
+// surface in each texel: the first half of its rows for the front, the second for the back.
 #pragma once
 
 #include <cstddef>
@@ -73,8 +73,8 @@ class WorldTextures : public ShaderCollider {
     /// \param first  index of a texel in the texture, room() or above.
     /// \param texels  whole texels of 8 bytes; may be part of a map.
     void upload(std::size_t first, std::span<const std::byte> texels);
-    /// Gives all bodies that share this body's collider another map of patches from the reserved range, or restores
-    /// their original map.
+    /// Replaces the map of all bodies that share this body's collider by a map of patches in the reserved range, or
+    /// restores their original map.
     /// \param first  first texel of the new map; nullopt: the original map.
     /// Errors: kUnsupported (not a single map of patches, or flags that differ from the previous map).
     [[nodiscard]] Result<void> exchange(std::size_t body, const Collider& collider,

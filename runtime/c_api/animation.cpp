@@ -21,8 +21,8 @@ Result<void> index(const Call& call, std::size_t i, std::size_t count, const cha
     if (i < count) {
         return {};
     }
-    return call.reject(std::string(argument) + " is " + std::to_string(i) + ", and there are " +
-                       std::to_string(count));
+    return call.reject(std::string(argument) + " is " + std::to_string(i) +
+                       "; it must be below the number of " + argument + "s, " + std::to_string(count));
 }
 
 Result<int> setNext(AnimatedBody& body, MeshPose pose) {

@@ -22,22 +22,23 @@ constexpr auto kTypeNames =
                                 "relief_world", "relief_animation", "relief_emitter"});
 static_assert(kTypeNames.size() == kHandleKinds);
 constexpr int kKindBits = 3;
-constexpr std::uintptr_t kHighest = ~(~std::uintptr_t{0} >> 1);
+constexpr std::uintptr_t kHighestBit = ~(~std::uintptr_t{0} >> 1);
 
 /// Returns 0 if the number is not a handle.
 std::uintptr_t kindOf(std::uintptr_t handle) {
     const std::uintptr_t kind = handle & ((1U << kKindBits) - 1);
-    return (handle & kHighest) != 0 && kind <= kHandleKinds ? kind : 0;
+    return (handle & kHighestBit) != 0 && kind <= kHandleKinds ? kind : 0;
 }
 
 }  // namespace
 
 std::uintptr_t HandleTable::add(HandleKind kind, std::shared_ptr<void> object) {
     const std::lock_guard lock(mutex_);
-    if (issued_ + 1 == kHighest >> kKindBits) {
+    if (issued_ + 1 == kHighestBit >> kKindBits) {
         throw std::bad_alloc();
     }
-    const std::uintptr_t handle = kHighest | (issued_ + 1) << kKindBits | static_cast<std::uintptr_t>(kind);
+    const std::uintptr_t handle =
+        kHighestBit | (issued_ + 1) << kKindBits | static_cast<std::uintptr_t>(kind);
     objects_.emplace(handle, std::move(object));
     ++issued_;
     return handle;

@@ -40,11 +40,11 @@ inline constexpr std::size_t kHandleKinds = 7;
 /// All functions are thread-safe. Removing an object while another thread uses it is a race.
 class HandleTable {
   public:
-    /// Returns a handle, never 0. Throws std::bad_alloc if memory or numbers run out, and changes nothing then.
+    /// Returns a handle, never 0. Throws std::bad_alloc, without effect, if memory or numbers run out.
     [[nodiscard]] std::uintptr_t add(HandleKind kind, std::shared_ptr<void> object);
     /// Returns null if the handle was freed, is of another kind, or was never issued.
     [[nodiscard]] const std::shared_ptr<void>* find(HandleKind kind, std::uintptr_t handle) const;
-    /// Removes and returns the object, of which the caller may be the last owner. Returns null if find() does.
+    /// Removes and returns the object; the caller may become its last owner. Returns null if find() does.
     [[nodiscard]] std::shared_ptr<void> remove(HandleKind kind, std::uintptr_t handle);
 
   private:

@@ -98,8 +98,8 @@ const char* relief_collider_material_name(const relief_collider* collider, size_
     return answer(__func__, "", [&](const Call& call) -> Result<const char*> {
         const std::vector<Material>& list = RELIEF_TRY(call.object(collider, "collider"))->materials.list;
         if (material >= list.size()) {
-            return call.reject("material is " + std::to_string(material) + ", and the collider has " +
-                               std::to_string(list.size()));
+            return call.reject("material is " + std::to_string(material) +
+                               "; it must be below the number of materials, " + std::to_string(list.size()));
         }
         return list[material].name.c_str();
     });

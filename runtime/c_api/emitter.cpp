@@ -104,13 +104,13 @@ Result<EmitterObject> emitterOf(const Call& call, const relief_emitter_options& 
     return EmitterObject{std::move(mesh), Emitter(std::move(settings), options.seed), options.inherit};
 }
 
-/// Deforms the emitter's mesh like the body, which reached its current pose during the last dt seconds.
+/// Deforms the emitter's mesh by the motion of the body during the last dt seconds.
 Result<void> deformSurface(const Call& call, EmitterObject& emitter, relief_textures* textures,
                            std::uint32_t body, double dt) {
     AnimatedBody& on = *RELIEF_TRY(animatedOf(call, textures, body));
     if (on.collider.shared() != emitter.mesh) {
         if (*on.collider.shared() != *emitter.mesh) {
-            return call.reject("emitter has another animation than body " + std::to_string(body) +
+            return call.reject("emitter has a different animation than body " + std::to_string(body) +
                                "; create it from the animation of the body");
         }
         emitter.mesh = on.collider.shared();  // equal; share it to skip the next comparison
@@ -165,9 +165,9 @@ int64_t relief_particles_emit(relief_particles* particles, relief_emitter* emitt
         if (from.mesh) {
             RELIEF_TRY(deformSurface(call, from, textures, body, dt));
         } else if (body >= std::max<std::size_t>(among.poses.size(), 1)) {
-            return call.reject("body is " + std::to_string(body) + " of " +
-                               std::to_string(std::max<std::size_t>(among.poses.size(), 1)) +
-                               " bodies; the first is 0");
+            return call.reject("body is " + std::to_string(body) +
+                               "; it must be below the number of bodies, " +
+                               std::to_string(std::max<std::size_t>(among.poses.size(), 1)));
         }
         to.births.clear();
         from.emitter.emit(dt, to.system.room(), to.births);

@@ -26,9 +26,9 @@ namespace relief {
 struct AnimatedBody {
     std::uint32_t body;  // index in the world's textures
     AnimatedCollider collider;
-    MeshTrail trail;                    // motion of its mesh; its time is `shown`
+    MeshTrail trail;                    // motion of its mesh; `shown` is its clock
     std::optional<MeshPose> next = {};  // applied by the next relief_textures_set_poses()
-    bool fresh = true;                  // no pose was set yet: the first one is not motion
+    bool fresh = true;                  // no pose was set yet; the first pose is not motion
     double shown = 0.0;                 // number of poses in the trail
 
     void show(const MeshPose& pose, bool jumps) {
@@ -47,7 +47,7 @@ struct TexturesObject {
     float texel = 0.0F;                // finest texel of a world, in world units
     std::vector<Pose> poses = {};      // of the bodies, at the end of the next step
     std::vector<Pose> before = {};     // of the bodies, at its beginning
-    std::vector<Pose> placed = {};     // as uploaded: an animated body is placed by its centre
+    std::vector<Pose> placed = {};     // as uploaded; an animated body is placed at the centre of its box
     std::vector<AnimatedBody> animated = {};
     std::vector<std::string> warnings = {};  // of the stream, not returned yet
     std::string warning = {};                // the last one returned
@@ -78,7 +78,7 @@ struct EmitterObject {
     float inherit = 0.0F;
 };
 
-/// An animated body of a world; its number follows those of the file.
+/// An animated body of a world, numbered after the bodies of the file.
 struct AddedBody {
     AnimationObject animation;
     Pose pose{};
@@ -141,7 +141,7 @@ inline glm::vec3 pointAt(const float* points, std::size_t i) {
 [[nodiscard]] Result<Pose> poseOf(const Call& call, const relief_pose& given, NumberName name,
                                   const Pose& rest);
 
-/// Whether objects of this kind own GL objects.
+/// Returns whether objects of this kind own GL objects.
 [[nodiscard]] constexpr bool hasGlNames(HandleKind kind) {
     return kind == HandleKind::kTextures || kind == HandleKind::kParticles || kind == HandleKind::kPicture;
 }

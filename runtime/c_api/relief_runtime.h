@@ -13,8 +13,8 @@
  * handle of another type and an arbitrary value are errors. Free each handle once, with the free function of its type,
  * in any order: particles and renderers keep their textures alive. Freeing NULL does nothing. A NULL returned by a
  * failed call carries its error: relief_textures_create(relief_collider_load(path)) fails with the error of the load.
- * Some functions accept NULL, such as for the textures of particles. After a failed creation, such a NULL still counts
- * as that failure, until the thread calls relief_error() or creates an object of that type.
+ * Some functions accept NULL, such as for the textures of particles. After a failed creation, they reject a NULL of that
+ * type with the error of the creation, until the thread calls relief_error() or creates an object of that type.
  *
  * OpenGL. Functions marked (GL) need a current OpenGL context on the calling thread: OpenGL 3.3, or OpenGL ES 3.0 with
  * renderable float textures. Use the same context for all objects that work together. The functions restore the GL
@@ -114,7 +114,7 @@ size_t relief_world_body_count(const relief_world* world);
 size_t relief_world_find(const relief_world* world, const char* node, uint32_t* bodies, size_t count);
 /* Returns the name of a body's node. Valid until the world is freed. */
 const char* relief_world_node(const relief_world* world, size_t body);
-/* Writes the bounds of all bodies; those of an animated body cover its clips at all times. */
+/* Writes the bounds of all bodies; the bounds of an animated body cover its clips at all times. */
 void relief_world_bounds(const relief_world* world, float min[3], float max[3]);
 
 typedef struct relief_pose {

@@ -92,8 +92,7 @@ void addSimulation(CLI::App& app, SimCommand& command) {
         ->valueText("S")
         ->transform(wholeNumber(0, kSeedMax));
     addOption(app, "--root", player.overrides.root,
-              "Allow the scene to name files in this folder by .. (default: only files in the scene's own "
-              "folder)")
+              "Allow scene paths with .. within this folder (default: only files in the scene's own folder)")
         ->valueText("DIR");
     addWords(app, "--api", player.gpu.api,
              WordsFor<GlApi>{{"gl", GlApi::kGl33Core}, {"gles", GlApi::kGles30}},
@@ -112,7 +111,7 @@ void addLimits(CLI::App& app, PlayerOptions& player) {
     addMemoryOption(app, player.overrides.limits);
 }
 
-/// Rejects combinations of options without effect.
+/// Rejects combinations of options that have no effect.
 Result<void> checkTogether(const SimCommand& command) {
     const PlayerOptions& player = command.player;
     const SceneOverrides& scene = player.overrides;
@@ -205,10 +204,9 @@ void defineSim(CLI::App& app, SimCommand& command) {
                                     "Validate the scene and all its files, and exit; needs no GPU");
     addFlag(app, "--json", command.json, "Print the report, or the result of --check, as JSON");
     const OptionRef page =
-        addOption(
-            app, "--page", command.page,
-            "Write one HTML file that plays the scene in a browser, and exit; needs no GPU, but the player "
-            "that scripts/build.sh web builds")
+        addOption(app, "--page", command.page,
+                  "Write one HTML file that plays the scene in a browser, and exit; needs the player that "
+                  "scripts/build.sh web builds, but no GPU")
             ->valueText("OUT.html");
     addFlag(app, "-q,--quiet", command.quiet,
             "Print no progress and no summary; errors and the output of --json remain");

@@ -40,7 +40,7 @@ class ShaderCollider {
     [[nodiscard]] virtual std::size_t bytes() const = 0;
 
     /// Sets the radius of the largest ball that a shader will query, so that the broad phase of a world finds all
-    /// bodies it touches.
+    /// bodies that the ball touches.
     virtual void reach(float /*radius*/) const {}
     /// Returns 0 for a single collider in its own space.
     [[nodiscard]] virtual std::size_t bodyCount() const { return 0; }

@@ -33,7 +33,7 @@ constexpr std::size_t kHelpColumns = 120;
 constexpr const char* kManualOption = "--manual";
 constexpr const char* kNoGroup = "Options";  // CLI11's default
 
-/// In a description, precedes the text that only --manual shows.
+/// Marks where the text that only --manual shows begins in a description.
 constexpr char kManualMark = '\f';
 
 /// The indentation of a line's continuation. \param column  where descriptions of options begin
@@ -46,7 +46,8 @@ std::size_t indentOf(std::string_view line, std::size_t column) {
     return !line.starts_with("  ") ? 0 : is_key ? text : column;
 }
 
-/// Breaks lines at spaces. The description of an option continues in its column, and that of a key, "key      text", in its own.
+/// Breaks lines at spaces. The description of an option continues in the column of descriptions, and the text of a key
+/// ("key      text") in its own column.
 /// \param column  where descriptions of options begin
 std::string folded(const std::string& text, std::size_t column) {
     std::string out;
@@ -78,7 +79,7 @@ std::string namesOf(const std::set<CLI::Option*>& options) {
     return listed(std::vector<std::string_view>(names.begin(), names.end()));
 }
 
-/// Help that begins with examples: CLI11's footer, moved to the top.
+/// Help that begins with the examples, which CLI11 stores as the footer.
 class HelpFormatter : public CLI::Formatter {
   public:
     /// \param groups  headings, in their order; others follow.

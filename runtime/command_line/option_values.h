@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Validators and transformers of option values. Those of CLI11 accept 0x10, nan, and -1 as a large number, and their
-// messages suggest no fix. parseCommandLine() prefixes the messages with the option's name.
+// Validators and transformers of option values. CLI11's validators accept 0x10, nan, and -1 as a large number, and
+// their messages suggest no fix. parseCommandLine() prefixes the messages with the option's name.
 #pragma once
 
 #include <cstddef>
@@ -35,7 +35,7 @@ class OptionRef {
 
     OptionRef valueText(const std::string& text) const;  ///< the value's name in --help: "OUT.png"
     OptionRef typeName(const std::string& name) const;   ///< the same for a positional argument
-    OptionRef required() const;                          ///< state it in the help of an option
+    OptionRef required() const;                          ///< the help of an option must say so
     OptionRef values(int count) const;                   ///< the number of values of a list
     OptionRef needs(OptionRef other) const;
     OptionRef needs(const std::string& name) const;
@@ -53,14 +53,14 @@ template <class T>
 OptionRef addOption(CLI::App& app, const std::string& names, T& field, const std::string& help);
 OptionRef addFlag(CLI::App& app, const std::string& names, bool& field, const std::string& help);
 
-/// Only decimal digits, from `least` to `most`.
+/// Accepts decimal digits, with a value from `least` to `most`.
 [[nodiscard]] WordReader wholeNumber(std::uint64_t least = 0,
                                      std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
 /// Accepts a finite float from `least` to `most`. \param must  "a number of degrees, 0 or more".
 [[nodiscard]] WordReader number(float least, float most, const std::string& must);
 /// Accepts "1.5" or "1.5%", 0 or more; for a float field.
 [[nodiscard]] WordReader percent();
-/// One of some words (kWords), for a text field.
+/// Accepts one of the words (kWords), for a text field.
 [[nodiscard]] WordReader oneOf(std::span<const std::string_view> words);
 
 template <class Enum>
@@ -85,7 +85,7 @@ OptionRef addWords(CLI::App& app, const std::string& names, Field& field, const 
         [&field, values = std::move(values)](std::size_t i) { field = values[i]; }, help);
 }
 
-/// Adds an option with a format of its own. \param read  returns false if the word is invalid
+/// Adds an option with a custom format. \param read  returns false if the word is invalid
 OptionRef addFormOption(CLI::App& app, const std::string& names, std::function<bool(const std::string&)> read,
                         const std::string& must, const std::string& help);
 /// \param parse  converts std::string to std::optional<T>; nullopt: invalid
@@ -101,16 +101,16 @@ OptionRef addParsed(CLI::App& app, const std::string& names, std::optional<T>& f
         must, help);
 }
 
-/// Default limit on unpacked texels for files smaller than a sixteenth of it, in bytes. It admits one map of 4096 x
-/// 4096 texels of eight bytes.
+/// Default limit in bytes on the unpacked texels of a file that is smaller than 1/16 of the limit. One map of 4096 x
+/// 4096 texels of eight bytes fits.
 inline constexpr std::uint64_t kToolMemory = 160'000'000;
 
 /// Sets limits.memory to kToolMemory, and adds --max-memory, which changes it. `limits` must outlive the app.
 void addMemoryOption(CLI::App& app, ContainerLimits& limits);
 
 /// Adds an option for each field of a struct or group, which must outlive the app: "max_error" becomes --max-error.
-/// Messages are those of readWord(), prefixed with the option's name (parseCommandLine). \return the options, in that
-/// order
+/// Messages are those of readWord(), prefixed with the option's name (parseCommandLine). \return the options, in the
+/// order of the fields
 std::vector<OptionRef> addFields(CLI::App& app, FieldRef target);
 
 }  // namespace relief

@@ -45,9 +45,9 @@ struct Progress::Impl {
     std::condition_variable changed;
     std::string stage;
     Clock::time_point stage_start = start;
-    std::atomic<double> share{kUnknown};
+    std::atomic<double> fraction{kUnknown};
     bool shown = false;  ///< the line is on the terminal
-    bool ends = false;
+    bool stopping = false;
     std::thread thread;
 
     explicit Impl(ProgressOptions wanted) : options(std::move(wanted)) {
@@ -65,16 +65,16 @@ struct Progress::Impl {
     void watch() {
         std::unique_lock lock(mutex);
         Clock::time_point next = start + kFirst;
-        while (!ends) {
+        while (!stopping) {
             const bool limited = options.seconds.has_value();
             changed.wait_until(lock, !options.drawn ? deadline()
                                      : limited      ? std::min(next, deadline())
                                                     : next);
-            if (ends) {
+            if (stopping) {
                 return;
             }
             if (limited && Clock::now() >= deadline()) {
-                timeIsUp();
+                onTimeout();
             }
             if (options.drawn && Clock::now() >= next) {
                 draw();
@@ -84,7 +84,7 @@ struct Progress::Impl {
     }
 
     /// Keeps the lock, so that other threads wait for the exit.
-    [[noreturn]] void timeIsUp() {
+    [[noreturn]] void onTimeout() {
         wipe();
         TemporaryFile::removeAll();
         reportError({ErrorCode::kLimit,
@@ -97,7 +97,7 @@ struct Progress::Impl {
 
     void draw() {
         std::string line = options.name + ": " + stage;
-        const double done = std::clamp(share.load(), kUnknown, 1.0);
+        const double done = std::clamp(fraction.load(), kUnknown, 1.0);
         if (done >= 0.0) {
             const auto filled = static_cast<std::size_t>(done * kBarWidth);
             line += " [" + std::string(filled, '#') + std::string(kBarWidth - filled, '.') + "] " +
@@ -127,11 +127,11 @@ void Progress::begin(const std::string& stage) {
     const std::lock_guard lock(impl_->mutex);
     impl_->stage = stage;
     impl_->stage_start = Clock::now();
-    impl_->share = kUnknown;
+    impl_->fraction = kUnknown;
 }
 
-void Progress::set(double share) {
-    impl_->share = share;
+void Progress::set(double fraction) {
+    impl_->fraction = fraction;
 }
 
 void Progress::print(const std::function<void()>& print) {
@@ -143,7 +143,7 @@ void Progress::print(const std::function<void()>& print) {
 void Progress::finish() {
     {
         const std::lock_guard lock(impl_->mutex);
-        impl_->ends = true;
+        impl_->stopping = true;
         impl_->wipe();
     }
     impl_->changed.notify_all();

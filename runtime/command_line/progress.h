@@ -18,8 +18,8 @@ struct ProgressOptions {
 /// The line shows the stage, its progress if known, and the elapsed time. A thread draws it ten times per second, after
 /// the first half second, so short work shows no line.
 ///
-/// At the time limit, that thread removes temporary output files, reports an error (kLimit) that names the stage, and
-/// exits with its code. The import worker ends with the program.
+/// At the time limit, the thread removes temporary output files, reports an error (kLimit) that names the stage, and
+/// exits with the code of the error. The import worker ends with the program.
 ///
 /// Only the creating thread may call the members, except set(), which is thread-safe.
 class Progress {
@@ -33,12 +33,12 @@ class Progress {
 
     /// Starts a stage. \param stage  "planning the maps".
     void begin(const std::string& stage);
-    /// \param share  fraction of the stage that is done, in [0, 1].
-    void set(double share);
+    /// \param fraction  completed fraction of the stage, in [0, 1].
+    void set(double fraction);
     /// Clears the line and calls `print`.
     void print(const std::function<void()>& print);
-    /// Clears the line and ends the time limit. Call it before writing the first output, so that either all outputs are
-    /// new or none.
+    /// Clears the line and ends the time limit. Call it before writing the first output, so that a timeout never leaves
+    /// a mix of old and new outputs.
     void finish();
 
   private:

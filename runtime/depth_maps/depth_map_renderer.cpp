@@ -53,8 +53,8 @@ class DrawState {
 
 Result<DepthMapRenderer> DepthMapRenderer::create(std::uint32_t width, std::uint32_t height) {
     RELIEF_TRY(checkContext());
-    constexpr const char* kCure = "choose smaller ones";
-    RELIEF_TRY(checkTextureSize(width, height, "depth maps", kCure));
+    constexpr const char* kFix = "choose smaller ones";
+    RELIEF_TRY(checkTextureSize(width, height, "depth maps", kFix));
     const PassState state;
     DepthMapRenderer renderer;
     renderer.width_ = width;
@@ -67,7 +67,7 @@ Result<DepthMapRenderer> DepthMapRenderer::create(std::uint32_t width, std::uint
     for (GlTexture& motion : renderer.motion_) {
         motion = makeTexture2D(GL_RGBA32F, w, h, GL_RGBA, GL_FLOAT);
     }
-    RELIEF_TRY(checkAllocated("depth maps", kCure));
+    RELIEF_TRY(checkAllocated("depth maps", kFix));
     renderer.framebuffer_ = RELIEF_TRY(makeFramebuffer(
         {renderer.texels_.name(), renderer.motion(0), renderer.motion(1)}, renderer.depth_.name()));
     renderer.program_ = RELIEF_TRY(makeProgram("depth_maps/depth_map.vert", "depth_maps/depth_map.frag"));

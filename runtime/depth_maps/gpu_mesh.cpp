@@ -49,7 +49,7 @@ struct Slots {
     std::vector<std::uint32_t> indices;  // slots, three per triangle
 };
 
-/// Assigns each triangle a corner of its own: a vertex that no earlier triangle owns, if it has one.
+/// Assigns each triangle its own corner: a vertex that no earlier triangle owns, if there is one.
 Slots assignSlots(std::uint32_t vertices, std::span<const glm::uvec3> triangles) {
     Slots slots;
     slots.corners.reserve(triangles.size());
@@ -130,10 +130,10 @@ Result<GpuMesh> GpuMesh::create(std::span<const glm::vec3> positions, std::span<
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         const glm::uvec3& t = triangles[i];
         if (std::max({t.x, t.y, t.z}) >= positions.size()) {
-            return fail(ErrorCode::kInvalidInput, "triangle " + std::to_string(i) + " of a mesh has vertex " +
-                                                      std::to_string(std::max({t.x, t.y, t.z})) +
-                                                      " but there are " + std::to_string(positions.size()) +
-                                                      "; repair the mesh");
+            return fail(ErrorCode::kInvalidInput,
+                        "triangle " + std::to_string(i) + " of a mesh uses vertex " +
+                            std::to_string(std::max({t.x, t.y, t.z})) + ", but there are only " +
+                            std::to_string(positions.size()) + " vertices; repair the mesh");
         }
     }
     GpuMesh mesh;

@@ -5,7 +5,7 @@
 // Positions are stored in a 2-D float texture so that shaders can fetch the corners of any triangle. Triangles are
 // drawn with an index buffer over *slots*: slot t < triangleCount() belongs only to triangle t and is its last,
 // provoking corner, so that a flat varying of gl_VertexID identifies the triangle (fragment shaders of OpenGL ES 3.0
-// have no gl_PrimitiveID). Vertices that own no such slot get one after those.
+// have no gl_PrimitiveID). Vertices without such a slot get one after these slots.
 //
 //                       b                 slots of t:  a (t's own, provoking), b and c (owned by other
 //                      /t\                             triangles if possible)

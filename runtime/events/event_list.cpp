@@ -17,10 +17,10 @@ constexpr int kVelocityUnit = 0;
 constexpr int kSurfaceUnit = 1;
 constexpr int kBeforeUnit = 2;
 constexpr int kBirthUnit = 3;
-constexpr int kCountUnit = 4;  // and the units of further levels
+constexpr int kCountUnit = 4;  // followed by the units of the other levels
 
 constexpr std::size_t kFloats = 4;  // per texel
-constexpr std::uint32_t kMostMax = 1U << 24;
+constexpr std::uint32_t kEventsPerStepMax = 1U << 24;
 constexpr auto kWidth = static_cast<std::uint32_t>(kEventsWidth);
 
 std::uint32_t reduced(std::uint32_t count) {
@@ -51,9 +51,10 @@ Result<EventList> EventList::create(std::span<const EventOptions> lists, std::ui
     }
     EventList made;
     for (EventOptions options : lists) {
-        if (options.max_per_step == 0 || options.max_per_step > kMostMax || !(options.min_speed >= 0.0F)) {
+        if (options.max_per_step == 0 || options.max_per_step > kEventsPerStepMax ||
+            !(options.min_speed >= 0.0F)) {
             return fail(ErrorCode::kUsage, "a list of events must have room for 1 to " +
-                                               std::to_string(kMostMax) +
+                                               std::to_string(kEventsPerStepMax) +
                                                " events, and a minimum speed of at least 0");
         }
         options.max_per_step = std::min(options.max_per_step, capacity);

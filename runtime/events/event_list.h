@@ -27,9 +27,9 @@ class EventList {
 
     /// The completed step, in the particle system's textures.
     struct Step {
-        const GlTexture& velocity;  ///< written by step_event.glsl; likewise the next three
-        const GlTexture& surface;
-        const GlTexture& position_before;
+        const GlTexture& velocity;         ///< written by step_event.glsl
+        const GlTexture& surface;          ///< written by step_event.glsl
+        const GlTexture& position_before;  ///< positions before the step
         const GlTexture& birth;
         std::uint32_t width = 0;   ///< width of the textures
         std::uint32_t extent = 0;  ///< number of particles stepped
@@ -49,7 +49,7 @@ class EventList {
     };
 
     /// Creates the textures and programs of the lists.
-    /// \param lists     1 to kEventLists. \param capacity  of the particle system.
+    /// \param lists     1 to kEventLists. \param capacity  the capacity of the particle system.
     /// Errors: kUsage (invalid options), kLimit, kUnsupported, kFailure.
     [[nodiscard]] static Result<EventList> create(std::span<const EventOptions> lists,
                                                   std::uint32_t capacity);
@@ -72,7 +72,7 @@ class EventList {
     /// surface, velocity and identity (shaders/events/event_list.frag). Each list starts in a new row.
     [[nodiscard]] std::span<const GlTexture, 4> textures() const { return list_; }
     /// Returns a texture of one texel: the number of events of the first list in x, of the second in y, and so on. Each
-    /// list stores at most `most` of them.
+    /// list stores at most EventOptions::max_per_step of them.
     [[nodiscard]] const GlTexture& total() const { return counts_[kLevels - 1].texture; }
 
   private:
@@ -98,7 +98,7 @@ class EventList {
     [[nodiscard]] std::uint32_t listWidth() const;
     [[nodiscard]] std::uint32_t longest() const;
     /// Computes the layout for a number of particles. \return rows of all lists.
-    /// \param first_row  of each list; beyond all rows for lists that do not exist.
+    /// \param first_row  receives the first row of each list; a row beyond all others for lists that do not exist.
     std::uint32_t layOut(std::uint32_t particles, std::array<std::uint32_t, kEventLists>& first_row) const;
     void useFilter(const GlProgram& program) const;
     void count(const Step& step) const;

@@ -57,7 +57,7 @@ class EventRecorder : public StepFeature {
     struct Replaced {        // an id that a birth replaced
         std::uint64_t step;  // the last step with this id
         std::uint32_t id;
-        std::uint64_t previous;  // as newest_: the id that this one had replaced
+        std::uint64_t previous;  // entry of the id before this id, numbered like newest_
     };
     EventList list_;
     Outputs outputs_;
@@ -86,7 +86,7 @@ Result<void> EventRecorder::check(const ShaderCollider* collider) const {
 
 void EventRecorder::beforeStep(double begin, double end, std::uint32_t extent,
                                const ShaderCollider* collider) {
-    // Lists concern the previous step, or earlier ones that are pending.
+    // Drop entries that neither a pending list nor the list of the next step can need.
     const std::uint64_t oldest = list_.oldestNumber().value_or(steps_ + 1);
     while (!replaced_.empty() && replaced_.front().step < oldest) {
         replaced_.pop_front();
@@ -119,7 +119,7 @@ Result<std::optional<StepEvents>> EventRecorder::wait(const ParticleSystem& part
 StepEvents EventRecorder::withIds(const ParticleSystem& particles, EventList::Collected collected) const {
     for (ParticleEvent& event : collected.events.events) {
         event.id = particles.idOf(event.index);
-        // Back to the first id that was replaced after the event.
+        // Go back to the first id that was replaced after the event.
         std::uint64_t at = event.index < newest_.size() ? newest_[event.index] : 0;
         while (at > dropped_) {
             const Replaced& one = replaced_[static_cast<std::size_t>(at - 1 - dropped_)];

@@ -13,7 +13,7 @@
 namespace relief {
 
 /// Starts recording events with the next step; nullopt stops it (the default), after which steps have no extra cost.
-/// Recompiles the step if it did not record before, or no longer does. Pending lists are lost.
+/// Recompiles the step if recording starts or stops. Pending lists are lost.
 /// Errors: kUsage (invalid options), kLimit, kUnsupported (too few draw buffers), kFailure.
 [[nodiscard]] Result<void> setEvents(ParticleSystem& particles, const std::optional<EventOptions>& options);
 /// Records several lists, each with its own selection; an event may be in more than one.
@@ -21,7 +21,7 @@ namespace relief {
 [[nodiscard]] Result<void> setEvents(ParticleSystem& particles, std::span<const EventOptions> lists);
 
 /// Lists the events of the last step on the GPU and requests their read-back. Restores the GL state. Collect each
-/// request: until then, the ids of replaced particles are kept in memory.
+/// request, because the ids of replaced particles stay in memory until then.
 /// \param tag  returned with the events, for example the number of the step.
 /// \return false, without effect, if EventList::kInFlightMax lists are pending or events are not recorded.
 bool requestEvents(ParticleSystem& particles, std::uint64_t tag);

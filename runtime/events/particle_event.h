@@ -19,7 +19,7 @@ struct EventOptions {
     bool deaths = false;     ///< deaths by age and by collision (OnCollision::kDie)
     float min_speed = 0.0F;  ///< ignores slower hits; world units/s, ≥ 0
     std::uint32_t max_per_step =
-        65'536;  ///< per step, 1…kCapacityMax; further events, at the highest indices, are dropped
+        65'536;  ///< 1…kCapacityMax; further events, which have the highest indices, are dropped
     std::optional<std::uint32_t> type{};  ///< only events of this type
     std::optional<int> material{};        ///< only hits on this material, see ParticleEvent::material
     friend bool operator==(const EventOptions&, const EventOptions&) = default;

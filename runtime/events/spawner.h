@@ -37,8 +37,8 @@ struct SpawnSettings {
     float lifetime_min = 1.0F;            ///< seconds, > 0; uniform between both limits
     float lifetime_max = 1.0F;
 
-    /// Fraction of the parent's velocity that births inherit, ≥ 0; for hits, of the velocity along the surface, which
-    /// may itself move.
+    /// Fraction of the parent's velocity that births inherit, ≥ 0. For hits, the approach speed along the normal is
+    /// first removed from this velocity.
     float inherit = 0.0F;
     /// Additional speed, uniform in [speed_min, speed_max] plus `kick` times the speed of the hit; world units/s, ≥ 0.
     /// Its direction is around the normal of a hit, or around the velocity of a particle that dies of old age (upwards
@@ -63,8 +63,8 @@ class Spawner {
     /// \param types   of the particle system, for their radii.
     /// \param room    maximum number of births to generate.
     /// \param births  receives the births at its end.
-    /// \return the number of births rejected: no room, above `max_per_step`, or without a finite position or velocity,
-    /// because the event has none.
+    /// \return the number of births rejected because of `room` or `max_per_step`, or because the event has no finite
+    /// position or velocity.
     std::uint64_t spawn(std::span<const ParticleEvent> events, std::span<const ParticleType> types,
                         std::uint64_t room, std::vector<Birth>& births);
     std::uint64_t spawn(const StepEvents& step, std::span<const ParticleType> types, std::uint64_t room,

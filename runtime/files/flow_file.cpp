@@ -14,7 +14,7 @@ namespace relief {
 namespace {
 
 static_assert(std::endian::native == std::endian::little,
-              "raw flows are little-endian and copied as they are");
+              "raw flows are little-endian and are copied without conversion");
 
 Result<void> readNodes(const FlowFile& file, FlowField& flow) {
     const std::string name = quotedPath(file.path);

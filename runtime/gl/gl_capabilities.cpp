@@ -10,8 +10,8 @@
 namespace relief {
 namespace {
 
-/// Returns GL_NO_ERROR if the GL cannot report resets. libepoxy aborts if a GL lacks the called name; the names of
-/// KHR_robustness and EXT_robustness are aliases of the core name, that of ARB_robustness is not.
+/// Returns GL_NO_ERROR if the GL cannot report resets. libepoxy aborts if the GL lacks the called function. It treats
+/// the functions of KHR_robustness and EXT_robustness as aliases of the core function, but not that of ARB_robustness.
 GLenum resetStatus() {
     const bool desktop = epoxy_is_desktop_gl();
     if (epoxy_gl_version() >= (desktop ? 45 : 32) || epoxy_has_gl_extension("GL_KHR_robustness") ||

@@ -111,7 +111,7 @@ struct GlContext::Impl {
     std::string description;
     bool software = false;
 
-    /// Returns "" on success, otherwise the reason of the failure, after releasing everything.
+    /// Returns "" on success. Otherwise releases everything and returns the reason for the failure.
     std::string open(EGLDisplay opened) {
         display = opened;
         if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) != EGL_TRUE) {
@@ -231,12 +231,12 @@ Result<std::unique_ptr<GlContext>> GlContext::create(const GlContextOptions& opt
     std::unique_ptr<GlContext> context(new GlContext);
     Impl& impl = *context->impl_;
     impl.api = options.api;
-    constexpr const char* kCure =
+    constexpr const char* kFix =
         "; install a driver, for example libegl1 with libopengl0 (OpenGL ES: libgles2), libegl-mesa0 and "
         "libgl1-mesa-dri";
     if (const std::string missing = missingGlLibrary(options.api); !missing.empty()) {
         return fail(ErrorCode::kUnsupported,
-                    "no " + impl.apiName() + " context: " + missing + " cannot be loaded" + kCure);
+                    "no " + impl.apiName() + " context: " + missing + " cannot be loaded" + kFix);
     }
     if (options.device) {
         RELIEF_TRY(impl.openDevice(*options.device));
@@ -244,7 +244,7 @@ Result<std::unique_ptr<GlContext>> GlContext::create(const GlContextOptions& opt
     }
     if (const std::string tried = impl.openAny(); !tried.empty()) {
         return fail(ErrorCode::kUnsupported,
-                    "no " + impl.apiName() + " context through EGL (" + tried + ")" + kCure);
+                    "no " + impl.apiName() + " context through EGL (" + tried + ")" + kFix);
     }
     return context;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// GPU failures that correct calls can cause: a reset, out of memory, textures beyond the size limit. All functions need
-// a current context and consume the GL's error flags.
+// GPU failures that occur even if all calls are valid: a reset, out of memory, textures beyond the size limit. All
+// functions except checkContext() need a current context. forgetGlErrors() and checkAllocated() clear the GL's error
+// flags.
 #pragma once
 
 #include <cstdint>

@@ -25,7 +25,7 @@ class GlFence {
     /// Flushes the commands and waits at most for the given time.
     /// \return whether the GPU has passed the fence; false also if the GL reports an error.
     [[nodiscard]] bool passed(GLuint64 nanoseconds = 0) const;
-    /// Returns true if there is nothing to wait for: never inserted, or passed() met a GL error.
+    /// Returns true if there is nothing to wait for: never inserted, or passed() failed with a GL error.
     [[nodiscard]] bool failed() const;
 
   private:

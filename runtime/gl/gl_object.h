@@ -63,7 +63,7 @@ class GlProgram : public GlName<gl_detail::deleteProgram> {
     using GlName::GlName;
     /// Makes the program current, as required by set().
     void use() const;
-    /// Returns the location of a uniform; −1 if the program does not use it, which the GL's setters ignore.
+    /// Returns the location of a uniform; −1, which the GL's setters ignore, if the program does not use it.
     [[nodiscard]] GLint location(const char* uniform) const;
     /// Sets a uniform; no effect if the program does not use it.
     void set(const char* uniform, bool value) const;

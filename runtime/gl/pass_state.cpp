@@ -18,7 +18,7 @@ struct Switch {
     bool wanted;
 };
 
-// All are off during a pass, except that vertex shaders set point sizes (always the case on GL ES).
+// All are off during a pass, except GL_PROGRAM_POINT_SIZE, which GL ES implies.
 constexpr Switch kSwitches[] = {
     {GL_BLEND, false, false},
     {GL_DEPTH_TEST, false, false},
@@ -62,7 +62,7 @@ void set(GLenum name, bool on) {
     }
 }
 
-bool known(const Switch& one, bool gles) {
+bool supported(const Switch& one, bool gles) {
     if (one.name == GL_PRIMITIVE_RESTART_FIXED_INDEX) {
         return gles;  // only from OpenGL 4.3 on
     }
@@ -112,7 +112,7 @@ PassState::PassState() : saved_(std::make_unique<Saved>()) {
     }
     glActiveTexture(static_cast<GLenum>(s.active_texture));
     for (std::size_t i = 0; i < s.switches.size(); ++i) {
-        if (known(kSwitches[i], gles)) {
+        if (supported(kSwitches[i], gles)) {
             s.switches[i] = glIsEnabled(kSwitches[i].name);
             set(kSwitches[i].name, kSwitches[i].wanted);
         }
@@ -170,7 +170,7 @@ PassState::~PassState() {
     }
     glBindBuffer(GL_UNIFORM_BUFFER, name(s.uniform_buffer));  // binding a block also sets the generic binding
     for (std::size_t i = 0; i < s.switches.size(); ++i) {
-        if (known(kSwitches[i], gles)) {
+        if (supported(kSwitches[i], gles)) {
             set(kSwitches[i].name, s.switches[i] == GL_TRUE);
         }
     }

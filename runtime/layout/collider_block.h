@@ -36,7 +36,7 @@ struct BlockMap {
 /// Returns lines for makeProgram for a single collider. They exclude code that no map needs, because a GL driver may
 /// execute every branch for every map. A program is therefore specific to a collider.
 [[nodiscard]] std::string colliderDefines(std::span<const PlacedMap> maps, const MapLayout& layout);
-/// Returns the lines for any maps: widths of the textures, formats and flags.
+/// Returns the lines that both single colliders and worlds need: widths of the textures, formats and flags.
 [[nodiscard]] std::string mapDefines(std::span<const PlacedMap> maps, const MapLayout& layout);
 
 }  // namespace relief

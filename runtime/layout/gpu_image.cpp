@@ -19,11 +19,11 @@ constexpr std::array<TexelFormat, kTexelKinds> kFormats = {{
 
 constexpr std::byte kLastIndex{2 * kNormalHalfRange};
 
-/// Returns the map's texels, modified if that saves the shader a test per particle. Votes are unchanged:
+/// Returns the map's texels, with changes that save the shader tests but do not change any vote:
 ///
 /// - a normal index of 255, which decodes like 254, becomes 254;
-/// - in front-back maps of planes, an empty surface next to a non-empty one gets the other's plane, because two equal
-///   votes count once;
+/// - in front-back maps of planes, if only one surface of a texel is empty, it gets the plane of the other, because two
+///   equal votes count once;
 /// - texels of float maps are unchanged.
 std::vector<std::byte> shaderTexels(const DepthMap& map) {
     std::vector<std::byte> texels = map.texels;

@@ -39,7 +39,7 @@ class TexelLayout {
     void addRectangle(std::int32_t width, std::int32_t height) {
         rectangles_.push_back({0, 0, width, height});
     }
-    /// Chooses the smallest power of two as width for which the height does not exceed it. Returns false if that is
+    /// Chooses the smallest power of two that the height does not exceed as the width. Returns false if this width is
     /// above `side_max`.
     [[nodiscard]] bool finish(std::int32_t side_max);
 

@@ -34,7 +34,7 @@ namespace relief {
 
 struct AnimatedColliderOptions {
     std::uint32_t resolution = 512;  ///< texels along the longest side of the box
-    /// Sides of a box that fits every pose, object units; nullopt: that of poseExtent().
+    /// Sides of a box that contains every pose, object units; nullopt: PoseExtent::box_size of the mesh.
     std::optional<glm::vec3> box_size{};
 };
 
@@ -56,8 +56,7 @@ class AnimatedCollider {
     /// Treats the last change of setPose() as a jump (LiveCollider::settle()). WorldTextures handles jumps of the body.
     void settle() { live_.settle(); }
 
-    /// Returns the pose to pass to WorldTextures: that of the centre of the box. \param body  pose of the mesh's
-    /// origin.
+    /// Returns the pose of the centre of the box, for WorldTextures. \param body  pose of the mesh's origin.
     [[nodiscard]] Pose placed(const Pose& body) const;
 
     /// Calls LiveCollider::update().
@@ -85,7 +84,7 @@ class AnimatedCollider {
     glm::vec3 box_size_;
     SkinPass pass_;
     LiveCollider live_;
-    std::optional<MeshPose> pose_;  // the last one set
+    std::optional<MeshPose> pose_;  // the last pose set
     glm::vec3 middle_{0.0F};
 };
 

@@ -18,14 +18,14 @@ constexpr int kMotionXyUnit = 0;
 constexpr int kMotionZUnit = 1;
 constexpr int kTexelUnit = 2;
 
-// As in baked tight boxes: a margin of free space and a minimum thickness, relative to the longest side.
+// Margin of free space and minimum thickness, relative to the longest side, as in baked tight boxes.
 constexpr float kPadding = 1e-4F;
-constexpr float kThinnest = 1e-2F;
+constexpr float kThicknessMin = 1e-2F;
 /// Minimum texels of a short side.
-constexpr std::uint32_t kLeastTexels = 16;
+constexpr std::uint32_t kTexelsMin = 16;
 
 /// Returns true if a vertex lies in the volume of the map.
-bool holds(const DepthMap& map, const glm::vec3& p) {
+bool contains(const DepthMap& map, const glm::vec3& p) {
     const glm::vec3 q = map.object_to_map.apply(p);
     const glm::vec3 rim(1.0F / static_cast<float>(map.width), 1.0F / static_cast<float>(map.height), 0.0F);
     constexpr float kTexelRounding = 1e-5F;
@@ -60,7 +60,7 @@ Result<Collider> liveFrames(const Bounds& box, std::uint32_t resolution, LiveSiz
     }
     const glm::vec3 middle = box.center();
     const glm::vec3 half =
-        glm::max(0.5F * box.size() + kPadding * longest, glm::vec3(0.5F * kThinnest * longest));
+        glm::max(0.5F * box.size() + kPadding * longest, glm::vec3(0.5F * kThicknessMin * longest));
     // Right, up and away, for a viewer who looks along the last axis.
     const glm::vec3 x(1, 0, 0);
     const glm::vec3 y(0, 1, 0);
@@ -69,10 +69,10 @@ Result<Collider> liveFrames(const Bounds& box, std::uint32_t resolution, LiveSiz
     const float longest_half = std::max({half.x, half.y, half.z});
     // Returns the texels along a direction of the box.
     const auto texels = [&](const glm::vec3& axis) {
-        const float share = glm::dot(glm::abs(axis), half) / longest_half;
-        const auto count = static_cast<std::uint32_t>(std::ceil(share * static_cast<float>(resolution)));
+        const float fraction = glm::dot(glm::abs(axis), half) / longest_half;
+        const auto count = static_cast<std::uint32_t>(std::ceil(fraction * static_cast<float>(resolution)));
         return size == LiveSize::kEqual ? resolution
-                                        : std::clamp(count, std::min(kLeastTexels, resolution), resolution);
+                                        : std::clamp(count, std::min(kTexelsMin, resolution), resolution);
     };
     Collider collider;
     collider.bounds = box;
@@ -138,7 +138,7 @@ Result<void> LiveCollider::setPositions(std::span<const glm::vec3> positions) {
     for (const DepthMap& map : frames_.maps) {
         for (std::size_t i = 0; map.encloses && i < positions.size(); ++i) {
             const glm::vec3& p = positions[i];
-            if (std::isfinite(p.x + p.y + p.z) && !holds(map, p)) {
+            if (std::isfinite(p.x + p.y + p.z) && !contains(map, p)) {
                 return fail(ErrorCode::kUsage,
                             "vertex " + std::to_string(i) +
                                 " leaves the box of the live collider's maps; choose a larger box");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A deforming collider: a mesh with moving vertices whose depth maps the GPU renders before each step of the particles
-// (Kolb, Latta and Rezk-Salama 2004, section 5). For each texel it also stores how far the surface has moved since the
+// (Kolb, Latta and Rezk-Salama 2004, section 5). For each texel the GPU also stores the motion of the surface since the
 // previous update, for the relative velocity at contacts.
 //
 //     LiveCollider live = *LiveCollider::create(positions, triangles, *liveFrames(box));
@@ -42,7 +42,7 @@ class LiveCollider {
     /// \param positions, triangles  the initial mesh, as required by GpuMesh::create.
     /// \param frames  maps from liveFrames(). The box of a map must contain the mesh at all times: geometry outside is
     /// clipped, and a map that encloses everything treats it as free space.
-    /// Errors: those of GpuMesh and DepthMapRenderer; kUsage (other maps).
+    /// Errors: those of GpuMesh and DepthMapRenderer; kUsage (maps that are not from liveFrames()).
     [[nodiscard]] static Result<LiveCollider> create(std::span<const glm::vec3> positions,
                                                      std::span<const glm::uvec3> triangles, Collider frames);
 
@@ -56,7 +56,7 @@ class LiveCollider {
     /// copies them in command order; values are not checked. Errors: kUsage (called twice, or as
     /// GpuMesh::setPositions).
     [[nodiscard]] Result<void> setPositions(GLuint buffer, std::size_t offset = 0);
-    /// Treats the last change as a jump: the next update() shows no motion.
+    /// Treats the last change as a jump: the next update() records no motion.
     void settle();
 
     /// Renders maps and motion into their textures. Call it before every step of the particles: the step assumes that

@@ -17,7 +17,7 @@ namespace {
 constexpr int kPoseUnit = 0;
 constexpr int kInfluencesUnit = 1;
 constexpr int kDeltasUnit = 2;
-/// log2 width of the widest texture: the minimum maximum size in OpenGL ES 3.0.
+/// log2 of the maximum width, 2048 texels, which every OpenGL ES 3.0 context supports.
 constexpr int kWidestShift = 11;
 
 struct RestVertex {
@@ -127,7 +127,7 @@ void SkinPass::run(const MeshPose& pose, const glm::vec3& origin) {
     }
     const PassState state;
     useTexture(kPoseUnit, pose_);
-    // Upload through a new buffer: the previous step may still read the texture, and this must not wait for it.
+    // Upload through a new buffer, so that the upload does not wait for a step that still reads the texture.
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, upload_.name());
     glBufferData(GL_PIXEL_UNPACK_BUFFER, static_cast<GLsizeiptr>(texels_.size() * sizeof(glm::vec4)),
                  texels_.data(), GL_STREAM_DRAW);
