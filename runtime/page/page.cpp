@@ -73,7 +73,7 @@ std::string scriptText(const Json& json) {
     return safe;
 }
 
-/// Maximum data of a page in bytes, before encoding; browsers fail above.
+/// Maximum data of a page in bytes, before encoding; browsers fail to load larger pages.
 constexpr std::uint64_t kViewBytesMax = std::uint64_t{128} << 20;
 
 /// Returns a collider for a page: its block, textures and GLSL (gpu_image.h), and facts.
@@ -105,16 +105,16 @@ Result<void> checkSize(const Page& page) {
     for (const auto& [name_in_scene, file] : page.files) {
         rest += file.size();
     }
-    const std::uint64_t of_mesh =
+    const std::uint64_t mesh_bytes =
         page.mesh ? page.mesh->vertices.size_bytes() + page.mesh->triangles.size_bytes() : 0;
-    if (rest + of_mesh <= kViewBytesMax) {
+    if (rest + mesh_bytes <= kViewBytesMax) {
         return {};
     }
     const std::string limit = "; the maximum of a page is " + megabytes(kViewBytesMax);
     if (rest <= kViewBytesMax) {
         return fail(ErrorCode::kLimit,
                     page.mesh->name + " has " + std::to_string(page.mesh->triangles.size()) + " triangles, " +
-                        megabytes(of_mesh) + limit + "; simplify the mesh, or omit the page or the mesh");
+                        megabytes(mesh_bytes) + limit + "; simplify the mesh, or omit the page or the mesh");
     }
     return fail(ErrorCode::kLimit, page.name + " has " + megabytes(rest) + limit +
                                        "; bake with a smaller --budget, or smaller maps");

@@ -22,15 +22,15 @@ namespace relief {
 /// Returns the page for a collider, without data.
 [[nodiscard]] std::string viewPage();
 
-/// Returns the page that plays scenes and worlds, without data: the file named by RELIEF_VIEW_PAGE, else that of the
-/// installation, else that of a build next to this one.
+/// Returns the page that plays scenes and worlds, without data: the file named by RELIEF_VIEW_PAGE, else the file of the
+/// installation, else the file of a web build next to this build.
 /// Errors: kUnsupported (not found), kInvalidInput (of another release); those of readForPage().
 [[nodiscard]] Result<std::string> playerPage(FileGuard& files);
 
 /// Reads a file for a page. Errors: those of FileGuard::reads() and readFile().
 [[nodiscard]] Result<std::string> readForPage(FileGuard& files, const std::filesystem::path& path);
 
-/// Encodes bytes as in RFC 4648, with padding and without line breaks.
+/// Encodes bytes in Base64 (RFC 4648), with padding and without line breaks.
 [[nodiscard]] std::string base64(std::span<const std::byte> bytes);
 
 /// Returns the path of a file relative to the folder of a scene or world.
@@ -50,8 +50,9 @@ struct Page {
     std::optional<PageMesh> mesh = {};      ///< source mesh of the collider
     Json check = nullptr;                   ///< the report of `relief check`
     std::optional<std::string> scene = {};  ///< text of a scene.toml
-    std::string shows = {};  ///< name in `files` of the collider in the panel; empty: `container`
-    std::vector<std::byte> container = {};          ///< collider in the panel
+    /// Name in `files` of the collider that the panel describes; empty: `container`.
+    std::string shows = {};
+    std::vector<std::byte> container = {};          ///< collider that the panel describes
     std::map<std::string, std::string> files = {};  ///< keyed by their names in the scene
 
     /// Inserts the data into a page. Equal contents give equal bytes.

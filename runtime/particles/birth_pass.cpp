@@ -12,7 +12,7 @@ namespace relief {
 namespace {
 
 // 11.5 MB, below the maximum storage block size of every GL.
-constexpr std::size_t kDispatchedAtOnce = std::size_t{1} << 18;
+constexpr std::size_t kBirthsPerDispatch = std::size_t{1} << 18;
 
 constexpr GLsizei kStride = sizeof(BirthPass::Newborn);
 static_assert(kStride == 11 * sizeof(float));
@@ -80,10 +80,10 @@ void BirthPass::dispatch(std::span<const Newborn> newborn, const Target& target)
     ImageUnits::write(2, target.birth);
     StorageUnits::bind(0, newborn_);
     StorageUnits::order();  // renderers may still read the textures
-    for (std::size_t first = 0; first < newborn.size(); first += kDispatchedAtOnce) {
-        const auto some = newborn.subspan(first, std::min(kDispatchedAtOnce, newborn.size() - first));
-        upload(GL_SHADER_STORAGE_BUFFER, some);
-        const auto count = static_cast<GLuint>(some.size());
+    for (std::size_t first = 0; first < newborn.size(); first += kBirthsPerDispatch) {
+        const auto batch = newborn.subspan(first, std::min(kBirthsPerDispatch, newborn.size() - first));
+        upload(GL_SHADER_STORAGE_BUFFER, batch);
+        const auto count = static_cast<GLuint>(batch.size());
         program_.set("u_count", count);
         glDispatchCompute((count + kBirthGroup - 1) / kBirthGroup, 1, 1);
     }

@@ -36,7 +36,7 @@ class BirthPass {
     /// Errors: kFailure (shader compilation).
     [[nodiscard]] static Result<BirthPass> create(const glm::uvec2& size, StepPath path);
 
-    /// Call it inside a PassState.
+    /// Writes the particles. Call it within a PassState.
     void run(std::span<const Newborn> newborn, const Target& target) const;
 
   private:

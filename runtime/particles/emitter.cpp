@@ -25,13 +25,15 @@ std::uint64_t wholeCount(double count) {
 
 /// Returns the first problem that applies, or nullptr.
 const char* firstOf(std::initializer_list<std::pair<bool, const char*>> problems) {
-    for (const auto& [there, problem] : problems) {
-        if (there) {
+    for (const auto& [applies, problem] : problems) {
+        if (applies) {
             return problem;
         }
     }
     return nullptr;
 }
+
+static_assert(kPointsMax == 4194304);  // as in the message below
 
 const char* problemOf(const EmitterSettings& s) {
     const bool box = s.shape == EmitterShape::kBox || s.shape == EmitterShape::kPoint;
@@ -47,8 +49,7 @@ const char* problemOf(const EmitterSettings& s) {
     const EmitterAim aim = s.aim.value_or(EmitterAim{.direction = glm::vec3(1.0F)});
     return firstOf({
         {box && !ordered(s.box_min, s.box_max), "box_min must be finite and not above box_max"},
-        {points && (count == 0 || count > kPointsMax),
-         "points must contain at least one point, and at most as many as a file may"},
+        {points && (count == 0 || count > kPointsMax), "points must contain 1 to 4194304 points"},
         {points && !s.points.normals.empty() && s.points.normals.size() != count,
          "points must have as many normals as positions, or none"},
         {s.shape == EmitterShape::kDisc && unitVector(s.normal) == glm::vec3(0.0F), "normal must not be 0"},
@@ -147,11 +148,11 @@ std::uint64_t Emitter::emit(double dt, std::uint64_t room, std::vector<Birth>& b
         wholeCount(static_cast<double>(due.bursts - std::min(due.bursts, bursts_)) *
                    static_cast<double>(settings_.burst));
     const std::uint64_t wanted = steady_due + burst_due;
-    const bool nowhere = settings_.shape == EmitterShape::kSurface && !(settings_.surface->area() > 0.0);
-    const std::uint64_t made = nowhere ? 0 : std::min(wanted, room);
+    const bool no_area = settings_.shape == EmitterShape::kSurface && !(settings_.surface->area() > 0.0);
+    const std::uint64_t made = no_area ? 0 : std::min(wanted, room);
 
-    // Output births in order of time. Before burst j, output the births by rate up to its time: their number does not
-    // depend on the step boundaries and never exceeds that of this step.
+    // Output births in order of time. Before burst j, output the births of `rate` up to the time of the burst. Their
+    // number does not depend on the step boundaries, and is at most the number due in this step.
     const std::size_t first = births.size();
     if (births.capacity() < first + made) {
         births.reserve(std::max(first + static_cast<std::size_t>(made), 2 * births.capacity()));

@@ -18,7 +18,7 @@
 
 namespace relief {
 
-/// Emitting shapes. Sampling is uniform in volume, over the area, or among the points.
+/// Emitting shapes. Births are uniform over the volume, the area or the list of points.
 enum class EmitterShape : std::uint8_t {
     kBox,     ///< box_min … box_max
     kSphere,  ///< the ball around center
@@ -59,14 +59,14 @@ struct EmitterSettings {
     float radius = 0.0F;                 ///< sphere, shell and disc, ≥ 0
     glm::vec3 normal{0.0F, 1.0F, 0.0F};  ///< disc, nonzero
     PointList points;                    ///< kPoints: at least one
-    BirthSurfaceValue surface;           ///< kSurface: nonzero area; its initial position
+    BirthSurfaceValue surface;           ///< kSurface: in its initial position, with a nonzero area
 
     double start = 0.0;  ///< delay before the first birth, seconds, ≥ 0
     double rate = 0.0;   ///< births per second, ≥ 0
     /// Emission time after the start, seconds, > 0.
     double duration = std::numeric_limits<double>::infinity();
     std::uint64_t burst = 0;   ///< additional births at the start
-    double burst_every = 0.0;  ///< seconds between bursts, ≥ 0; 0: only the one at the start
+    double burst_every = 0.0;  ///< seconds between bursts, ≥ 0; 0: one burst, at the start
 
     glm::vec3 velocity{0.0F};         ///< common to all births
     glm::vec3 velocity_spread{0.0F};  ///< added, each component uniform in ± velocity_spread
@@ -74,8 +74,8 @@ struct EmitterSettings {
     float lifetime_min = 1.0F;        ///< seconds; lifetimes are uniform between both limits
     float lifetime_max = 1.0F;
     std::uint32_t type = 0;
-    /// True: births by rate get an age. Birth n occurs at start + n / rate and lives for the rest of its step. False:
-    /// all births of a step start at its beginning.
+    /// True: birth n of `rate` occurs at start + n / rate and gets an age, so that it moves for the rest of its step.
+    /// False: all births of a step occur at its beginning.
     bool interpolate = true;
 };
 
@@ -88,26 +88,26 @@ class Emitter {
     /// \param stream    emitters with the same seed and different streams are independent.
     Emitter(EmitterSettings settings, std::uint64_t seed, std::uint64_t stream = 0);
 
-    /// Generates the births of the next `dt` seconds in order of time; at equal times, births by rate precede a burst.
+    /// Generates the births of the next `dt` seconds in order of time; at equal times, births of `rate` precede a burst.
     /// After time t, with s = min(t − start, duration), a total of burst (1 + ⌊s / burst_every⌋) + ⌊rate · s⌋ births
     /// are due, independent of the step lengths; a burst at the end of the duration is omitted. The n-th birth does not
     /// depend on the step lengths either, except for its age.
     /// \param room    maximum number of births to generate: the free capacity of the particle system.
     /// \param births  receives the births at its end.
-    /// \return the number of births due but without room; they are not made up for later.
+    /// \return the number of due births that exceed `room`; they are dropped.
     std::uint64_t emit(double dt, std::uint64_t room, std::vector<Birth>& births);
     /// Returns whether births are due in the next `dt` seconds.
     [[nodiscard]] bool isDue(double dt) const;
 
-    /// Moves the surface of kSurface for the next emit(), see BirthSurface::move(). While its area is 0, no birth has
-    /// room.
+    /// Moves the surface of kSurface for the next emit(), see BirthSurface::move(). While its area is 0, emit() drops
+    /// all births.
     void moveSurface(std::span<const glm::vec3> before, std::span<const glm::vec3> now, double seconds) {
         if (settings_.surface) {
             settings_.surface->move(before, now, seconds);
         }
     }
-    /// Returns the velocities of the emitting points of the last emit()'s births, for carry(): one for each with
-    /// kSurface, else empty.
+    /// Returns the surface velocity at each birth of the last emit(), for carry(); empty for all shapes except
+    /// kSurface.
     [[nodiscard]] std::span<const glm::vec3> placeVelocities() const { return place_velocities_; }
 
     [[nodiscard]] const EmitterSettings& settings() const { return settings_; }
@@ -135,7 +135,7 @@ class Emitter {
     float opening_ = 0.0F;    // oneMinusCosine() of the cone
     double elapsed_ = 0.0;    // seconds
     double remainder_ = 0.0;  // rounding error of elapsed_
-    // Requested so far, including those without room.
+    // Due so far, including dropped births.
     std::uint64_t steady_ = 0;
     std::uint64_t bursts_ = 0;
     std::vector<glm::vec3> place_velocities_;

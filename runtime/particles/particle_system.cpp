@@ -25,18 +25,18 @@ constexpr float kNoGround = -1e30F;
 constexpr std::uint32_t kIdMask = kBirthTypeMax;
 
 Result<void> checkTypes(std::span<const ParticleType> types) {
-    const auto share = [](float value) { return value >= 0.0F && value <= 1.0F; };
+    const auto fraction = [](float value) { return value >= 0.0F && value <= 1.0F; };
     const auto finite = [](float value, float low) { return value >= low && std::isfinite(value); };
     for (const ParticleType& type : types) {
-        if (!(finite(type.mass, kParticleMassMin) && finite(type.radius, 0.0F) && share(type.restitution) &&
-              std::isfinite(type.gravity) && type.collides_with <= kCollidesWithAll && share(type.friction) &&
+        if (!(finite(type.mass, kParticleMassMin) && finite(type.radius, 0.0F) &&
+              fraction(type.restitution) && std::isfinite(type.gravity) &&
+              type.collides_with <= kCollidesWithAll && fraction(type.friction) &&
               finite(type.friction_threshold, 0.0F) && finite(type.lifetime_loss, 0.0F))) {
             return fail(
                 ErrorCode::kUsage,
                 "a particle type needs finite numbers: a mass of at least 1e-15; a radius, friction "
-                "threshold "
-                "and lifetime loss of at least 0; restitution and friction from 0 to 1. It may only collide "
-                "with groups 0 to 7 of the bodies and with the ground");
+                "threshold and lifetime loss of at least 0; restitution and friction from 0 to 1. It may "
+                "only collide with body groups 0 to 7 and with the ground");
         }
     }
     return {};
@@ -192,7 +192,7 @@ Result<void> ParticleSystem::setGround(std::optional<float> height) {
 
 Result<void> ParticleSystem::setTypes(std::span<const ParticleType> types) {
     if (types.empty() || types.size() > kParticleTypesMax) {
-        return fail(ErrorCode::kUsage, std::to_string(types.size()) + " types of particles; choose 1 to " +
+        return fail(ErrorCode::kUsage, std::to_string(types.size()) + " particle types; choose 1 to " +
                                            std::to_string(kParticleTypesMax));
     }
     RELIEF_TRY(checkTypes(types));
@@ -253,7 +253,7 @@ Result<std::size_t> ParticleSystem::spawn(std::span<const Birth> births) {
         }
         const float born = now - birth.age;
         const float death = born + birth.lifetime;
-        // The same free flight as in a step, for the particle's age.
+        // Free flight for the particle's age, with the formulas of a step.
         const ParticleType& type = types_[std::min<std::size_t>(birth.type, types_.size() - 1)];
         const float drag = dragRate(forces_, type);
         const glm::vec3 velocity =

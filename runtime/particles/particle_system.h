@@ -11,7 +11,7 @@
 // Order of a step: births are written into the textures (birth_pass.h); one pass over the occupied rows removes dead
 // particles, moves the others and collides them (shaders/particles/step.glsl); the CPU frees the indices of the dead.
 //
-// Time: the CPU counts in double. The GPU uses floats relative to an epoch, which advances every epoch_seconds, so that
+// Time: the CPU uses doubles. The GPU uses floats relative to an epoch, which advances every epoch_seconds, so that
 // a float resolves half a millisecond even after days. A particle dies in the first step that ends at or after its time
 // of death. CPU and GPU agree on this step because both compare the same two floats, computed by the CPU.
 #pragma once
@@ -97,8 +97,8 @@ class ParticleSystem {
     [[nodiscard]] static Result<ParticleSystem> create(const ParticleSystemOptions& options = {});
 
     /// Sets the colliders for subsequent steps. Particles are in the object space of a single collider, or in the world
-    /// space of several bodies. The next step compiles a program for them, as after any change of what it uses: the
-    /// number of types, the first radius, collision mask or sweep, features.
+    /// space of several bodies. The next step compiles a program for the colliders. A step also compiles a program if
+    /// the features, the number of types, or the use of radii, collision masks or sweeps has changed.
     /// \param collider  must outlive its use by the system; null: none.
     /// Errors: those of StepFeature::check(); the colliders are then unchanged.
     [[nodiscard]] Result<void> setCollider(const ShaderCollider* collider);
@@ -188,7 +188,7 @@ class ParticleSystem {
     [[nodiscard]] std::optional<glm::vec3> featureWind() const;
     [[nodiscard]] Result<void> checkFeatures(const ShaderCollider* collider) const;
     [[nodiscard]] StepVariant stepVariant() const;
-    /// Compiles the step for what it uses now, unless that is done.
+    /// Compiles the program for the current settings, unless it is already compiled.
     [[nodiscard]] Result<void> compileStep();
     [[nodiscard]] float clockOf(double time) const { return static_cast<float>(time - epoch_); }
     void setEpochForward();

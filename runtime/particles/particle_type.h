@@ -24,7 +24,7 @@ struct ParticleType {
     float friction_threshold = 0.0F;  ///< no friction below this speed, world units/s
     OnCollision on_collision = OnCollision::kBounce;
     float lifetime_loss = 0.0F;  ///< seconds of lifetime lost in each step in contact, ≥ 0
-    std::uint32_t collides_with = kCollidesWithAll;  ///< bit mask of what it collides with
+    std::uint32_t collides_with = kCollidesWithAll;  ///< bit mask of body groups and the ground
 };
 
 inline constexpr std::size_t kParticleTypesMax = 16;

@@ -11,7 +11,7 @@ namespace relief {
 std::uint32_t Pcg32::below(std::uint32_t count) {
     std::uint64_t product = std::uint64_t{next()} * count;
     if (static_cast<std::uint32_t>(product) < count) {
-        // 2^32 mod count: the number of products to reject for an even distribution.
+        // 2^32 mod count: the number of products to reject for a uniform distribution.
         const std::uint32_t excess = (0U - count) % count;
         while (static_cast<std::uint32_t>(product) < excess) {
             product = std::uint64_t{next()} * count;

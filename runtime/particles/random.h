@@ -34,7 +34,7 @@ class Pcg32 {
     /// Returns a uniform number between two limits, both included.
     float between(float low, float high) {
         const float t = uniform();
-        // This form cannot overflow, as high − low could; the clamp absorbs rounding.
+        // Unlike high − low, this form cannot overflow. The clamp absorbs rounding.
         return std::clamp((1.0F - t) * low + t * high, low, high);
     }
     /// Returns a uniform integer in 0 … count − 1, without bias (Lemire 2019).
@@ -55,7 +55,7 @@ class Pcg32 {
 /// Returns a standard normal number, by Marsaglia's polar method. Its tails end at ±8.
 [[nodiscard]] float standardNormal(Pcg32& random);
 
-/// Returns 1 − cos of an angle in degrees, 0…180, accurate in double precision also for small angles.
+/// Returns 1 − cos of an angle in degrees, 0…180, to double precision even for small angles.
 [[nodiscard]] double oneMinusCosine(double degrees);
 
 /// Returns a direction in a cone around +z, uniform over its solid angle.

@@ -22,19 +22,18 @@ class StepFeature {
     StepFeature& operator=(const StepFeature&) = delete;
     virtual ~StepFeature() = default;
 
-    /// Returns lines for makeProgram; they make shaders/particles/step.frag include the layer's own file.
+    /// Returns `#define` lines for makeProgram(); they make shaders/particles/step.frag include the layer's GLSL.
     [[nodiscard]] virtual std::string defines() const = 0;
     /// Returns whether the step reads the collider's materials for this feature.
     [[nodiscard]] virtual bool readsMaterials() const { return false; }
-    /// Fails if the feature does not support this collider; null: none.
+    /// Fails if the feature does not support this collider. \param collider  null: none.
     [[nodiscard]] virtual Result<void> check(const ShaderCollider* /*collider*/) const { return {}; }
 
     /// Connects the program. Called once after linking; the program is current.
     virtual void attach(const GlProgram& /*program*/) const {}
     /// Binds the inputs of a step that ends at `time`, seconds; the program is current.
     virtual void bind(const GlProgram& /*program*/, double /*time*/) const {}
-    /// Returns the textures that the step writes in addition to the state, in the order of the program's outputs from 2
-    /// on.
+    /// Returns the textures that the step writes in addition to the state: outputs 2, 3, … of the program.
     [[nodiscard]] virtual std::span<const GlTexture> outputs() const { return {}; }
     /// Returns the air velocity that the feature applies in place of Forces::wind, if any.
     [[nodiscard]] virtual std::optional<glm::vec3> wind() const { return std::nullopt; }

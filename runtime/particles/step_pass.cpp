@@ -17,8 +17,8 @@ namespace {
 /// bytes. The cost of more maps was not measured; each group of 64 particles makes a copy.
 constexpr int kTourMapsMax = 64;
 
-/// Returns true if lanes should advance independently (shaders/collider/collider_tour.glsl). This gains nothing for
-/// single points; the points of a ball are queried in loops in either case.
+/// Returns true if lanes should advance independently (shaders/collider/collider_tour.glsl). Only sweeps gain from it:
+/// without a sweep a step queries one point, and the points of a ball are queried in loops in either case.
 bool toursMaps(const StepVariant& variant) {
     return variant.compute && variant.collider != nullptr && !variant.radius && variant.sweep &&
            variant.collider->bodyCount() == 0 && variant.collider->mapCount() <= kTourMapsMax;

@@ -30,7 +30,7 @@ struct Forces {
 /// \param mass  > 0
 [[nodiscard]] float stokesRate(float viscosity, float radius, float mass);
 
-/// Parameters of compilation. A change of any member requires another program.
+/// Compile-time parameters. A change of any member requires another program.
 struct StepVariant {
     const ShaderCollider* collider = nullptr;       ///< null: only the floor is solid
     std::vector<const StepFeature*> features = {};  ///< features with outputs, in order
@@ -81,8 +81,8 @@ class StepPass {
     void use(const Values& values) const;
     /// Steps the particles in the first `rows` rows of `width` texels into a framebuffer's textures. Call use() first.
     void draw(GLuint framebuffer, std::uint32_t width, std::uint32_t rows) const;
-    /// Likewise with StepVariant::compute: writes to image units 0 (positions) and 1 (velocities), and the features'
-    /// outputs to the next ones.
+    /// Like draw(), for StepVariant::compute. Writes to image units 0 (positions), 1 (velocities) and the following
+    /// ones (outputs of the features).
     void dispatch(std::uint32_t width, std::uint32_t rows) const;
     [[nodiscard]] const StepVariant& variant() const { return variant_; }
     [[nodiscard]] const GlProgram& program() const { return program_; }

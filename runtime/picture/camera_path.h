@@ -17,10 +17,10 @@ struct CameraKey {
     friend bool operator==(const CameraKey&, const CameraKey&) = default;
 };
 
-/// Interpolates eye, target and fov by a cubic Catmull-Rom spline with non-uniform times: the slope at a key is that of
-/// the line between its neighbours (at the ends, between the last two keys). The camera rests before the first key and
-/// after the last one. fov is clamped to 1…170. An eye at its target, or directly above or below it, is moved slightly
-/// towards +z, so that the up direction is defined. Clip planes keep their defaults.
+/// Interpolates eye, target and fov by a cubic Catmull-Rom spline with non-uniform times: the slope at a key is the
+/// slope of the line between its neighbours (for the first and last key, between the key and its neighbour). The camera
+/// rests before the first key and after the last one. fov is clamped to 1…170. An eye at its target, or directly above
+/// or below it, is moved slightly towards +z, so that the up direction is defined. Clip planes keep their defaults.
 /// \param keys  at least one, with ascending times.
 [[nodiscard]] Camera cameraAt(std::span<const CameraKey> keys, double time);
 

@@ -16,7 +16,7 @@ namespace {
 constexpr ShaderCollider::Binding kColliderBinding{0, 0};
 constexpr int kInputUnit = 3;  // after the three units of the collider
 
-constexpr int kVoxelsOfSide = 40;  // along the longest side of the collider
+constexpr int kVoxelsPerSide = 40;  // along the longest side of the collider
 constexpr int kSkyRays = 16;
 constexpr float kSunBiasTexels = 1.5F;
 
@@ -55,7 +55,7 @@ Result<ColliderLight> ColliderLight::create(const ColliderView& collider) {
     return light;
 }
 
-// Places the plane of the map beyond the collider, with a square that covers all of it.
+// Places the plane of the map between the sun and the collider, with a square that covers the whole collider.
 void ColliderLight::frameSun() {
     const glm::vec3 sun = sunDirection();
     sun_across_ = glm::normalize(glm::cross(glm::vec3(0.0F, 1.0F, 0.0F), sun));
@@ -67,17 +67,18 @@ void ColliderLight::frameSun() {
     sun_corner_ = collider_.bounds.center() + reach(sun) * sun - 0.5F * side * (sun_across_ + sun_along_);
 }
 
-// The collider shades the sky sideways and below, up to the reach of the shade, but not above.
+// The collider occludes the sky beside and below it, within kSkyReach times its longest side, but not above it.
 void ColliderLight::frameVolumes() {
     const float side = collider_.bounds.longestSide();
-    voxel_ = side / static_cast<float>(kVoxelsOfSide);
+    voxel_ = side / static_cast<float>(kVoxelsPerSide);
     const auto frame = [&](Volume& volume, const glm::vec3& low, const glm::vec3& high) {
         volume.first = low;
         volume.size = glm::ivec3(glm::ceil((high - low) / voxel_)) + 1;
     };
     const glm::vec3 margin(voxel_);
     frame(occupied_, collider_.bounds.min - margin, collider_.bounds.max + margin);
-    const glm::vec3 shade(kSkyReach * side + 2.0F * voxel_);  // beyond it, the outermost voxels apply
+    // Outside the volume, the outermost voxels apply.
+    const glm::vec3 shade(kSkyReach * side + 2.0F * voxel_);
     frame(sky_, collider_.bounds.min - shade,
           collider_.bounds.max + glm::vec3(shade.x, 2.0F * voxel_, shade.z));
 }
@@ -111,7 +112,7 @@ Result<void> ColliderLight::createPrograms() {
                    voxel_);
     sky_.program.set("u_occupied", kInputUnit);
     sky_.program.set("u_sky_rays", kSkyRays);
-    sky_.program.set("u_sky_steps", static_cast<GLint>(kSkyReach * static_cast<float>(kVoxelsOfSide)));
+    sky_.program.set("u_sky_steps", static_cast<GLint>(kSkyReach * static_cast<float>(kVoxelsPerSide)));
     return {};
 }
 
@@ -124,7 +125,7 @@ Result<void> ColliderLight::createTextures() {
     coarse_target_ = RELIEF_TRY(makeFramebuffer({coarse_.name()}));
     RELIEF_TRY(occupied_.allocate());
     RELIEF_TRY(sky_.allocate());
-    // Created last, because its existence implies all others.
+    // Created last, because update() creates all textures unless this framebuffer exists.
     sun_target_ = RELIEF_TRY(makeFramebuffer({sun_map_.name()}));
     return {};
 }

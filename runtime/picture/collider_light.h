@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cached light around a collider: a shadow map from the sun, and a volume with the visible fraction of the sky. A
-// particle reads a few texels (shaders/picture/particle_light.glsl) instead of tracing rays. Both are updated only when
-// the collider has moved or deformed.
+// particle reads a few texels (shaders/picture/particle_light.glsl) instead of tracing rays. The light is updated only
+// if the collider has moved or deformed.
 //
 //     bytes on the GPU ≈ 4 · kSunSide² + 2 · voxels: 1.0 MB, and 0.9 MB for a cube
 //

@@ -17,7 +17,7 @@ Result<ColliderMesh> ColliderMesh::create(const PictureMesh& mesh) {
     ColliderMesh out;
     out.program_ = RELIEF_TRY(makeProgram("picture/mesh.vert", "picture/mesh.frag"));
     out.buffers_ = RELIEF_TRY(MeshBuffers::create(mesh));
-    RELIEF_TRY(checkAllocated("the collider's mesh", "choose a smaller one"));
+    RELIEF_TRY(checkAllocated("the collider's mesh", "choose a smaller mesh"));
     return out;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The source mesh of a collider on the GPU, for pictures with more detail than depth maps have.
+// The source mesh of a collider on the GPU, for pictures with more detail than the depth maps contain.
 #pragma once
 
 #include "formats/base/result.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws a collider on a floor in front of a background: from its mesh if given,
-// otherwise from its depth maps. Tracing the field is expensive, so the picture is cached in a texture until the
-// collider, camera, size or style changes.
+// Draws a collider on a floor in front of a background: its mesh if given, otherwise its depth maps. Tracing the field
+// is expensive, so the picture is cached in a texture until the collider, camera, size or style changes.
 //
 //     bytes on the GPU = 12 · width · height   (RGBA16F and 32-bit depth)
 #pragma once
@@ -37,7 +36,8 @@ class ColliderRenderer {
     [[nodiscard]] Result<void> draw(const Camera& camera, const ColliderStyle& style,
                                     const RenderTarget& target);
 
-    /// Returns the window depths of the last draw(), in the size of its target but not attached to it; empty before.
+    /// Returns the window depths of the last draw(): a texture as large as the target and not attached to it. Empty
+    /// before the first draw().
     [[nodiscard]] const GlTexture& depth() const { return depth_; }
 
   private:

@@ -11,7 +11,7 @@
 namespace relief {
 namespace {
 
-// Step of a ray in texels; features at least two texels thick are hit.
+// Step of a ray in texels; a ray hits every feature that is at least two texels thick.
 constexpr float kStepTexels = 1.5F;
 
 // Enough for the diagonal of a box whose finest texel is 1/2048 of its longest side, plus bisections. Larger boxes use

@@ -11,7 +11,7 @@
 
 namespace relief {
 
-/// A collider for renderers. The textures must outlive them.
+/// A collider for renderers. The textures must outlive the renderers.
 struct ColliderView {
     const ShaderCollider* textures = nullptr;
     Bounds bounds;       ///< object space; contains the whole collider

@@ -28,14 +28,15 @@ constexpr std::uint32_t kDigits = kRadixDigits;
 constexpr std::uint32_t kDigitBits = 8;
 constexpr std::uint32_t kKeyDigits = 32 / kDigitBits;
 static_assert(kDigits == 1U << kDigitBits && kKeyDigits % 2 == 0);
-// More rows first give more blocks, then longer ones, then more again. Best on an H100 for 2^16 to 2^24 particles.
-constexpr std::uint32_t kBlocksFew = 512;
-constexpr std::uint32_t kTurns = 8;
+// With more rows, first the number of blocks grows up to kBlocksFirst, then their length up to kTurnsFirst rows, then
+// their number up to kBlocksMax. These values were the fastest on an H100 for 2^16 to 2^24 particles.
+constexpr std::uint32_t kBlocksFirst = 512;
+constexpr std::uint32_t kTurnsFirst = 8;
 constexpr std::uint32_t kBlocksMax = 2048;
 
 constexpr GLsizeiptr kElementBytes = 2 * sizeof(std::uint32_t);
 
-std::uint32_t dividedUp(std::uint32_t a, std::uint32_t b) {
+std::uint32_t ceilDiv(std::uint32_t a, std::uint32_t b) {
     return (a + b - 1) / b;
 }
 
@@ -44,16 +45,16 @@ GLenum orderFormat() {
 }
 
 Result<void> checkStorage(std::uint32_t capacity) {
-    GLint64 most = 0;
-    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
-    GLint together = 0;
-    glGetIntegerv(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, &together);
-    if (most < GLint64{capacity} * kElementBytes || together < GLint{kRadixDigits}) {
+    GLint64 block_max = 0;
+    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &block_max);
+    GLint group_max = 0;
+    glGetIntegerv(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, &group_max);
+    if (block_max < GLint64{capacity} * kElementBytes || group_max < GLint{kRadixDigits}) {
         return fail(ErrorCode::kLimit,
                     "sorting " + std::to_string(capacity) + " particles needs storage blocks of " +
                         std::to_string(GLint64{capacity} * kElementBytes) + " bytes and work groups of " +
-                        std::to_string(kRadixDigits) + "; this GL context has " + std::to_string(most) +
-                        " and " + std::to_string(together) +
+                        std::to_string(kRadixDigits) + "; this GL context has " + std::to_string(block_max) +
+                        " and " + std::to_string(group_max) +
                         "; choose a smaller capacity or the fragment path");
     }
     return {};
@@ -87,13 +88,14 @@ class RadixSort {
 
   private:
     /// Division of the elements into blocks.
-    struct Cut {
+    struct Partition {
         std::uint32_t count, turns, blocks;
     };
 
     RadixSort() = default;
     [[nodiscard]] Result<void> createPrograms(std::uint32_t width);
-    static void dispatch(const GlProgram& program, const Cut& cut, std::uint32_t digit, std::uint32_t groups);
+    static void dispatch(const GlProgram& program, const Partition& partition, std::uint32_t digit,
+                         std::uint32_t groups);
 
     GlBuffer elements_[2];
     GlBuffer counts_;
@@ -116,13 +118,13 @@ Result<RadixSort> RadixSort::create(std::uint32_t capacity, std::uint32_t width)
                               "choose a smaller capacity");
     };
     sort.order_ = makeImageTexture2D(orderFormat(), static_cast<GLsizei>(width),
-                                     static_cast<GLsizei>(dividedUp(capacity, width)));
+                                     static_cast<GLsizei>(ceilDiv(capacity, width)));
     RELIEF_TRY(allocated());
     for (GlBuffer& elements : sort.elements_) {
         elements = StorageUnits::make(capacity * kElementBytes);
         RELIEF_TRY(allocated());
     }
-    const std::uint32_t blocks = std::min(dividedUp(capacity, kDigits), kBlocksMax);
+    const std::uint32_t blocks = std::min(ceilDiv(capacity, kDigits), kBlocksMax);
     sort.counts_ = StorageUnits::make(GLsizeiptr{kDigits} * blocks * GLsizeiptr{sizeof(std::uint32_t)});
     sort.totals_ = StorageUnits::make(GLsizeiptr{kDigits} * GLsizeiptr{sizeof(std::uint32_t)});
     RELIEF_TRY(allocated());
@@ -144,12 +146,12 @@ Result<void> RadixSort::createPrograms(std::uint32_t width) {
     return {};
 }
 
-void RadixSort::dispatch(const GlProgram& program, const Cut& cut, std::uint32_t digit,
+void RadixSort::dispatch(const GlProgram& program, const Partition& partition, std::uint32_t digit,
                          std::uint32_t groups) {
     program.use();
-    program.set("u_count", cut.count);
-    program.set("u_turns", cut.turns);
-    program.set("u_blocks", cut.blocks);
+    program.set("u_count", partition.count);
+    program.set("u_turns", partition.turns);
+    program.set("u_blocks", partition.blocks);
     program.set("u_shift", digit * kDigitBits);
     glDispatchCompute(groups, 1, 1);
     StorageUnits::order();
@@ -157,10 +159,10 @@ void RadixSort::dispatch(const GlProgram& program, const Cut& cut, std::uint32_t
 
 void RadixSort::sort(const GlTexture& positions, std::uint32_t width, std::uint32_t extent,
                      const glm::vec3& eye) {
-    const std::uint32_t rows = dividedUp(extent, kDigits);
+    const std::uint32_t rows = ceilDiv(extent, kDigits);
     const std::uint32_t turns =
-        std::max(std::min(dividedUp(rows, kBlocksFew), kTurns), dividedUp(rows, kBlocksMax));
-    const Cut cut{extent, turns, dividedUp(rows, turns)};
+        std::max(std::min(ceilDiv(rows, kBlocksFirst), kTurnsFirst), ceilDiv(rows, kBlocksMax));
+    const Partition partition{extent, turns, ceilDiv(rows, turns)};
 
     const StorageUnits storage;
     const ImageUnits images;
@@ -175,9 +177,9 @@ void RadixSort::sort(const GlTexture& positions, std::uint32_t width, std::uint3
     for (std::uint32_t digit = 0; digit < kKeyDigits; ++digit) {
         StorageUnits::bind(kFromUnit, elements_[digit % 2]);
         StorageUnits::bind(kToUnit, elements_[1 - digit % 2]);
-        dispatch(digit == 0 ? keys_ : count_, cut, digit, cut.blocks);
-        dispatch(scan_, cut, digit, kDigits);
-        dispatch(digit + 1 == kKeyDigits ? place_ : move_, cut, digit, cut.blocks);
+        dispatch(digit == 0 ? keys_ : count_, partition, digit, partition.blocks);
+        dispatch(scan_, partition, digit, kDigits);
+        dispatch(digit + 1 == kKeyDigits ? place_ : move_, partition, digit, partition.blocks);
     }
     ImageUnits::finish();
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sorts particles back to front for blending, on the GPU, without read-back or waits.
 //
-// StepPath::kCompute uses a radix sort, which is exact after every update(). The following is about the other path:
-// Batcher's odd-even merge sort in fragment passes, spread over any number of frames (paper, section 3.4). After a
-// complete sequence, both paths give the same order.
+// StepPath::kCompute uses a radix sort, which is exact after every update(). The rest of this comment describes the
+// fragment path: Batcher's odd-even merge sort in fragment passes, spread over any number of frames (paper, section
+// 3.4). After a complete sequence, both paths give the same order.
 //
 //     bytes on the GPU = 16 · texels, texels = capacity rounded up to a power of two (and to whole rows of kWidth):
 //         order  2 × RG32UI (double-buffered)    index of a particle, key
@@ -35,13 +35,13 @@ class DepthSorter {
     static constexpr std::uint32_t kCapacityMax = 1U << 24;
 
     /// Needs a current context, as all non-const members do.
-    /// \param capacity  maximum number of particles, 1…kCapacityMax: that of the particle system.
-    /// \param path      normally that of the particle system.
+    /// \param capacity  maximum number of particles, 1…kCapacityMax; normally the capacity of the particle system.
+    /// \param path      normally the path of the particle system.
     /// Errors: kUsage (capacity), kLimit (GL limits), kUnsupported, kFailure.
     [[nodiscard]] static Result<DepthSorter> create(std::uint32_t capacity, StepPath path = StepPath::kAuto);
 
     /// Recomputes the keys, then runs the next passes of the sequence; after its last pass, the next sequence starts.
-    /// The compute path sorts completely. Call it after each step that is drawn. Restores the GL state.
+    /// The compute path sorts completely. Call update() after each step that is drawn. Restores the GL state.
     /// \param positions  RGBA32F, particle i at texel (i mod width, i / width): xyz in object space, w < 0 for
     ///                   dead particles. Only used during the call.
     /// \param width      texels in a row of `positions`, > 0.
@@ -56,14 +56,14 @@ class DepthSorter {
     void restart();
 
     /// Returns the particles in drawing order, RG32UI or RGBA32UI (a usampler2D). Texel (i mod kWidth, i / kWidth) of
-    /// rank i < count() holds the particle index (x) and its key as of the last update() (y), 0 for none. A renderer
-    /// draws all count() ranks and skips those with key 0, because live particles may have any rank until a sequence is
+    /// rank i < count() holds the particle index (x) and its key at the last update() (y; 0: no particle). A renderer
+    /// draws all count() ranks and skips ranks with key 0, because live particles may have any rank until a sequence is
     /// complete. Valid until the next update() or the destruction of the sorter.
     [[nodiscard]] const GlTexture& order() const;
-    /// Returns the number of ranks. Compute path: the extent. Other path: the least power of two not below the extent,
-    /// or a larger one for up to two sequences after the extent has shrunk; 0 before the first particle.
+    /// Returns the number of ranks. Compute path: the extent. Fragment path: the least power of two not below the
+    /// extent, or a larger one for up to two sequences after the extent has shrunk; 0 before the first particle.
     [[nodiscard]] std::uint32_t count() const { return count_; }
-    /// Returns the finished passes of the current sequence, below sequencePasses(count()) unless both are 0; 0 on the
+    /// Returns the number of finished passes of the current sequence, below sequencePasses(count()) unless both are 0; 0 on the
     /// compute path.
     [[nodiscard]] std::uint32_t passesDone() const { return passes_done_; }
 
@@ -93,7 +93,7 @@ class DepthSorter {
     GlFramebuffer target_[2];
     GlProgram keys_;
     GlProgram pass_;
-    std::unique_ptr<RadixSort> radix_;  // replaces the members above
+    std::unique_ptr<RadixSort> radix_;  // compute path; replaces the members above
 };
 
 }  // namespace relief

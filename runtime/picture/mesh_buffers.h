@@ -17,7 +17,8 @@ class MeshBuffers {
     /// Errors: kInvalidInput (checkMesh, too many triangles for one draw).
     [[nodiscard]] static Result<MeshBuffers> create(const PictureMesh& mesh);
 
-    /// Replaces all vertices by those in a GPU buffer (wobble_pass.h): 24 bytes each, position and normal as floats.
+    /// Replaces all vertices with the vertices in a GPU buffer (wobble_pass.h): 24 bytes each, position and normal as
+    /// floats.
     /// The mesh must have been created with normals.
     void setVertices(const GlBuffer& buffer) const;
 

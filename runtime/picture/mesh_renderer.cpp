@@ -50,7 +50,7 @@ class Facing {
     GLint before_ = GL_CCW;
 };
 
-/// Returns an orthographic clip matrix that covers a box, looking against `towards`.
+/// Returns an orthographic clip matrix that covers a box, for a view along −`towards`.
 glm::mat4 parallelClip(const Bounds& box, const glm::vec3& towards) {
     const glm::vec3 aside =
         std::abs(towards.y) > 0.9F ? glm::vec3(0.0F, 0.0F, -1.0F) : glm::vec3(0.0F, 1.0F, 0.0F);
@@ -60,7 +60,7 @@ glm::mat4 parallelClip(const Bounds& box, const glm::vec3& towards) {
         seen.add(glm::vec3(view * glm::vec4(box.corner(i), 1.0F)));
     }
     const float margin = 0.01F * seen.longestSide();
-    // Include higher geometry, which casts shadows, too.
+    // Also include geometry on the side of the viewer, because it casts shadows into the box.
     const float above = 2.0F * seen.longestSide();
     return glm::ortho(seen.min.x - margin, seen.max.x + margin, seen.min.y - margin, seen.max.y + margin,
                       -seen.max.z - above, -seen.min.z + margin) *
@@ -171,7 +171,7 @@ void MeshRenderer::drawPrints(std::span<const MeshPlace> places, float units_per
     print_program_.use();
     print_program_.set("u_clip", zenith_.clip);
     print_program_.set("u_zenith", 0);
-    // In clip space, whose depth range is twice that of window depth.
+    // The factor 0.5 converts clip depth to window depth, whose range is half as large.
     print_program_.set("u_sole", 0.5F * kSoleHeight * units_per_meter *
                                      glm::length(glm::vec3(glm::transpose(zenith_.clip)[2])));
     useTexture(0, zenith_.depth);

@@ -48,8 +48,9 @@ class MeshRenderer {
     /// Errors: kInvalidInput (checkMesh), kFailure (shader compiler), kLimit (out of memory).
     [[nodiscard]] static Result<MeshRenderer> create(std::span<const PictureMesh> meshes);
 
-    /// Replaces the positions of a mesh, with the same number, and recomputes its normals (MovingMesh).
-    /// Errors: kUsage (no such mesh, another number of positions), kInvalidInput (a position that is not finite),
+    /// Replaces the positions of a mesh and recomputes its normals (MovingMesh).
+    /// \param positions  one per vertex.
+    /// Errors: kUsage (no such mesh, a different number of positions), kInvalidInput (a position that is not finite),
     /// kLimit (out of memory). On error, the mesh is unchanged.
     [[nodiscard]] Result<void> setPositions(std::size_t mesh, std::span<const glm::vec3> positions);
     /// Calls MeshBuffers::setVertices(). \param mesh  must have been created with normals.
@@ -67,7 +68,8 @@ class MeshRenderer {
     [[nodiscard]] Result<void> press(std::span<const MeshPlace> places, float units_per_meter,
                                      const Bounds& around);
 
-    /// Returns the window depths of the last draw(), in the size of its target but not attached to it; empty before.
+    /// Returns the window depths of the last draw(): a texture as large as the target and not attached to it. Empty
+    /// before the first draw().
     [[nodiscard]] const GlTexture& depth() const { return depth_; }
 
   private:

@@ -58,7 +58,7 @@ std::string lookFault(const ParticleLook& look) {
         }
     }
     if (look.cell_first && (*look.cell_first > look.cell_last || look.cell_last > kCellMax)) {
-        return "the cells do not go from a first to a last";
+        return "the last cell is before the first, or above " + std::to_string(kCellMax);
     }
     return {};
 }
@@ -110,9 +110,8 @@ void packRow(const ParticleLook& look, const LookDefaults& defaults, std::span<c
 
 Result<PackedLooks> packLooks(std::span<const ParticleLook> looks, const LookDefaults& defaults) {
     if (looks.size() > kLooksMax) {
-        return fail(ErrorCode::kUsage, std::to_string(looks.size()) +
-                                           " looks of particles are more than the " +
-                                           std::to_string(kLooksMax) + " that Relief takes");
+        return fail(ErrorCode::kUsage, std::to_string(looks.size()) + " particle looks; the maximum is " +
+                                           std::to_string(kLooksMax));
     }
     for (std::size_t i = 0; i < looks.size(); ++i) {
         if (const std::string problem = lookFault(looks[i]); !problem.empty()) {

@@ -7,10 +7,10 @@
 //                    texels 3 + 2k      age, size, opacity, rotation of key k
 //                    texels 4 + 2k      linear colour of key k
 //
-// All rows have the length of the longest one.
+// All rows are as long as the longest row.
 //
-// The tracks of a look may have keys at different ages. A row has a key at each age of any track, with interpolated
-// values of the other tracks.
+// The tracks of a look may have keys at different ages. A row has a key at every age at which any track has a key; the
+// other tracks are interpolated there.
 #pragma once
 
 #include <cstdint>
@@ -53,7 +53,7 @@ struct ParticleLook {
     /// Atlas cells shown from birth to death, counted row by row from the top left; nullopt: a round dot.
     std::optional<std::uint32_t> cell_first;
     std::uint32_t cell_last = 0;  ///< ≥ cell_first
-    bool lit = true;              ///< false: its colour does not depend on light
+    bool lit = true;              ///< false: the colour does not depend on light
     /// Fade times after birth and before death, seconds; empty: the style's.
     std::optional<float> fade_in;
     std::optional<float> fade_out;
@@ -75,11 +75,11 @@ inline constexpr std::size_t kLooksMax = 16;
 /// guarantees.
 inline constexpr std::size_t kLookKeysMax = 255;
 
-/// Evaluates a track at an age; returns `otherwise` if it is empty.
+/// Evaluates a track at an age; returns `fallback` if the track is empty.
 template <class T>
-[[nodiscard]] T valueAt(const AgeTrack<T>& track, float age, const T& otherwise) {
+[[nodiscard]] T valueAt(const AgeTrack<T>& track, float age, const T& fallback) {
     if (track.empty()) {
-        return otherwise;
+        return fallback;
     }
     std::size_t next = 0;
     while (next < track.size() && track[next].age <= age) {
@@ -90,8 +90,8 @@ template <class T>
     }
     const AgeKey<T>& low = track[next - 1];
     const AgeKey<T>& high = track[next];
-    const float share = (age - low.age) / (high.age - low.age);
-    return (1.0F - share) * low.value + share * high.value;
+    const float t = (age - low.age) / (high.age - low.age);
+    return (1.0F - t) * low.value + t * high.value;
 }
 
 /// The texture above; one row with the defaults if there are no looks.

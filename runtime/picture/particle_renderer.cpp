@@ -16,7 +16,7 @@ namespace {
 // Sampler k uses unit k.
 constexpr std::array<const char*, 6> kSamplers{"u_position", "u_birth", "u_looks",
                                                "u_order",    "u_atlas", "u_behind"};
-// Only programs with cells use the atlas, and only stretched ones velocities.
+// Only programs with cells use the atlas; only programs for stretched sprites use velocities.
 constexpr int kLightUnit = kSamplers.size();  // two units
 constexpr int kVelocityUnit = kLightUnit + 2;
 static_assert(kVelocityUnit + 1 <= PassState::kUnits);

@@ -43,17 +43,17 @@ struct ParticleStyle {
     float opacity = 0.95F;                ///< 0…1
     float fade_in = 0.2F;                 ///< fade times after birth and before death, seconds
     float fade_out = 0.5F;
-    std::vector<ParticleLook> looks{};  ///< of type 0, 1, …, at most kLooksMax; empty fields use the
-                                        ///< values above. Further types use the last look
+    /// Looks of types 0, 1, …; at most kLooksMax. Empty fields use the values above. Further types use the last look.
+    std::vector<ParticleLook> looks{};
     Sprite sprite = Sprite::kPoint;
     Blend blend = Blend::kAlpha;
-    float soft_distance =
-        0.0F;  ///< distance over which a sprite fades in front of surfaces, object units, ≥ 0
+    /// Distance over which a sprite fades in front of surfaces, object units, ≥ 0.
+    float soft_distance = 0.0F;
     const SpriteAtlas* atlas = nullptr;  ///< for the cells of looks; null: all particles are round dots
 };
 
-/// Drawing order as from DepthSorter: RG32UI; texel (i mod width, i / width) of the texture holds the index of the i-th
-/// particle in x, and 0 in y for none. Indices beyond extent() are skipped.
+/// Drawing order, as from DepthSorter: RG32UI. Texel (i mod width, i / width) holds the index of the i-th particle in x;
+/// y is 0 if there is no particle. Indices beyond extent() are skipped.
 struct ParticleOrder {
     const GlTexture* texture = nullptr;
     std::uint32_t count = 0;  ///< ranks
@@ -78,10 +78,11 @@ class ParticleRenderer {
 
     /// Draws over the target's contents (linear or sRGB, as the target requires) with its depth test; writes no depth.
     /// Does not read back or wait for the GPU.
-    /// \param order   drawing order; without a texture, that of the particle indices.
-    /// \param behind  depths for style.soft_distance: window depths of a picture with the same camera and size, not attached to
-    ///                the target, such as ColliderRenderer::depth(). Null: style.soft_distance has no effect.
-    /// Errors: kUsage (looks, see packLooks(); a stretched look of points; soft; a camera that is not finite),
+    /// \param order   drawing order; without a texture, particles are drawn in order of index.
+    /// \param behind  for style.soft_distance: window depths of a picture with the same camera and size, not attached
+    ///                to the target, such as ColliderRenderer::depth(). Null: style.soft_distance has no effect.
+    /// Errors: kUsage (looks, see packLooks(); a stretched look with Sprite::kPoint; an invalid soft_distance; a camera
+    /// that is not finite),
     /// kUnsupported, kFailure (shader compiler), kLimit (out of memory for the light around the collider).
     Result<void> draw(const ParticleSystem& particles, const CameraMatrices& camera,
                       const ParticleStyle& style, const RenderTarget& target, const ParticleOrder& order = {},

@@ -12,7 +12,7 @@
 namespace relief {
 namespace {
 
-// Corners around a vertex are not compared pairwise if there are more than this, which would take quadratic time.
+// Maximum corners around a vertex that are compared pairwise, which takes quadratic time.
 constexpr std::size_t kFanMax = 64;
 
 glm::vec3 unitOrZero(const glm::vec3& v) {
@@ -43,7 +43,7 @@ std::vector<Corner> cornersOf(const PictureMesh& mesh) {
     return corners;
 }
 
-/// Corners by vertex: those of v are list[begin[v]] … list[begin[v + 1] - 1], in ascending order.
+/// Corners by vertex: list[begin[v]] … list[begin[v + 1] - 1] are the corners of vertex v, in ascending order.
 struct Fans {
     std::vector<std::size_t> begin;
     std::vector<std::uint32_t> list;
@@ -78,19 +78,19 @@ PictureMesh creased(const PictureMesh& mesh, float crease, Sums* sums) {
     const Fans fans = fansOf(mesh);
     PictureMesh out;
     out.triangles.resize(mesh.triangles.size());
-    std::vector<std::uint32_t> together;
+    std::vector<std::uint32_t> smooth;  // corners that contribute to the normal
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
         const std::span<const std::uint32_t> fan(&fans.list[0] + fans.begin[v],
                                                  fans.begin[v + 1] - fans.begin[v]);
         const std::size_t first = out.positions.size();  // first duplicate of this vertex
         for (const std::uint32_t c : fan) {
             glm::vec3 sum(0.0F);
-            together.clear();
+            smooth.clear();
             for (const std::uint32_t other : fan) {
                 if (fan.size() > kFanMax || other == c ||
                     glm::dot(corners[c].face, corners[other].face) >= cosine) {
                     sum += corners[other].angle * corners[other].face;
-                    together.push_back(other);
+                    smooth.push_back(other);
                 }
             }
             const glm::vec3 normal = unitOrZero(sum);
@@ -105,7 +105,7 @@ PictureMesh creased(const PictureMesh& mesh, float crease, Sums* sums) {
                     out.colors.push_back(mesh.colors[v]);
                 }
                 if (sums != nullptr) {
-                    sums->corners.insert(sums->corners.end(), together.begin(), together.end());
+                    sums->corners.insert(sums->corners.end(), smooth.begin(), smooth.end());
                     sums->begin.push_back(static_cast<std::uint32_t>(sums->corners.size()));
                 }
             }

@@ -16,30 +16,30 @@
 namespace relief {
 namespace {
 
-// Storage units, as in the shaders.
-constexpr GLuint kSprites = 0, kEntries = 1, kCounts = 2, kWork = 3;  // tile_*.comp, except
-constexpr GLuint kPaintEntries = 0, kPaintSprites = 1;                // tile_paint.comp, and
-constexpr GLuint kFrom = 0, kTo = 1, kTotals = 3;                     // radix_*.comp
+// Storage units of tile_*.comp, of the last passes (tile_bounds.comp, tile_paint.comp) and of radix_*.comp.
+constexpr GLuint kSprites = 0, kEntries = 1, kCounts = 2, kWork = 3;
+constexpr GLuint kPaintEntries = 0, kPaintSprites = 1;
+constexpr GLuint kFrom = 0, kTo = 1, kTotals = 3;
 
 constexpr std::uint32_t kGroup = kRadixDigits;
 constexpr std::uint32_t kDigitBits = 8;
 constexpr std::uint32_t kDigitsOfTile = 2;
 constexpr std::uint32_t kTilesMax = 1U << (kDigitBits * kDigitsOfTile);
 constexpr std::uint32_t kBlocksMax = 2048;
-constexpr std::uint32_t kEntriesASprite = 3;
+constexpr std::uint32_t kEntriesPerSprite = 3;
 constexpr std::uint32_t kEntriesMin = 1U << 18;
 constexpr std::uint64_t kWordBytes = sizeof(std::uint32_t);
 constexpr std::uint64_t kSpriteBytes = 12 * kWordBytes;
 constexpr std::uint64_t kEntryBytes = 2 * kWordBytes;
 
-std::uint32_t dividedUp(std::uint32_t a, std::uint32_t b) {
+std::uint32_t ceilDiv(std::uint32_t a, std::uint32_t b) {
     return (a + b - 1) / b;
 }
 
 std::uint32_t entriesFor(std::uint32_t sprites) {
-    return std::max(kEntriesASprite * sprites, kEntriesMin);
+    return std::max(kEntriesPerSprite * sprites, kEntriesMin);
 }
-static_assert(kEntriesASprite * TilePainter::kSpritesMax < 0xffffff);  // limit of tile_scan.comp
+static_assert(kEntriesPerSprite * TilePainter::kSpritesMax < 0xffffff);  // limit of tile_scan.comp
 
 /// Returns whether the depth range is the default 0…1, with clipping at the near and far planes.
 bool depthIsUsual() {
@@ -102,9 +102,9 @@ bool isReadable(GLuint texture) {
 }  // namespace
 
 Result<TilePainter> TilePainter::create() {
-    GLint together = 0;
-    glGetIntegerv(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, &together);
-    if (together < kTileSide * kTileSide || together < kRadixDigits) {
+    GLint group_max = 0;
+    glGetIntegerv(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, &group_max);
+    if (group_max < kTileSide * kTileSide || group_max < kRadixDigits) {
         return fail(ErrorCode::kUnsupported,
                     "the work groups of this GL context are too small for tiles; use the fragment path");
     }
@@ -138,9 +138,7 @@ Result<const TilePainter::Programs*> TilePainter::makePrograms(const std::string
 }
 
 bool TilePainter::prepare(std::uint32_t sprites, const RenderTarget& target) {
-    const auto tiles = [](GLsizei pixels) {
-        return dividedUp(static_cast<std::uint32_t>(pixels), kTileSide);
-    };
+    const auto tiles = [](GLsizei pixels) { return ceilDiv(static_cast<std::uint32_t>(pixels), kTileSide); };
     if (sprites == 0 || sprites > kSpritesMax || !depthIsUsual() ||
         std::uint64_t{tiles(target.width)} * tiles(target.height) > std::uint64_t{kTilesMax}) {
         return false;
@@ -160,14 +158,15 @@ bool TilePainter::makeRoom(std::uint32_t sprites) {
     if (sprites <= room_) {
         return true;
     }
-    GLint64 most = 0;
-    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
-    // Grow gradually with the extent of the scene.
+    GLint64 block_max = 0;
+    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &block_max);
+    // Allocate half as much again, so that a growing scene rarely reallocates.
     const auto room = static_cast<std::uint32_t>(
-        std::clamp<std::int64_t>(most / static_cast<std::int64_t>(kSpriteBytes), 0,
+        std::clamp<std::int64_t>(block_max / static_cast<std::int64_t>(kSpriteBytes), 0,
                                  std::min(std::max(sprites + sprites / 2, 1U << 16), kSpritesMax)));
     const std::uint32_t entries = entriesFor(room);
-    if (room < sprites || static_cast<std::uint64_t>(most) < entries * kEntryBytes || sprites >= refused_) {
+    if (room < sprites || static_cast<std::uint64_t>(block_max) < entries * kEntryBytes ||
+        sprites >= refused_) {
         return false;
     }
     const auto make = [](std::uint64_t bytes) { return StorageUnits::make(static_cast<GLsizeiptr>(bytes)); };
@@ -178,7 +177,7 @@ bool TilePainter::makeRoom(std::uint32_t sprites) {
     for (GlBuffer& buffer : entry_buffers_) {
         buffer = make(entries * kEntryBytes);
     }
-    const std::uint32_t blocks = std::min(dividedUp(entries, kGroup), kBlocksMax);
+    const std::uint32_t blocks = std::min(ceilDiv(entries, kGroup), kBlocksMax);
     counts_ = make(std::max(kGroup * blocks, kSpritesMax / kGroup) * kWordBytes);
     totals_ = make((kGroup + 1) * kWordBytes);
     work_ = make(kTileWords * kWordBytes);
@@ -218,9 +217,9 @@ bool TilePainter::makeLayer(const RenderTarget& target) {
 void TilePainter::paint(const Programs& programs, const Vertices& vertices, bool adds) {
     const StorageUnits storage;
     const ImageUnits images;
-    const std::uint32_t groups = dividedUp(count_of_sprites_, kGroup);
-    const std::uint32_t columns = dividedUp(width_, kTileSide);
-    const std::uint32_t rows = dividedUp(height_, kTileSide);
+    const std::uint32_t groups = ceilDiv(count_of_sprites_, kGroup);
+    const std::uint32_t columns = ceilDiv(width_, kTileSide);
+    const std::uint32_t rows = ceilDiv(height_, kTileSide);
     const auto run = [&](const GlProgram& program, std::uint32_t x, std::uint32_t y) {
         program.use();
         program.set("u_count", count_of_sprites_);
@@ -247,7 +246,7 @@ void TilePainter::paint(const Programs& programs, const Vertices& vertices, bool
     StorageUnits::bind(kPaintSprites, sprite_buffer_);
     StorageUnits::bind(kCounts, tile_bounds_);
     StorageUnits::bind(kWork, work_);
-    run(bounds_, dividedUp(columns * rows, kGroup), 1);
+    run(bounds_, ceilDiv(columns * rows, kGroup), 1);
     ImageUnits::write(0, layer_, GL_RGBA16F);
     programs.paint.use();
     programs.paint.set("u_adds", adds);
@@ -260,19 +259,19 @@ void TilePainter::paint(const Programs& programs, const Vertices& vertices, bool
     ImageUnits::finish();
     if (depth_ != 0) {
         glBindSampler(kHidesUnit, 0);
-        useTexture(kHidesUnit, 0);  // it becomes a render target again
+        useTexture(kHidesUnit, 0);  // the texture becomes a render target again
     }
 }
 
 void TilePainter::sortEntries() const {
-    // Only the GPU knows the number of entries, so dispatch blocks for the full capacity; some stay empty.
+    // The number of entries is only on the GPU, so dispatch blocks for the full capacity; some blocks are empty.
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     constexpr auto kWord = static_cast<GLsizeiptr>(kWordBytes);
     copyBuffer(work_, totals_, kRadixDigits * kWord, kWord);
 
-    const std::uint32_t lines = dividedUp(entriesFor(count_of_sprites_), kGroup);
-    const std::uint32_t turns = dividedUp(lines, kBlocksMax);
-    const std::uint32_t blocks = dividedUp(lines, turns);
+    const std::uint32_t lines = ceilDiv(entriesFor(count_of_sprites_), kGroup);
+    const std::uint32_t turns = ceilDiv(lines, kBlocksMax);
+    const std::uint32_t blocks = ceilDiv(lines, turns);
     StorageUnits::bind(kCounts, counts_);
     StorageUnits::bind(kTotals, totals_);
     for (std::uint32_t digit = 0; digit < kDigitsOfTile; ++digit) {

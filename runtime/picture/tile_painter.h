@@ -4,8 +4,9 @@
 //
 // The picture is divided into tiles of 16 × 16 pixels. Each sprite is computed once and gets an entry for each tile
 // that it overlaps. Entries are sorted by tile; each tile is painted front to back into a layer, which is then blended
-// over the target. The layer has 16 bits per channel, so a pixel may differ from a drawn one by the rounding of the
-// target. In targets of 8 bits, it may also differ where sprites brighter than white are clipped behind other sprites.
+// over the target. The layer has 16 bits per channel, so its pixels may differ from those of drawn sprites by the
+// rounding of the target. In 8-bit targets they may also differ where sprites brighter than white lie behind others,
+// because drawing clips them first.
 //
 //     bytes on the GPU = 96 · room + 8 · pixels + up to 3 MB; room: up to 1.5 times the sprites, at least 65,536
 //         sprites   48 bytes each
@@ -78,7 +79,7 @@ class TilePainter {
     GlSampler plain_;         // for textures of the caller
     std::uint32_t room_ = 0;  // sprites
     std::uint32_t count_of_sprites_ = 0;
-    std::uint32_t refused_ = 0xffffffff;    // number of sprites for which allocation failed
+    std::uint32_t refused_ = 0xffffffff;    // allocation failed for this number of sprites
     std::uint32_t width_ = 0, height_ = 0;  // picture size
     std::uint32_t layer_width_ = 0, layer_height_ = 0;
     GLuint depth_ = 0;  // depth texture of the target; 0: none

@@ -20,18 +20,18 @@ namespace relief {
 class EventsLog {
   public:
     /// \param path       "-" for standard output.
-    /// \param min_speed  slower hits are left out, world units/s.
+    /// \param min_speed  world units/s; slower hits are omitted.
     /// Errors: kIo.
     [[nodiscard]] static Result<EventsLog> create(const std::filesystem::path& path, float min_speed);
 
-    /// Writes a line for each new contact. The tag of `step` is its number.
+    /// Writes a line for each new contact. \param step  its tag is the number of the step.
     /// \param materials  WorldTextures::materialNames().
     /// Errors: kIo.
     [[nodiscard]] Result<void> write(const StepEvents& step, std::span<const std::string> materials);
     /// Flushes the file. Errors: kIo.
     [[nodiscard]] Result<void> finish();
 
-    /// Number of hits lost because the list of a step was full.
+    /// Returns the number of hits lost because the list of a step was full.
     [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
 
   private:

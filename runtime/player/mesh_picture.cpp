@@ -7,8 +7,8 @@
 namespace relief {
 namespace {
 
-constexpr double kPrintsASecond = 15.0;  // a foot is on the ground for about half a second
-constexpr double kMostPrints = 256.0;    // maximum between two pictures
+constexpr double kPrintsPerSecond = 15.0;  // a foot is on the ground for about half a second
+constexpr double kPrintsMax = 256.0;       // maximum between two pictures
 
 }  // namespace
 
@@ -50,7 +50,7 @@ Result<void> MeshPicture::press(double seconds) {
     const float units_per_meter = loaded_->scene.render.units_per_meter;
     const Bounds around = shadowBounds(*loaded_);
     const auto steps =
-        static_cast<int>(std::clamp(std::ceil((seconds - since) * kPrintsASecond), 1.0, kMostPrints));
+        static_cast<int>(std::clamp(std::ceil((seconds - since) * kPrintsPerSecond), 1.0, kPrintsMax));
     // The previous picture already added the footprints at its own time.
     for (int i = drawn_before_ ? 1 : 0; i < steps; ++i) {
         const double then = since + (seconds - since) * i / steps;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws the colliders of a scene by the meshes of render.meshes, animated and deformed, with the weather of the scene
-// and the footprints that characters have left so far.
+// Draws the colliders of a scene as the meshes in render.meshes, animated and deformed, with the weather of the scene and
+// the footprints that characters have left so far.
 #pragma once
 
 #include <cstdint>
@@ -23,11 +23,11 @@ class MeshPicture {
     [[nodiscard]] static Result<MeshPicture> create(const LoadedScene& loaded);
 
     /// Overwrites the target's colour and depth, with the sky as background. Adds the footprints since the previous
-    /// call, or since the beginning of the scene; going back in time adds none.
+    /// call, or since the beginning of the scene. A call with an earlier time than the previous call adds none.
     /// \param seconds  time of the scene. Errors: those of MeshRenderer::draw().
     [[nodiscard]] Result<void> draw(const CameraMatrices& camera, double seconds, const RenderTarget& target);
 
-    /// MeshRenderer::depth().
+    /// Returns MeshRenderer::depth().
     [[nodiscard]] const GlTexture& depth() const { return renderer_.depth(); }
 
   private:

@@ -14,11 +14,11 @@
 
 namespace relief {
 
-/// Checks that the outputs can be written, as far as this is known before the run, and that none of them is the input
-/// or another output. \param guard  records them.
+/// Checks that the outputs can be written, as far as this is known before the run, and that no output is the input or
+/// another output. \param guard  records the input and the outputs.
 /// Errors: those of FileGuard; kUnsupported (no OpenVDB).
 [[nodiscard]] Result<void> checkOutputs(const PlayerOptions& options, FileGuard& guard);
-/// Also checks allFilesOf() the scene, and the numbered files of its frames.
+/// Like checkOutputs(), for all files that the scene names (allFilesOf()) and the numbered outputs of its frames.
 [[nodiscard]] Result<void> checkFrames(const PlayerOptions& options, const LoadedScene& loaded,
                                        FileGuard& guard);
 

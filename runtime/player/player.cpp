@@ -69,8 +69,8 @@ class Run {
     /// Returns the last step of the next stretch, which does not pass the next frame.
     [[nodiscard]] std::uint32_t stretchEnd() const {
         std::uint32_t end = step_ + 1;
-        const std::uint32_t most = std::min(scene_.time.steps, step_ + at_once_);
-        while (end < most && !(outputs_.hasFrames() && frameDue(scene_, end))) {
+        const std::uint32_t last = std::min(scene_.time.steps, step_ + at_once_);
+        while (end < last && !(outputs_.hasFrames() && frameDue(scene_, end))) {
             ++end;
         }
         return end;
@@ -123,7 +123,7 @@ class Run {
 };
 
 Result<std::unique_ptr<GlContext>> makeContext(const PlayerOptions& options) {
-    auto context = watched(options.watchdog, "making a context", [&] {
+    auto context = watched(options.watchdog, "creating the GL context", [&] {
         return GlContext::create({options.gpu.api, options.gpu.device});
     });
     if (context && options.watchdog != nullptr) {
@@ -134,11 +134,11 @@ Result<std::unique_ptr<GlContext>> makeContext(const PlayerOptions& options) {
 
 /// Returns a warning if most births were rejected.
 std::optional<std::string> rejectedWarning(const ParticleCounts& counts, std::uint32_t capacity) {
-    const std::uint64_t asked = counts.born + counts.rejected;
+    const std::uint64_t requested = counts.born + counts.rejected;
     if (counts.rejected <= counts.born) {
         return std::nullopt;
     }
-    return std::to_string(counts.rejected) + " of " + std::to_string(asked) +
+    return std::to_string(counts.rejected) + " of " + std::to_string(requested) +
            " births were rejected because the system was full; raise particles.capacity (now " +
            std::to_string(capacity) + "), or lower emitter.rate, emitter.burst or emitter.lifetime";
 }

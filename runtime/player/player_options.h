@@ -25,7 +25,7 @@ struct GpuOptions {
     std::optional<std::size_t> device;  ///< EGL device index, checked when the context is created
     std::optional<double> timeout;      ///< seconds; 0: no limit
 
-    /// Returns the limit in milliseconds, rounded up because 0 means none. Software renderers have a longer default.
+    /// Returns the limit in milliseconds, rounded up, because 0 means no limit. Software renderers have a longer default.
     [[nodiscard]] std::chrono::milliseconds limit(bool software) const {
         return std::chrono::milliseconds(
             static_cast<std::int64_t>(std::ceil(timeout.value_or(software ? 600.0 : 60.0) * 1000.0)));
@@ -69,10 +69,10 @@ struct PlayerReport {
     /// Steps in contact, summed over the particles alive at the end.
     std::uint64_t collisions = 0;
     std::uint32_t in_contact = 0;  ///< live particles in contact in the last step
-    double ms_per_step =
-        0.0;  ///< mean wall-clock time, including births and waiting for the GPU; 0 without steps
-    /// Median over blocks of up to 16 steps. Shader compilation in the first block does not affect it if there are at
-    /// least three blocks. 0 without steps.
+    /// Mean wall-clock time, including births and waiting for the GPU; 0 without steps.
+    double ms_per_step = 0.0;
+    /// Median over blocks of up to 16 steps; 0 without steps. Shader compilation in the first block does not affect the
+    /// median of three or more blocks.
     double ms_per_step_median = 0.0;
     std::uint32_t frames_written = 0;   ///< number of pictures
     std::uint32_t dumps_written = 0;    ///< number of files in dump_frames

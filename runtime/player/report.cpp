@@ -30,7 +30,7 @@ GeneratedTexts playerSchemas() {
 }
 
 void fields(FieldVisitor& visit, const PlayerReport& report) {
-    visit("settings", report.scene, {"Scene as simulated, with its own keys"});
+    visit("settings", report.scene, {"Simulated scene, with the keys of a scene file"});
     visit("device", report.device, {"OpenGL version, renderer and platform"});
     visit("shaders", stepPathName(report.path),
           {.help = "Shaders of the particle steps", .words = kWords<"fragment", "compute">});
@@ -47,13 +47,13 @@ void fields(FieldVisitor& visit, const PlayerReport& report) {
         visit_particles("in_contact", report.in_contact, {"Particles in contact in the last step"});
         visit_particles("collisions", report.collisions, {"Steps in contact, summed over live particles"});
     };
-    visit("particles", group(particles), {"Numbers of particles"});
+    visit("particles", group(particles), {"Particle counts"});
     visit("steps", report.scene.time.steps, {"Steps played"});
     visit("ms_per_step", report.ms_per_step, {"Mean time of a step", "ms", kFromZero});
     visit("ms_per_step_median", report.ms_per_step_median, {"Median time of a step", "ms", kFromZero});
     visit("frames", report.frames_written, {"Pictures written"});
-    visit("dumps", report.dumps_written, {"States written"});
-    visit("warnings", report.warnings, {"Probable mistakes in the scene, one line each"});
+    visit("dumps", report.dumps_written, {"Particle dumps written"});
+    visit("warnings", report.warnings, {"Likely errors in the scene, one line each"});
 }
 
 }  // namespace relief

@@ -33,7 +33,7 @@ Result<CheckReport> checkScene(const PlayerOptions& options) {
     if (std::uint64_t{render.width} * render.height > Frame::kPixelsMax) {
         return fail(ErrorCode::kLimit, quotedPath(options.input) + ": render.size has more than " +
                                            std::to_string(Frame::kPixelsMax) +
-                                           " pixels; choose a smaller one");
+                                           " pixels; choose a smaller size");
     }
     RELIEF_TRY(checkPictures(loaded.scene, loaded.bounds));
     CheckReport report;
@@ -123,7 +123,7 @@ void fields(FieldVisitor& visit, const CheckReport& report) {
     visit("bodies", report.world_bodies, {"Bodies of the world"});
     visit("maps", report.collider_maps, {"Maps of all colliders"});
     visit("files", report.files, {"The input and the files that it names"});
-    visit("warnings", report.warnings, {"Probable mistakes in the scene, one line each"});
+    visit("warnings", report.warnings, {"Likely errors in the scene, one line each"});
 }
 
 void fields(FieldVisitor& visit, const CheckFailure& failure) {

@@ -35,9 +35,9 @@ class ScenePicture {
     ScenePicture(const LoadedScene& loaded, Frame frame, ParticleRenderer particles)
         : loaded_(&loaded), frame_(std::move(frame)), particles_(std::move(particles)) {}
 
-    /// Creates the renderer of maps, or of the mesh of a single collider.
+    /// Creates the renderer for the maps, or for the mesh of a single collider.
     [[nodiscard]] Result<void> makeCollider(const ColliderView& view);
-    /// Draws everything except particles. \return the depth.
+    /// Draws everything except particles. \return the window depths.
     [[nodiscard]] Result<const GlTexture*> drawColliders(const Camera& camera, double seconds);
 
     const LoadedScene* loaded_;

@@ -68,7 +68,7 @@ std::vector<Pose> posesAt(const Scene& scene, double time) {
     return poses;
 }
 
-/// Returns the body of a collider of the scene; null if none of them is.
+/// Returns the body of a collider of the scene; null if `bodies` contains none.
 template <class Bodies>
 auto bodyOf(Bodies& bodies, std::size_t collider) {
     const auto found =
@@ -78,7 +78,7 @@ auto bodyOf(Bodies& bodies, std::size_t collider) {
 
 }  // namespace
 
-/// Uploads the colliders: a single one without a pose in its object space, others in world space.
+/// Uploads the colliders: a single collider without a pose in its object space, all others in world space.
 Result<void> Simulation::makeTextures(const LoadedScene& loaded, std::unique_ptr<ColliderSource> source) {
     const SceneCollider& first = loaded.scene.colliders.front();
     const std::vector<ColliderBody> bodies = bodiesOf(loaded, posesNow(0.0));
@@ -86,9 +86,9 @@ Result<void> Simulation::makeTextures(const LoadedScene& loaded, std::unique_ptr
         stream_ = RELIEF_TRY(makeStream(loaded, bodies, std::move(source)));
         return {};
     }
-    const bool alone = loaded.colliders.size() == 1 && !first.posed && !first.deforms();
-    textures_ = std::make_unique<WorldTextures>(
-        RELIEF_TRY(alone ? WorldTextures::create(*loaded.colliders.front()) : WorldTextures::create(bodies)));
+    const bool in_object_space = loaded.colliders.size() == 1 && !first.posed && !first.deforms();
+    textures_ = std::make_unique<WorldTextures>(RELIEF_TRY(
+        in_object_space ? WorldTextures::create(*loaded.colliders.front()) : WorldTextures::create(bodies)));
     return {};
 }
 
@@ -248,7 +248,7 @@ Result<void> Simulation::takeEvents(int in_flight) {
 }
 
 void Simulation::spawnFrom(const StepEvents& step) {
-    // Several lists always mean one per spawner, even if the lists were replaced since.
+    // If the step has several lists, they are one per spawner, even if the lists have been replaced since.
     const bool several = step.lists.size() > 1;
     const bool each = several || list_each_;
     rejected_ += each || spawners_.empty() ? 0 : step.dropped;
@@ -398,7 +398,7 @@ Result<void> Simulation::playClips(double time) {
 }
 
 void Simulation::setPoses(double time) {
-    const auto give = [&](const std::vector<Pose>& poses) {
+    const auto upload = [&](const std::vector<Pose>& poses) {
         if (stream_) {
             stream_->setPoses(poses);
         } else {
@@ -413,9 +413,9 @@ void Simulation::setPoses(double time) {
         for (const PlayedBody& body : played_) {
             shown_[body.index] = body.jumps ? poses[body.index] : shown_[body.index];
         }
-        give(shown_);
+        upload(shown_);
     }
-    give(poses);
+    upload(poses);
     shown_ = std::move(poses);
 }
 

@@ -44,29 +44,29 @@ class Simulation {
     /// textures name the world of the scene, or its first collider.
     [[nodiscard]] static Result<Simulation> create(const LoadedScene& loaded, SimulationOptions options = {});
 
-    /// Emits births, including those of [[spawn]] by events of the step before the last; updates poses and shapes of
+    /// Emits births, including births of [[spawn]] from events of the step before the last; updates poses and shapes of
     /// colliders to the end of the step; then steps the particles.
     /// Errors: those of LiveCollider::update and ParticleSystem::step.
     [[nodiscard]] Result<void> step() { return step(scene_->time.dt); }
     /// \param dt  seconds, > 0, instead of time.dt.
     [[nodiscard]] Result<void> step(float dt);
 
-    /// Applies changed forces, collision, types, air, ground and poses of the scene passed to create(); particles stay.
-    /// Capacity, integrator and colliders must be unchanged, except poses of colliders in a shared world. A collider
-    /// moves from its old pose to the new one during the next step.
+    /// Applies changed forces, collision, types, air, ground and poses of the scene passed to create(), and keeps all
+    /// particles. Capacity, integrator and colliders must be unchanged, except poses. A collider moves from its old pose
+    /// to the new one during the next step; the pose of a single collider in object space has no effect.
     /// \param emitters  replace the current ones; nullopt: keep them.
     /// Errors: those of the setters of ParticleSystem.
     [[nodiscard]] Result<void> change(std::optional<std::vector<Emitter>> emitters);
 
-    /// Passes the events of each step to `sink`, from the next step on and in order, a few steps late so that nothing
-    /// waits for the GPU. The tag is the number of the step, from 1. Besides new hits, the events include all that
-    /// [[spawn]] needs, up to kEventsMax per step.
-    /// \param min_speed  slower hits may be left out.
+    /// Passes the events of each step to `sink`, in order, starting with the next step. Events of step n are passed when
+    /// step n + 2 begins, so that the CPU rarely waits for the GPU. The tag is the number of the step, from 1. Besides
+    /// new hits, the events include all events that [[spawn]] needs, up to kEventsMax per step.
+    /// \param min_speed  slower hits may be omitted.
     /// Errors: those of setEvents().
     using EventSink = std::function<Result<void>(const StepEvents&)>;
     [[nodiscard]] Result<void> listHits(float min_speed, EventSink sink);
     static constexpr std::uint32_t kEventsMax = 1U << 18;
-    /// Passes on the events that are still in flight. Errors: those of the sink and of waitEvents().
+    /// Passes the events that are still in flight to the sink. Errors: those of the sink and of waitEvents().
     [[nodiscard]] Result<void> finishEvents() { return takeEvents(0); }
 
     /// Queues births for the next step, in addition to those of the emitters. Result and errors: as
@@ -78,25 +78,26 @@ class Simulation {
     /// Returns the warnings since the last call: those of the scene (LoadedScene::warnings), and one line for each
     /// collider of a streamed world that failed to load.
     [[nodiscard]] std::vector<std::string> takeWarnings();
-    /// Number of births of emitters and [[spawn]] rejected because the particle system was full.
+    /// Returns the number of births of emitters and [[spawn]] rejected because the particle system was full.
     [[nodiscard]] std::uint64_t rejected() const { return rejected_; }
-    /// Sets the points around which a streamed world has full detail, besides the emitters and instead of the scene's
-    /// camera. Takes effect with the next step.
+    /// Sets the points around which a streamed world has full detail, in addition to the emitters and instead of the
+    /// scene's camera. Takes effect with the next step.
     void setPoints(std::vector<PointOfInterest> points) { points_ = std::move(points); }
     /// Sets the pose of a collider that plays a clip, from the next step on; nullopt: the clip continues.
     /// Errors: kUsage (the collider plays no clip; AnimatedCollider::check()).
     [[nodiscard]] Result<void> setPose(std::size_t collider, std::optional<MeshPose> pose);
     /// Returns the mesh of a collider that plays clips; null for other colliders.
     [[nodiscard]] const AnimatedMesh* animatedMesh(std::size_t collider) const;
-    /// Uploads all wanted colliders of a streamed world that have arrived, without a limit of bytes, and requests the
-    /// others. Waits for the others if the source waits. Call it before a step. Errors: those of WorldStream::finish.
+    /// Uploads all wanted colliders of a streamed world that have arrived, without a byte limit. Requests the other
+    /// wanted colliders, and waits for them if the source can wait. Call it before a step.
+    /// Errors: those of WorldStream::finish.
     [[nodiscard]] Result<void> load();
-    /// nullopt if no world is streamed.
+    /// Returns nullopt if no world is streamed.
     [[nodiscard]] std::optional<StreamCounts> streamCounts() const {
         return stream_ ? std::optional(stream_->counts()) : std::nullopt;
     }
-    /// Returns the current poses of the colliders, in the order of the scene. For an animated one, it is the pose of
-    /// mesh().
+    /// Returns the current poses of the colliders, in the order of the scene. The pose of an animated collider is the
+    /// pose of its mesh().
     [[nodiscard]] std::vector<Pose> poses() const { return posesNow(particles_->time()); }
     /// Returns the current mesh of a deforming collider; null for other colliders.
     [[nodiscard]] const GpuMesh* mesh(std::size_t collider) const;
@@ -130,7 +131,7 @@ class Simulation {
     [[nodiscard]] Result<void> makeTextures(const LoadedScene& loaded,
                                             std::unique_ptr<ColliderSource> source);
     [[nodiscard]] WorldTextures& mutableTextures() { return stream_ ? stream_->textures() : *textures_; }
-    /// Sets the poses of all clips at a time, in seconds, or none on error. posesNow() then follows.
+    /// Moves all clips to a time, in seconds; none on error. Later calls of posesNow() must pass the same time.
     [[nodiscard]] Result<void> playClips(double time);
     /// Moves the bodies. A body that jumps does not push particles.
     void setPoses(double time);
@@ -152,11 +153,11 @@ class Simulation {
     [[nodiscard]] Result<void> moveColliders(double time);
     /// Records the events that [[spawn]] and the sink need, if any.
     [[nodiscard]] Result<void> setEvents();
-    /// Returns a list for each [[spawn]], as long as it can use. Empty if there are too many, or if a sink needs all
-    /// events.
+    /// Returns a list for each [[spawn]], with the number of events that it can use. Returns none if there are more
+    /// than kEventLists [[spawn]], or if a sink needs all events.
     [[nodiscard]] std::vector<EventOptions> spawnEventLists() const;
     void spawnFrom(const StepEvents& step);
-    /// Processes events until those of at most `in_flight` steps are pending.
+    /// Processes events until the events of at most `in_flight` steps are pending.
     [[nodiscard]] Result<void> takeEvents(int in_flight);
 
     const LoadedScene* loaded_ = nullptr;

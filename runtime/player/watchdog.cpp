@@ -13,7 +13,7 @@ namespace relief {
 namespace {
 
 std::mutex mutex;
-std::string last_line;  // message if the timer expires; empty at rest
+std::string last_line;  // message if the timer expires; empty while the timer is stopped
 
 /// Runs on a thread of the timer.
 void onExpired(sigval /*value*/) {

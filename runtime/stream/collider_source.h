@@ -25,14 +25,14 @@ class ColliderSource {
     ColliderSource& operator=(const ColliderSource&) = delete;
     virtual ~ColliderSource() = default;
 
-    /// Requests one of world.colliders in full detail. Never called again for a collider that has not arrived.
+    /// Requests one of world.colliders in full detail. Not called again for the same collider before it has arrived.
     virtual void request(std::size_t collider) = 0;
     /// Returns the next collider that has arrived, or nullopt. Never waits.
     [[nodiscard]] virtual std::optional<Arrival> take() = 0;
     /// Likewise, but waits while requests are pending. Sources that cannot wait return take().
     [[nodiscard]] virtual std::optional<Arrival> wait() { return take(); }
-    /// Takes back a collider to free it without blocking the caller: freeing megabytes takes a fraction of a
-    /// millisecond.
+    /// Accepts a collider that is no longer needed, and frees it without blocking the caller: freeing megabytes takes a
+    /// fraction of a millisecond.
     virtual void release(Collider /*used*/) {}
 };
 

@@ -45,7 +45,7 @@ class StreamPlan {
     /// Returns the colliders in order of priority: by the distance of their nearest body, in radii of the point of
     /// interest.
     [[nodiscard]] std::span<const std::uint32_t> wanted() const { return wanted_; }
-    /// Returns that distance for a wanted collider; valid until the next look().
+    /// Returns the distance that orders a wanted collider; valid until the next look().
     [[nodiscard]] float nearest(std::uint32_t collider) const { return nearest_[collider]; }
 
   private:
@@ -55,7 +55,7 @@ class StreamPlan {
     std::vector<StreamBody> bodies_;
     std::vector<PointOfInterest> points_;
     std::size_t next_ = 0;
-    std::vector<float> nearest_;  // for each collider so far, in radii
+    std::vector<float> nearest_;  // for each collider: smallest distance measured so far, in radii
     std::vector<std::uint32_t> wanted_;
 };
 

@@ -31,9 +31,9 @@ constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 struct Streamed {
     std::size_t body = kNone;          // a body that uses it; kNone if there is none or it is not streamed
     std::size_t texels = 0;            // of its full map
-    Collider coarse;                   // without texels, except the one with the size of its tree
+    Collider coarse;                   // without texels, except texel 0, which stores the size of the tree
     std::optional<std::size_t> place;  // location of the full map's texels
-    std::uint64_t last_wanted = 0;     // number of the last choice that included it
+    std::uint64_t last_wanted = 0;     // State::choices when it was last wanted
     std::uint64_t refused = kNone;     // State::era in which it did not fit
     bool requested = false;            // requested but not yet uploaded
     bool failed = false;
@@ -121,7 +121,7 @@ struct WorldStream::State {
     std::uint64_t coarse_bytes = 0;          // of all permanently resident texels
     std::size_t room = 0;                    // texels
     std::size_t spare = 0;                   // texels reserved against fragmentation
-    std::vector<std::uint32_t> wanted = {};  // those that fit together, most urgent first
+    std::vector<std::uint32_t> wanted = {};  // wanted colliders that fit together, most urgent first
     std::uint64_t choices = 0;
     std::uint64_t era = 0;  // changes if the wanted set changes or a collider is evicted
     std::deque<Upload> arrived = {};
@@ -133,9 +133,9 @@ struct WorldStream::State {
     void request();
     void take(ColliderSource::Arrival arrival);
     void giveUp(std::size_t collider, const std::string& warning);
-    /// Returns whether its texels fit if all unwanted colliders are evicted.
+    /// Returns whether the collider's texels fit if all unwanted colliders are evicted.
     [[nodiscard]] bool hasRoom(const Streamed& collider) const;
-    /// Allocates a range for its texels. Evicts colliders that are not wanted, those wanted least recently first.
+    /// Allocates a range for the collider's texels. Evicts unwanted colliders, the least recently wanted first.
     Result<bool> makeRoom(Streamed& collider);
     /// \param bytes  maximum to upload.
     Result<void> upload(std::uint64_t bytes);
@@ -144,7 +144,7 @@ struct WorldStream::State {
 
 void WorldStream::State::choose() {
     ++choices;
-    // Resident and pending colliders count as slightly nearer; otherwise equally distant ones would alternate.
+    // Resident and pending colliders count as slightly nearer; otherwise equally distant colliders would alternate.
     std::vector<std::pair<float, std::uint32_t>> order;
     for (const std::uint32_t i : plan.wanted()) {
         const bool here = colliders[i].present || colliders[i].requested;
@@ -248,7 +248,7 @@ Result<void> WorldStream::State::upload(std::uint64_t bytes) {
         std::size_t count = std::min(texels, collider.texels - first.done);
         if (const std::size_t beyond = (*collider.place + first.done + count) % textures.rowTexels();
             count < collider.texels - first.done && beyond < count) {
-            count -= beyond;  // up to the end of a row: the GL then needs one copy instead of two
+            count -= beyond;  // end at the end of a row: this needs one GL copy instead of two
         }
         textures.upload(
             *collider.place + first.done,
@@ -294,7 +294,7 @@ Result<std::unique_ptr<WorldStream>> WorldStream::create(const World& world,
         names.push_back(quotedPath(collider.file));
     }
     if (coarse_bytes > options.gpu_bytes) {
-        return fail(ErrorCode::kLimit, "the resident colliders of this world take " +
+        return fail(ErrorCode::kLimit, "the resident colliders of this world need " +
                                            std::to_string(coarse_bytes) +
                                            " bytes of GPU memory, more than the limit of " +
                                            std::to_string(options.gpu_bytes) + "; raise the limit");
@@ -318,13 +318,13 @@ Result<std::unique_ptr<WorldStream>> WorldStream::create(const World& world,
               .names = std::move(names),
               .coarse_bytes = coarse_bytes,
               .room = room,
-              // Otherwise the gaps between ranges would be too short for the last ones.
+              // Without a reserve, the gaps between ranges would be too short for the last colliders.
               .spare = room < texels ? room / 8 : 0});
     for (std::size_t i = 0; i < state->colliders.size(); ++i) {
         if (state->colliders[i].texels > room) {
-            state->giveUp(
-                i, state->names[i] + " takes " + std::to_string(kTexelSize * state->colliders[i].texels) +
-                       " bytes of GPU memory, but there is room for " + std::to_string(kTexelSize * room));
+            state->giveUp(i, state->names[i] + " needs " +
+                                 std::to_string(kTexelSize * state->colliders[i].texels) +
+                                 " bytes of GPU memory; the maximum is " + std::to_string(kTexelSize * room));
         }
     }
     return std::unique_ptr<WorldStream>(new WorldStream(std::move(state)));

@@ -41,7 +41,7 @@ struct StreamOptions {
 
 struct StreamCounts {
     std::size_t wanted = 0;       ///< colliders with a coarse version that intersect the points' balls
-    std::size_t present = 0;      ///< of the wanted ones, those resident with full maps
+    std::size_t present = 0;      ///< wanted colliders that are resident with full maps
     std::size_t failed = 0;       ///< colliders that could not be loaded
     std::uint64_t gpu_bytes = 0;  ///< total resident
     std::uint64_t uploaded = 0;   ///< bytes since creation
@@ -50,7 +50,7 @@ struct StreamCounts {
 class WorldStream {
   public:
     /// Uploads the coarse colliders. Needs a current context, as do all functions that are not const.
-    /// \param bodies  point to the colliders in `coarse`, or to others, which are not streamed.
+    /// \param bodies  point to the colliders in `coarse`, or to other colliders, which are not streamed.
     /// \param coarse  the world's colliders with WorldDetail::kCoarse, in order. Not needed after the call.
     /// Errors: those of WorldTextures::create; kLimit if the coarse colliders exceed gpu_bytes.
     [[nodiscard]] static Result<std::unique_ptr<WorldStream>> create(const World& world,

@@ -23,7 +23,7 @@ using openvdb::points::PointDataGrid;
 using openvdb::points::PointDataTree;
 using openvdb::tools::PointIndexGrid;
 
-constexpr double kPointsAVoxel = 8.0;
+constexpr double kPointsPerVoxel = 8.0;
 constexpr double kVoxelsMax = 4096.0;  // along the longest side
 constexpr double kIndexMax = 0x1p24;   // maximum voxel index
 
@@ -34,7 +34,7 @@ double voxelSize(const std::vector<openvdb::Vec3f>& positions) {
         box.expand(openvdb::Vec3d(p));
     }
     const double side = positions.empty() ? 0.0 : box.extents()[box.maxExtent()];
-    const double cells = std::cbrt(static_cast<double>(positions.size()) / kPointsAVoxel);
+    const double cells = std::cbrt(static_cast<double>(positions.size()) / kPointsPerVoxel);
     const double size = side > 0.0 ? side / std::clamp(cells, 1.0, kVoxelsMax) : 1.0;
     double farthest = 0.0;
     for (int i = 0; i < 3 && !positions.empty(); ++i) {

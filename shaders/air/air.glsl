@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Forces on particles besides collision and gravity. runtime/air/air_block.h lists the defines. Without forces, nothing
-// is compiled and the functions return 0.
+// Forces on particles besides collision and gravity. runtime/air/air_block.h lists the defines. Forces without a define
+// contribute 0.
 //
 //     airVelocity        wind + flow + curl noise: acts through drag     object units/s
 //     fieldAcceleration  attractors and vortices                         object units/s^2
@@ -32,7 +32,7 @@ vec3 reliefFlow(vec3 p) {
     }
     ivec3 last = textureSize(u_relief_flow, 0) - 1;
     vec3 u = clamp((p - air_flow_min.xyz) * air_flow_scale.xyz, vec3(0.0), vec3(last));
-    // The last node has no neighbour beyond it, so it is reached from the cell before it.
+    // The last node has no next neighbour, so points at it use the cell before it.
     ivec3 a = clamp(ivec3(u), ivec3(0), max(last - 1, 0));
     ivec3 b = min(a + 1, last);
     vec3 f = u - vec3(a);

@@ -18,8 +18,8 @@ uint curlDraw(uint point, uint key) {
 }
 
 // Convert four bits each to floats: 1 + n/16 from bits 19 to 22, and 1 + n/256 from bits 15 to 18, for n from 0 to 15.
-// The bits are placed in a float's mantissa because GPUs cast integers slowly. one: the bits of 1.0, passed in a
-// uniform because GPUs then fuse both operations, which they do not for two constants.
+// The bits are placed in a float's mantissa because GPUs cast integers slowly. one: the bits of 1.0, from a uniform,
+// because GPUs do not fuse the AND and the OR if both masks are constants.
 vec3 curlHigh(uvec3 h, uint one) {
     return uintBitsToFloat((h & 0x780000u) | one);
 }
@@ -28,8 +28,8 @@ vec3 curlLow(uvec3 h, uint one) {
     return uintBitsToFloat((h & 0x078000u) | one);
 }
 
-// Returns the contribution of a corner; d is the offset of the point from it. part: factors of curlHigh and curlLow,
-// for the patterns of key.x and key.y; middle: added to them.
+// Returns the contribution of a corner; d is the offset of the point from the corner. part: factors of curlHigh and
+// curlLow, for the patterns of key.x and key.y; middle: added to both products.
 vec3 curlCorner(vec3 d, uint corner, uvec2 key, vec4 part, vec2 middle, uint one) {
     uint point = corner ^ (corner >> 16u);
     uint h = curlDraw(point, key.x);

@@ -3,8 +3,8 @@
 // `relief-bench step --bricks`. Everything except the solid is shared with particles/step.frag. With RELIEF_DENSE there
 // is one brick and no index.
 //
-// Near the surface a point costs one index fetch and one filtered fetch of the atlas; elsewhere only the index fetch,
-// and outside the mesh's box nothing. Only points inside need a normal, for three more filtered fetches.
+// A point near the surface costs one index fetch and one filtered fetch of the atlas. Other points in the mesh's box cost
+// one index fetch, and points outside the box no fetch. Only points inside the mesh need a normal: three more fetches.
 //!include particles/step.glsl
 
 #if !defined(RELIEF_DENSE)
@@ -27,7 +27,7 @@ float distanceAt(vec3 place) {
     return u_range * textureLod(u_atlas, place * u_per_node, 0.0).r;
 }
 
-// Returns the distance at p, and the position in the atlas that it is read from, in texels; false if there is no brick.
+// Computes the distance at p and its position in the atlas, in texels. Returns false if there is no brick.
 bool brickAt(vec3 p, out float distance, out vec3 place) {
     bool found = false;
     distance = RELIEF_FAR_OUTSIDE;

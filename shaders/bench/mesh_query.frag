@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Answers queries of mesh_tree.glsl, for its test.
+// Queries mesh_tree.glsl at the points of a texture, for its test.
 //!include bench/mesh_tree.glsl
 
 uniform highp sampler2D u_points;

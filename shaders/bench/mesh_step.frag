@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A step with the exact signed distance of a triangle mesh in place of depth maps: the rival of
+// A step with the exact signed distance of a triangle mesh in place of depth maps: the baseline of
 // `relief-bench step --exact`. Everything except the solid is shared with particles/step.frag.
 //
-// With RELIEF_KEPT, a step stores a lower bound of the distance from the surface if the particle is outside. Until the
-// particle has moved that far it is still outside, and needs no query. Then a query only searches a few steps' length: if
-// nothing is that close, the particle is still outside. The results equal those without RELIEF_KEPT.
+// With RELIEF_KEPT, a step stores a lower bound of the distance from the surface if the particle is outside. The particle
+// stays outside, and needs no query, until it has moved that far. A query then searches only a distance of a few steps:
+// if it finds no surface, the particle is still outside. The results equal those without RELIEF_KEPT.
 //!include particles/step.glsl
 //!include bench/mesh_tree.glsl
 
@@ -31,7 +31,7 @@ ivec2 particleTexel() {
 #endif
 }
 
-// Returns the bound at p, a point of this step, and the distance to search if it is not positive.
+// Returns the bound at p, a point on the path of this step. within: distance to search if the bound is not positive.
 float keptAt(vec3 p, out float within) {
     ivec2 texel = particleTexel();
     float kept = texelFetch(u_kept, texel, 0).r;

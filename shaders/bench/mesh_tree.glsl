@@ -103,8 +103,8 @@ void visitTriangle(vec3 p, uint triangle, inout MeshPoint best) {
 // zero. The search visits near children first.
 MeshPoint closestPoint(vec3 p, float within2) {
     MeshPoint best = MeshPoint(vec3(0.0), within2, 0u, RELIEF_FACE);
-    // A key is a lower bound of a squared distance as bits, whose order is that of the numbers. References: a node, or
-    // a leaf: bit 31, number of triangles, first triangle.
+    // A key is a lower bound of a squared distance as bits, which sort like the numbers. A reference is a node, or a
+    // leaf: bit 31, number of triangles, first triangle.
     uint keys[RELIEF_TREE_STACK];
     uint references[RELIEF_TREE_STACK];
     int top = 0;
@@ -185,8 +185,8 @@ vec3 pseudonormal(MeshPoint at) {
     return normal;
 }
 
-// Returns the signed distance, and the normal, which has unit length and points outwards. Returns the positive bound of
-// the search if it found nothing.
+// Returns the signed distance, and the normal, which has unit length and points outwards. If the search found no point,
+// returns its positive bound.
 float meshDistance(MeshPoint at, out vec3 normal) {
     normal = pseudonormal(at);
     float distance = sqrt(at.distance2);

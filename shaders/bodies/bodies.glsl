@@ -23,7 +23,7 @@ vec3 reliefMovedBack(int body, vec3 p) {
     return before;
 }
 
-// Rotates a direction from world to object space, up to its length; and back.
+// Rotates a direction from world to object space, which scales its length; and back.
 vec3 reliefTurned(int body, vec3 v) {
     return vec3(reliefDot(reliefBodyRow(body, 0).xyz, v), reliefDot(reliefBodyRow(body, 1).xyz, v),
                 reliefDot(reliefBodyRow(body, 2).xyz, v));
@@ -72,7 +72,7 @@ ReliefField reliefBodyField(int body, vec3 p, float radius, bool whole) {
 
 #endif
 
-// Joins a body to the union of the previous ones. The nearest (inside: the deepest) decides; ties go to the first.
+// Adds a body to the union of the previous bodies. The smallest distance decides; ties go to the lower index.
 void reliefJoinBody(inout ReliefField best, inout int best_body, int body, vec3 p, float radius, bool whole) {
 #if defined(RELIEF_MASKS)  // only in a step: step.frag
     if (!collidesWith(reliefBodyMaps(body).w)) {
@@ -129,7 +129,7 @@ uvec2 reliefFirstEntry(inout ReliefSearch search, vec3 p) {
     return list.zw;
 }
 
-// Returns the next bodies whose boxes contain p, from x on; -1: none. There may be more if w is set.
+// Returns up to four bodies whose boxes contain p, starting at x; -1: none. If w is set, there may be more.
 ivec4 reliefNextBodies(inout ReliefSearch search, vec3 p, float radius) {
     ivec4 found = ivec4(-1);
     while (found.w < 0 && (search.entry < search.end || search.level < u_relief_world_place.w)) {
@@ -150,7 +150,7 @@ ivec4 reliefNextBodies(inout ReliefSearch search, vec3 p, float radius) {
 // Evaluates the union of all bodies. The distance is in world units; body is -1 if no body votes. Without `whole`, and
 // for placed bodies, only bodies whose boxes contain p are evaluated; boxes are enlarged by the radius of a ball. No
 // other body contains p, and patches have no distance outside their box. Each lane first searches for its next bodies,
-// so that all lanes then evaluate theirs at the same time.
+// so that all lanes then evaluate bodies at the same time.
 ReliefField reliefUnion(vec3 p, float radius, bool whole, out int body) {
     ReliefField best = ReliefField(RELIEF_FAR_OUTSIDE, vec3(0.0), -1);
     body = -1;
@@ -185,9 +185,9 @@ ReliefField reliefEvaluate(vec3 p) {
 
 #if RELIEF_LIVE
 
-// Returns the motion of the surface of map i of a body at a point q of object space since the previous update. Of two
-// surfaces, uses the one whose normal is more similar to `normal`, also in object space. Zero if the map has no
-// surface.
+// Returns the motion of the surface of map i of a body at a point q of object space since the previous update. If the
+// texel has two surfaces, uses the surface whose normal is more similar to `normal`, in object space. The texel must
+// have a surface.
 vec3 reliefMotion(int body, int i, vec3 q, vec3 normal) {
     vec3 in_map = reliefInMap(i, q);
     ivec4 place = reliefMapPlace(i);
@@ -204,9 +204,9 @@ vec3 reliefMotion(int body, int i, vec3 q, vec3 normal) {
 }
 
 // Returns the motion of the surface of a body near a world point; zero for bodies that are not live. Each map is
-// evaluated separately because one may miss a surface near a silhouette that another one sees. Of maps that see the
-// surface equally near, the one that faces it most decides: in a view along the surface, the piece in the same texel
-// may be far away.
+// evaluated separately because near a silhouette one map may miss a surface that another map sees. If several maps see
+// the surface at the same distance, the map that faces it most decides: in a view along the surface, the surface in the
+// same texel may be far away.
 vec3 reliefBodyMotion(int body, vec3 p) {
     if (reliefBodyMaps(body).z == 0) {
         return vec3(0.0);

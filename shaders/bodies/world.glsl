@@ -9,9 +9,9 @@
 //                              unit), restitution, 1 - friction, 1 if it moves in the step; world to object space at
 //                              the end of the step (a rotation divided by the scale), three rows; the transform of a
 //                              point of the body from the start of the step to its end, in world space, three rows
-//     by u_relief_levels       lists of the broad phase (body_grid.h): index of the second entry; index after the last;
+//     see u_relief_levels      lists of the broad phase (body_grid.h): index of the second entry; index after the last;
 //                              body (negative: none) and hash of the first entry
-//     by the lists             entries: body and hash; 0; 0
+//     see the lists            entries: body and hash; 0; 0
 layout(std140) uniform ReliefMaps {
     ivec4 u_relief_count;        // maps in use; then RELIEF_LOG2_WIDTHS
     ivec4 u_relief_world_place;  // log2 of the width; the first texel of body 0; bodies; levels

@@ -117,7 +117,7 @@ vec3 reliefToVolume(int i, vec3 p) {
 }
 
 // Evaluates the maps [first, end) for a point that should be inside; any distance >= 0 means outside. Map `start` is
-// evaluated first: it saw p nearby and is most likely to classify it as outside.
+// evaluated first: it sees the surface near p and is most likely to classify p as outside.
 ReliefBest reliefProbe(int first, int end, int start, vec3 p) {
     ReliefBest best = RELIEF_NO_VOTE;
     int i = start;
@@ -192,7 +192,7 @@ ReliefField reliefSolid(vec3 p) {
 }
 
 // Returns reliefInside(reliefSolid(p)), evaluating map `first` before the others: the map that decided nearby is most
-// likely to classify p as outside. With few maps, constant indices are cheaper than that order.
+// likely to classify p as outside. With few maps, constant indices are cheaper than this order.
 bool reliefSolidAt(vec3 p, int first) {
 #if RELIEF_MAP_CAPACITY <= 4
     return reliefInside(reliefSolid(p));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // For collider.glsl: tests of map formats, and the votes of projected maps, orthographic and cube.
 
-// The format of a map, a constant if all are alike: otherwise a GL may execute the branches of all formats for every
-// map. ColliderTextures defines RELIEF_HAS_... for the formats present.
+// The tests of a map's format are constants if all maps have the same format: otherwise a GL may execute the branches of
+// all formats for every map. ColliderTextures defines RELIEF_HAS_... for the formats present.
 bool reliefIsCube(ivec4 info) {
 #if !defined(RELIEF_HAS_CUBE)
     return false;
@@ -44,7 +44,7 @@ float reliefEmpty(ivec4 info) {
     return reliefHas(info, RELIEF_EMPTY_IS_OUTSIDE) ? RELIEF_FAR_OUTSIDE : RELIEF_FAR_INSIDE;
 }
 
-// Functions that every particle runs do not return early: a GL may turn each of these into a loop.
+// Functions that run for every particle do not return early: a GL may turn an early return into a loop.
 
 // A point of an orthographic map relative to the ray through its texel's centre.
 struct ReliefSight {

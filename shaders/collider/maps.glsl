@@ -37,8 +37,8 @@ layout(std140) uniform ReliefMaps {
 };
 
 // In a tour (collider_tour.glsl) each lane of a warp reads a different map. Uniform blocks serve different addresses
-// one after another, shared memory nearly all at once. The maps below are therefore the work group's copy in shared
-// memory. It is copied from the same buffer bound as storage, because copying also reads different addresses. The
+// one after another, shared memory nearly all at once. u_relief_maps is therefore the work group's copy in shared
+// memory. The copy is read from the same buffer bound as storage, because copying also reads different addresses. The
 // counts stay in the block.
 #if defined(RELIEF_TOUR)
 layout(std140, binding = RELIEF_TOUR_STORAGE) readonly buffer ReliefMapsStorage {
@@ -47,7 +47,7 @@ layout(std140, binding = RELIEF_TOUR_STORAGE) readonly buffer ReliefMapsStorage 
 };
 shared ReliefMap s_relief_maps[RELIEF_MAP_CAPACITY];
 
-// Call it first, in every invocation of the group.
+// Copies the maps. Must be called first, in every invocation of the group.
 void reliefShare(int lane, int lanes) {
     for (int i = lane; i < RELIEF_MAP_CAPACITY; i += lanes) {
         s_relief_maps[i] = b_relief_maps[i];

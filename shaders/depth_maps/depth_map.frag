@@ -39,8 +39,8 @@ float insideTriangle(float depth) {
 }
 
 // Returns the packed normal and depth code of the plane through the surface point on the centre's ray
-// (bake/named_maps/plane_fit.cpp with one ray per texel). Moves it towards the viewer to the next code; if it is too
-// steep to be stored, it faces the viewer.
+// (bake/named_maps/plane_fit.cpp with one ray per texel). The depth is rounded towards the viewer. A plane too steep to
+// be stored is replaced by a plane that faces the viewer.
 uvec2 stored(uint normal, float depth) {
     float u = u_far ? 1.0 - depth : depth;  // from the start of the ray
     vec3 onwards = normalize(u_far ? -u_ray : u_ray);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Generated from relief.glsl by translate.py.
-// Collides particles with a collider of Relief in any shader:
+// Collides particles with a Relief collider in any shader:
 //     ReliefSurface s = reliefDistance(texels, collider, p);                     // nearest surface of a point
 //     ReliefMotion m = reliefCollide(texels, collider, p, v, radius, 0.4, 0.2);  // a particle after the contact
 // texels: RGBA16UI without filtering, 2048 texels wide. collider: 80 bytes, laid out as std140. relief.h returns both.
@@ -91,7 +91,7 @@ inline float4 reliefPatchCodes(texture2d<uint> texels, int first, uint2 record, 
     int side = int(squares) + 1;
     int at = int(corner.y) * side + int(corner.x);
     int end = side * side - 1;
-    // They lie in two consecutive texels. For 2 by 2 heights, all but the last are in the record.
+    // The codes lie in two consecutive texels. For 2 by 2 heights, all codes except the last are in the record.
     uint4 words = uint4(record.y, 0u, 0u, 0u);
     if (side > 2) {
         int begin = at / 8;
@@ -169,8 +169,8 @@ inline ReliefLeaf reliefPatchLeaf(texture2d<uint> texels, int4 place, float3 p) 
     return leaf;
 }
 
-// Returns xyz: the normal in map space; w: the distance, in roots. Without `whole`, a cell without a patch that is
-// outside returns 1.0e30, which is faster. p, place: as for reliefPatchLeaf().
+// Returns xyz: the normal in map space; w: the distance, in roots. Without `whole`, an outside cell without a patch
+// returns 1.0e30, which is faster. p, place: as for reliefPatchLeaf().
 inline float4 reliefPatches(texture2d<uint> texels, int4 place, float3 p, bool whole) {
     ReliefLeaf leaf = reliefPatchLeaf(texels, place, p);
     uint2 record = leaf.record;
@@ -201,7 +201,7 @@ inline float4 reliefPatches(texture2d<uint> texels, int4 place, float3 p, bool w
     return vote;
 }
 
-// q: map space. roots: their numbers along x, y and z.
+// q: map space. roots: number of root cells along x, y and z.
 inline bool reliefInRoots(float3 q, float3 roots) {
     return q.x >= 0.0 && q.y >= 0.0 && q.z >= 0.0 && q.x < roots.x && q.y < roots.y && q.z < roots.z;
 }
@@ -228,8 +228,8 @@ inline ReliefSurface reliefDistance(texture2d<uint> texels, ReliefCollider colli
 }
 
 // Returns a ball's motion after a step to position p with velocity v. If it overlaps the collider, it moves to the
-// surface. A velocity into the surface is reflected: restitution, 0 to 1, scales its normal component, 1 - friction, 0
-// to 1, its tangential one. Restitution 0 slides; with friction 1, the ball sticks.
+// surface. A velocity into the surface is reflected: restitution (0 to 1) scales its normal component, and 1 - friction
+// (0 to 1) its tangential component. With restitution 0 the ball slides; with friction 1 as well, it sticks.
 inline ReliefMotion reliefCollide(texture2d<uint> texels, ReliefCollider collider, float3 p, float3 v, float radius,
                            float restitution, float friction) {
     ReliefSurface surface = reliefNear(texels, collider, p, radius);

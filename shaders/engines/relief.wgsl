@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Generated from relief.glsl by translate.py.
-// Collides particles with a collider of Relief in any shader:
+// Collides particles with a Relief collider in any shader:
 //     ReliefSurface s = reliefDistance(texels, collider, p);                     // nearest surface of a point
 //     ReliefMotion m = reliefCollide(texels, collider, p, v, radius, 0.4, 0.2);  // a particle after the contact
 // texels: RGBA16UI without filtering, 2048 texels wide. collider: 80 bytes, laid out as std140. relief.h returns both.
@@ -86,7 +86,7 @@ fn reliefPatchCodes(texels: texture_2d<u32>, first: i32, record: vec2u, corner: 
     let side = i32(squares) + 1;
     var at = i32(corner.y) * side + i32(corner.x);
     var end = side * side - 1;
-    // They lie in two consecutive texels. For 2 by 2 heights, all but the last are in the record.
+    // The codes lie in two consecutive texels. For 2 by 2 heights, all codes except the last are in the record.
     var words = vec4u(record.y, 0u, 0u, 0u);
     if (side > 2) {
         let begin = at / 8;
@@ -164,8 +164,8 @@ fn reliefPatchLeaf(texels: texture_2d<u32>, place: vec4i, p: vec3f) -> ReliefLea
     return leaf;
 }
 
-// Returns xyz: the normal in map space; w: the distance, in roots. Without `whole`, a cell without a patch that is
-// outside returns 1.0e30, which is faster. p, place: as for reliefPatchLeaf().
+// Returns xyz: the normal in map space; w: the distance, in roots. Without `whole`, an outside cell without a patch
+// returns 1.0e30, which is faster. p, place: as for reliefPatchLeaf().
 fn reliefPatches(texels: texture_2d<u32>, place: vec4i, p: vec3f, whole: bool) -> vec4f {
     let leaf = reliefPatchLeaf(texels, place, p);
     var record = leaf.record;
@@ -196,7 +196,7 @@ fn reliefPatches(texels: texture_2d<u32>, place: vec4i, p: vec3f, whole: bool) -
     return vote;
 }
 
-// q: map space. roots: their numbers along x, y and z.
+// q: map space. roots: number of root cells along x, y and z.
 fn reliefInRoots(q: vec3f, roots: vec3f) -> bool {
     return q.x >= 0.0 && q.y >= 0.0 && q.z >= 0.0 && q.x < roots.x && q.y < roots.y && q.z < roots.z;
 }
@@ -223,8 +223,8 @@ fn reliefDistance(texels: texture_2d<u32>, collider: ReliefCollider, p: vec3f) -
 }
 
 // Returns a ball's motion after a step to position p with velocity v. If it overlaps the collider, it moves to the
-// surface. A velocity into the surface is reflected: restitution, 0 to 1, scales its normal component, 1 - friction, 0
-// to 1, its tangential one. Restitution 0 slides; with friction 1, the ball sticks.
+// surface. A velocity into the surface is reflected: restitution (0 to 1) scales its normal component, and 1 - friction
+// (0 to 1) its tangential component. With restitution 0 the ball slides; with friction 1 as well, it sticks.
 fn reliefCollide(texels: texture_2d<u32>, collider: ReliefCollider, p: vec3f, v: vec3f, radius: f32, restitution: f32,
     friction: f32) -> ReliefMotion {
     let surface = reliefNear(texels, collider, p, radius);

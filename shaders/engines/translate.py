@@ -3,8 +3,8 @@
 """Translates relief.glsl to the other shading languages: translate.py [--check]
 
 Writes relief.hlsl, relief.metal, relief.wgsl and relief.gdshaderinc beside it; with --check, fails if one differs.
-relief.glsl keeps to what this script reads: one statement per line, no overloads, constructors with one argument per
-component or vector, `?:` between parentheses, commas or the ends of a statement, unsigned shift counts.
+relief.glsl uses only the GLSL that this script translates: one statement per line, no overloads, constructors with one
+argument per component or vector, `?:` between parentheses, commas or the ends of a statement, unsigned shift counts.
 """
 import pathlib
 import re
@@ -114,7 +114,7 @@ def joined(text):
 
 
 def wrapped(line):
-    """Breaks a line of more than 120 columns at its last comma that fits, in the fewest parentheses."""
+    """Breaks a line of more than 120 columns at the comma in the fewest parentheses that fits; the last of several."""
     if len(line) <= 120 or line.lstrip().startswith("//"):
         return line
     commas = [match.start() for match in re.finditer(", ", line[:120])]

@@ -26,8 +26,8 @@ layout(location = 1) out vec4 o_surface;
 layout(location = 2) out vec4 o_velocity;
 layout(location = 3) out vec4 o_identity;
 
-// In: the k-th event counted by the entries from `first` on, k from 0. Out: k relative to the returned entry. of: 1 in
-// the component of the list.
+// Returns the entry of a level, from `first` on, whose count includes event k. k: from 0 and relative to entry `first`;
+// on return, relative to the returned entry. of: 1 in the component of the list.
 int descended(highp sampler2D level, vec4 of, int first, inout float k) {
     int i = first;
     for (; i < first + RELIEF_EVENTS_COUNTED; ++i) {

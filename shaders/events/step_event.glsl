@@ -7,7 +7,7 @@
 //                       z       approach speed along the normal, relative to the surface, >= 0
 //                       w       flags, direction, material and body (kEventFlags in constants.h); 0: no event
 //
-// Paths are straight within a step: the event was at position before + w * velocity.
+// Paths are straight within a step: the event occurred at (position before the step) + w * velocity.
 RELIEF_STATE_OUT(2) vec4 o_event_velocity;
 RELIEF_STATE_OUT(3) vec4 o_event_surface;
 
@@ -16,7 +16,7 @@ void writeNoEvent() {
     o_event_surface = vec4(0.0);
 }
 
-// Returns all components but the largest, and the direction of that: 2 * axis, + 1 if it is negative.
+// Returns the two smaller components, and the direction of the largest: 2 * axis, + 1 if it is negative.
 vec3 packedNormal(vec3 n) {
     vec3 a = abs(n);
     if (a.x >= a.y && a.x >= a.z) {

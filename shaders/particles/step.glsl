@@ -45,7 +45,7 @@ bool insideBefore(vec3 p, float radius, Solid s, bool free);
 vec3 pointBefore(Solid s, vec3 p);
 // Moves a point of a body from the start to the end of the step.
 vec3 pointNow(int body, vec3 p);
-// Returns restitution and 1 - friction of a body, factors of the particle's own.
+// Returns restitution and 1 - friction of a body, as factors on the values of the particle.
 vec2 bodyResponse(int body);
 
 // Returns the material of a body at a point of its surface at the end of the step; see reliefMaterial().
@@ -153,9 +153,9 @@ vec3 pushed(vec3 p, vec3 v, ParticleType type) {
 // before and after this step's forces; vn and along are the normal and tangential components of `relative`.
 vec3 bounced(vec3 v_begin, vec3 relative, float vn, vec3 along, vec3 n, ParticleType type, vec2 response) {
     float slide = dot(relative, relative) >= type.threshold * type.threshold ? response.y : 1.0;
-    // The particle stays at p, above the surface, so it gets back the speed that it had there, without this step's
-    // forces. Thus no bounce adds energy, and bouncing ends. (At a step between texels, v may enter the collider but
-    // point outwards: no bounce.)
+    // The particle stays at p, above the surface, so it bounces with the speed that it had there, without this step's
+    // forces. Thus no bounce adds energy, and bouncing ends. (At a depth step between texels, v may enter the collider
+    // but point outwards: no bounce.)
     float arrives = min(max(-dot(v_begin, n), 0.0), abs(vn));
     vec3 left = slide * along + (response.x * arrives) * n;
     // Below a thousandth of a step's gravity, speed is rounding error and would cause creep.
@@ -241,8 +241,8 @@ void stepAt(ivec2 texel) {
     State state = stateAt(texel);
     vec4 birth = texelFetch(u_birth, texel, 0);
     ParticleType type = typeOf(birth);
-    // Compares numbers that the CPU computed, so both agree on the step. (Lifetime losses are only known to the GPU;
-    // the CPU frees the index at the original time of death.)
+    // Compares numbers that the CPU computed, so CPU and GPU agree on the step of death. (Lifetime losses are only on the
+    // GPU; the CPU frees the index at the original time of death.)
     float death = birth.y - type.loss * state.collisions;
 #if defined(RELIEF_MATERIAL_LOSS)
     death -= g_lost * (birth.y - birth.x);

@@ -6,8 +6,8 @@
 //     velocity texture   x y z   world units/s
 //                        w       contact in the last step (constants.h): RELIEF_CONTACT_NONE, _COLLIDED, _CAUGHT (and
 //                                pushed out); permanently at rest: _STOPPED on the floor, _STOPPED + 1 + b on body b.
-//                                The fractional part is the fraction of its lifetime lost to materials:
-//                                RELIEF_LOST_MOST for all
+//                                The fractional part is the fraction of the lifetime lost to materials;
+//                                RELIEF_LOST_MOST: all of it
 //     birth texture      x       time of birth   } seconds on the clock of u_now
 //                        y       time of death   }
 //                        z       type

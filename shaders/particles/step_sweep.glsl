@@ -59,7 +59,7 @@ Sweep sweepOf(vec3 p, vec3 v, float radius) {
                 end = (float(i) + 1.0) * share;
                 to = p + (end * u_dt) * v;
                 ++i;
-                // The map that classified the last point as outside most often does so for this one.
+                // The map that classified the last point as outside usually also classifies this point as outside.
                 reliefEnter(tour, to, tour.map);
             }
         }
@@ -85,7 +85,7 @@ vec3 continued(Sweep sweep, vec3 carried, vec3 v) {
     return from + (sweep.share * u_dt) * v;
 }
 
-// Likewise for a particle that was outside: it stays outside.
+// Like continued(), for a particle that was outside: it stays outside.
 vec3 continuedOutside(Sweep sweep, vec3 carried, vec3 v, float radius) {
     vec3 to = continued(sweep, carried, v);
     if (aboveGround(to, radius) < 0.0 || solidFrom(to, radius, max(sweep.hit.map, 0)).distance < 0.0) {

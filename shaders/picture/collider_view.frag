@@ -29,7 +29,7 @@ uniform highp sampler2D u_mesh_normal;      // see ColliderMesh::View
 uniform highp sampler2D u_mesh_depth;
 #endif
 
-// Returns the ray of this pixel: its direction, and the part inside the box and above the floor.
+// The ray of this pixel: its direction, its distance to the floor, and its part inside the bounds and above the floor.
 vec3 rayDirection() {
     vec2 at = 2.0 * v_uv - 1.0;
     return u_forward + at.x * u_right + at.y * u_up;
@@ -101,7 +101,7 @@ void main() {
     uint seed = uint(gl_FragCoord.x) * 1973u + uint(gl_FragCoord.y) * 9277u + 26699u;
     noise(seed);
 
-    // A soft gradient, lighter at the bottom; the floor matches it wherever it is fully lit.
+    // A soft gradient, lighter at the bottom; a fully lit floor has the same colour.
     vec3 color = u_background * mix(1.16, 0.70, smoothstep(0.0, 1.0, v_uv.y));
 
     float t_floor = floorDistance(d);

@@ -17,7 +17,7 @@ inline constexpr int kTileEntriesMax = 1 << 16;
 inline constexpr int kLookHeadTexels = 3;
 inline constexpr int kLookKeyTexels = 2;
 
-/// Radius of the sun's disc at distance 1, and the range of sky occlusion in longest sides of the collider.
+/// Radius of the sun's disc at distance 1, and the range of sky occlusion as a multiple of the collider's longest side.
 inline constexpr float kSunWidth = 0.1F;
 inline constexpr float kSkyReach = 0.45F;
 /// Texels of the sun map that a particle samples.

@@ -18,7 +18,7 @@ flat out vec4 v_cell;    // cosine and sine of its rotation; atlas cell, -1: a s
 out vec2 v_at;           // in the picture's frame, -1…1 for an unrotated sprite, y upwards
 #endif
 
-void nothing() {  // moves it beyond the far plane
+void nothing() {  // moves the vertex beyond the far plane
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
     v_shading = uvec3(0u);
 #ifdef RELIEF_CELLS

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A stable LSD radix sort by digits of RELIEF_RADIX_DIGITS values. For each digit, radix_count.comp counts each value
-// by blocks, radix_scan.comp computes where the elements of each value and block begin, and radix_move.comp moves them
-// there. Concurrent writes to one word are only integer sums and unions, so the result is deterministic.
+// in each block, radix_scan.comp computes where the elements of each value and block begin, and radix_move.comp moves
+// them there. Concurrent writes to one word are only integer sums and bitwise ORs, so the result is deterministic.
 //
 // Elements are x: index of a particle, y: its key (sort_key.glsl). The largest key comes first, so digits are taken
-// from its complement. A block has u_turns rows with one element per invocation.
+// from the complement of the key. A block has u_turns rows with one element per invocation.
 //!include base/group_barrier.glsl
 layout(local_size_x = RELIEF_RADIX_DIGITS) in;
 

@@ -2,7 +2,7 @@
 // Steps along a ray through the collider's field. A ray skips empty cells of trees of patches and, between placed bodies
 // (world.glsl), the space outside their boxes. Needs collider.glsl.
 
-// Returns where a ray p + t d enters and leaves the three slabs of a box.
+// Returns the t at which a ray p + t d enters and leaves the three slabs of a box.
 void slabs(vec3 p, vec3 d, vec3 box_min, vec3 box_max, out vec3 near, out vec3 far) {
     vec3 safe = vec3(abs(d.x) < 1e-9 ? 1e-9 : d.x, abs(d.y) < 1e-9 ? 1e-9 : d.y, abs(d.z) < 1e-9 ? 1e-9 : d.z);
     vec3 a = (box_min - p) / safe;
@@ -25,8 +25,8 @@ float aheadOfHeights(uvec2 record, vec3 q, vec3 d, out bool inside) {
     return to == 0.0 ? 0.0 : to * dz > 0.0 ? to / dz : 1e30;
 }
 
-// Returns a t up to which a ray from p, outside, meets no surface of map i: at most where it leaves the cell of p. By
-// the rounding of p, its cell may be inside: returns 0 then.
+// Returns a t up to which a ray from p, outside, meets no surface of map i: at most the t at which the ray leaves the
+// cell of p. Returns 0 if the cell is inside, which rounding of p may cause.
 float emptyAhead(int i, vec3 p, vec3 d) {
     int first = reliefMapPlace(i).x;
     ReliefLeaf leaf = reliefPatchLeaf(u_relief_front_back, reliefMapPlace(i), p);
@@ -55,7 +55,7 @@ float emptyAhead(int i, vec3 p, vec3 d) {
     return inside ? 0.0 : ahead;
 }
 
-// Returns a t up to which map i of patches is outside on the ray if it is outside at `from`, at least `from`.
+// Returns a t, at least `from`, up to which the ray is outside map i of patches if it is outside at `from`.
 float emptyUntil(int i, vec3 origin, vec3 d, float from) {
     if (!reliefHas(reliefMapInfo(i), RELIEF_ENCLOSES)) {
         return from;
@@ -78,9 +78,9 @@ float emptyUntil(int i, vec3 origin, vec3 d, float from) {
 #if RELIEF_BODIES > 0 && RELIEF_PLACED && defined(RELIEF_HAS_PATCHES)
 
 const int CELLS_MAX = 1024;  // of a level
-const int BODIES_FEW = 32;   // are visited faster without the broad phase
+const int BODIES_FEW = 32;   // up to this number, visiting all bodies is faster than the broad phase
 
-// Returns a t up to which no body has a surface on the ray, if it is outside all bodies at `from`; at most `end`.
+// Returns a t, at most `end`, up to which the ray meets no body if it is outside all bodies at `from`.
 float nextSurface(vec3 origin, vec3 d, float from, float end) {
     float next = end;
     if (reliefBodyCount() <= BODIES_FEW) {
@@ -122,7 +122,7 @@ float nextSurface(vec3 origin, vec3 d, float from, float end) {
 
 #endif
 
-// Returns the next t to test on a ray that is outside at t: at least `stride` further. field: at t.
+// Returns the next t to test on a ray that is outside at t: at least `stride` further, at most `end`. field: at t.
 float nextTest(ReliefField field, vec3 origin, vec3 d, float t, float stride, float end) {
     float next = min(t + stride, end);
 #if RELIEF_BODIES > 0 && RELIEF_PLACED && defined(RELIEF_HAS_PATCHES)

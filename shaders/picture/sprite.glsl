@@ -31,7 +31,7 @@ struct Look {
     float cell;      // atlas cell; -1: a soft disc
     float lit;       // 1: lit, 0: emissive
 #ifdef RELIEF_STRETCH
-    float stretch;   // seconds of its path that it covers
+    float stretch;   // seconds of the particle's path that the sprite covers
 #endif
 };
 

@@ -37,7 +37,7 @@ vec4 bodyAt(vec2 at, float radius, float per_edge) {
 vec4 bodyAt(vec2 at, float radius, float per_edge, vec4 cell) {
     if (cell.z >= 0.0) {
         vec2 own = vec2(cell.x * at.x + cell.y * at.y, cell.x * at.y - cell.y * at.x);
-        // The corners of a rotated cell extend beyond its point.
+        // Pixels of a point outside its rotated cell are transparent.
         return max(abs(own.x), abs(own.y)) > 1.0 ? vec4(0.0) : cellAt(own, cell.z, cell.w);
     }
     return bodyAt(at, radius, per_edge);

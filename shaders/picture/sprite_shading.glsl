@@ -12,7 +12,7 @@ struct Shading {
     float opacity;
     float sun;       // visible fraction of the sun's disc
     float sky;       // visible fraction of the sky
-    float per_edge;  // 1 / the fraction of the radius over which it fades, 0…1 / SPRITE_EDGE
+    float per_edge;  // 1 / the fraction of the radius over which the edge fades, 0…1 / SPRITE_EDGE
     bool lit;        // lit per fragment by sun and sky
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Renders the collider seen from the sun, along parallel rays from a plane beyond it, in two passes (trace.glsl), for
-// particle_light.glsl. Parts thinner than four texels perpendicular to the rays may be missed.
+// Renders the collider seen from the sun, along parallel rays from a plane on the sun's side, in two passes
+// (trace.glsl), for particle_light.glsl. Parts thinner than four texels perpendicular to the rays may be missed.
 //!include picture/trace.glsl
 
 in vec2 v_uv;

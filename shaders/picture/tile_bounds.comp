@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Finds the range of entries of each tile. A work group paints the entries of its tile one by one. If a whole cloud
-// lies in a few tiles, that would take longer than drawing the points, which are then drawn instead.
+// lies in a few tiles, painting takes longer than drawing points; the sprites are then drawn instead.
 layout(local_size_x = RELIEF_RADIX_DIGITS) in;
 //!include picture/tile.glsl
 layout(std430, binding = 0) readonly buffer Entries { uvec2 b_entries[]; };

@@ -34,8 +34,8 @@ shared uvec4 s_paint[RELIEF_TILE_SIDE * RELIEF_TILE_SIDE];
 shared uvec2 s_turn[RELIEF_TILE_SIDE * RELIEF_TILE_SIDE];
 #endif
 
-// Returns the position within a sprite of a pixel whose centre is offset by `away` from the sprite's: in the picture's
-// frame, -1…1 for an unrotated sprite. Values beyond 2 are outside.
+// Returns the position of a pixel within a sprite, in the picture's frame, -1…1 for an unrotated sprite. away: pixels
+// from the sprite's centre to the pixel's centre. Values beyond 2 are outside.
 vec2 placeIn(uint i, vec2 away, float pixels) {
 #if defined(RELIEF_QUADS) && defined(TURNS)
     vec2 turn = unpackSnorm2x16(s_turn[i].x);
