@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers and words of command lines and text files: strict, exact, and independent of the locale.
+// Parses and formats the numbers and words of command lines and text files: strict, exact, independent of the locale.
 #pragma once
 
 #include <cstddef>
