@@ -81,7 +81,7 @@ struct FieldSample {
     /// if map is −1.
     float distance = 0.0F;
     glm::vec3 normal{0.0F};  ///< of the deciding surface; zero if distance is kFarOutside
-    int map = -1;            ///< deciding map, the first of equals; −1 if all maps abstain
+    int map = -1;            ///< deciding map, the first on ties; −1 if all maps abstain
 
     [[nodiscard]] bool inside() const { return map >= 0 && distance < 0.0F; }
 };

@@ -78,8 +78,8 @@ inline constexpr float kFarOutside = 1e30F;
 /// ANGLE, the shader translator of browsers, parses the shortest decimal form as infinity.
 inline constexpr float kFarInside = -16777215.0F * 2.028240960365167e31F;
 
-/// Map size limit, along with kMapSizeMax; `container.h` rejects files beyond them.
-inline constexpr std::uint32_t kMapSizeMin = 3;  ///< for orthographic maps: one texel inside the border
+/// Minimum size of an orthographic map: one texel inside the border. The maximum is kMapSizeMax.
+inline constexpr std::uint32_t kMapSizeMin = 3;
 
 struct DepthMap {
     MapFormat format = MapFormat::kFixed8;
