@@ -99,7 +99,7 @@ struct InsideSample {
 };
 
 /// Equals evaluate(…).inside(), with its normal and map if inside, but stops at the first map that classifies P as
-/// outside. Order maps so that the one that decides most often comes first.
+/// outside. Put the map that decides most often first.
 [[nodiscard]] InsideSample evaluateInside(const Collider& collider, const glm::vec3& p);
 
 /// Returns a box that contains the solid, from the volumes of maps that enclose it; nullopt if no map does.

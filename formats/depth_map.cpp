@@ -157,7 +157,7 @@ glm::vec3 Affine::apply(const glm::vec3& p) const {
 }
 
 glm::dmat3 Affine::linear() const {
-    // glm takes columns.
+    // glm expects columns.
     return glm::transpose(glm::dmat3(glm::vec3(row[0]), glm::vec3(row[1]), glm::vec3(row[2])));
 }
 

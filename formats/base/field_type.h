@@ -43,7 +43,7 @@ enum class FieldForm : std::uint8_t {
     kList,    ///< std::vector; write-only: any contiguous range
     kOptional,
     kVariant,  ///< write-only
-    kSpan,     ///< FieldSpan; likewise below
+    kSpan,     ///< FieldSpan; the next four likewise
     kPair,
     kMaybe,
     kFile,

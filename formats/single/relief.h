@@ -99,7 +99,7 @@ typedef size_t (*relief_decompress)(void* out, size_t out_size, const void* in, 
 
 /* Reads a container from memory. `bytes` may have any alignment; they are not used after the call. `decompress` may be
  * NULL, which rejects compressed containers. On failure, *collider is zero and owns nothing. Allocates at most `size`
- * bytes plus 16 kB, or for a compressed container what RELIEF_UNPACKED_MAX permits plus 12 MiB. */
+ * bytes plus 16 kB; for a compressed container, at most the bytes that RELIEF_UNPACKED_MAX permits plus 12 MiB. */
 relief_status relief_open(relief_collider* collider, const void* bytes, size_t size,
                           relief_decompress decompress);
 
