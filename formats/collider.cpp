@@ -131,7 +131,7 @@ float finestTexel(const Collider& collider) {
         if (map.projection() == Projection::kLocal) {
             finest = std::min(finest, static_cast<float>(patchSpacing(map.texels)) * unit.x);
         } else if (map.projection() == Projection::kCube) {
-            // A cube face spans the volume, whose half sides are `unit`, at its far end.
+            // A cube face covers one side of the volume, whose half sides are `unit`.
             finest =
                 std::min(finest, 2.0F * std::min({unit.x, unit.y, unit.z}) / static_cast<float>(map.width));
         } else {

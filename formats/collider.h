@@ -81,7 +81,7 @@ struct FieldSample {
     /// if map is −1.
     float distance = 0.0F;
     glm::vec3 normal{0.0F};  ///< of the deciding surface; zero if distance is kFarOutside
-    int map = -1;            ///< deciding map, the first of equals; −1 if all maps abstain
+    int map = -1;            ///< deciding map, the first on ties; −1 if all maps abstain
 
     [[nodiscard]] bool inside() const { return map >= 0 && distance < 0.0F; }
 };
@@ -99,7 +99,7 @@ struct InsideSample {
 };
 
 /// Equals evaluate(…).inside(), with its normal and map if inside, but stops at the first map that classifies P as
-/// outside. Order maps so that the one that decides most often comes first.
+/// outside. Put the map that decides most often first.
 [[nodiscard]] InsideSample evaluateInside(const Collider& collider, const glm::vec3& p);
 
 /// Returns a box that contains the solid, from the volumes of maps that enclose it; nullopt if no map does.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texels as a zstd frame (RFC 8878). compression.cpp uses libzstd, web/compression.cpp the page's own decoder.
+// Converts texels to and from a zstd frame (RFC 8878). compression.cpp uses libzstd; runtime/web/stand_ins.cpp uses the
+// decoder of the page.
 #pragma once
 
 #include <cstddef>

@@ -23,7 +23,7 @@ namespace {
 
 constexpr int kZstdLevelMax = 19;
 
-/// A map's payload in file form: `packed`, or the map's own texels if that is empty.
+/// A payload in file form. `stored` refers to `packed`, or to the uncompressed bytes if `packed` is empty.
 struct PackedPayload {
     Packing packing = Packing::kNone;
     std::vector<std::byte> packed;
@@ -185,8 +185,8 @@ Result<std::vector<std::byte>> writeChecked(const Collider& collider, const Cont
     if (metadata.size() != header.metadata_size || metadata.size() > kContainerMetadataMax) {
         return fail(ErrorCode::kLimit,
                     !collider.animation.empty()
-                        ? "the animated mesh takes more than the 16 MiB of a container's "
-                          "metadata; simplify it, or bake fewer clips"
+                        ? "the animated mesh exceeds the 16 MiB of a container's metadata; "
+                          "simplify it, or bake fewer clips"
                     : !collider.materials.empty()
                         ? "the materials do not fit into the container; bake with --materials drop"
                         : "the metadata does not fit into the container; use fewer maps");
@@ -211,8 +211,8 @@ constexpr std::array<std::string_view, 16> kMeshExtensions = {
     ".ac",   ".acc", ".3ds", ".b3d", ".blend", ".dae", ".fbx", ".glb",
     ".gltf", ".lwo", ".obj", ".off", ".ms3d",  ".ply", ".stl", ".x"};
 
-/// Not a letter, and not the first byte of any mesh format above.
-constexpr std::byte kContainerBegins{ContainerHeader::kSignature[0]};
+/// First byte of a container: not a letter, and not the first byte of any mesh format above.
+constexpr std::byte kFirstByte{ContainerHeader::kSignature[0]};
 
 }  // namespace
 
@@ -286,7 +286,7 @@ Result<void> refuseMeshName(const std::filesystem::path& path) {
 }
 
 Result<void> refuseMesh(const std::filesystem::path& path, std::span<const std::byte> bytes) {
-    return !bytes.empty() && bytes.front() == kContainerBegins ? Result<void>() : refuseMeshName(path);
+    return !bytes.empty() && bytes.front() == kFirstByte ? Result<void>() : refuseMeshName(path);
 }
 
 }  // namespace relief

@@ -52,8 +52,8 @@ struct ContainerInfo {
 
 // Detects the most common user error: a mesh given instead of a baked collider.
 
-/// Fails with kInvalidInput if the file name has a mesh extension. The message starts with the path: "it is a mesh;
-/// bake it first: relief bake …".
+/// Fails with kInvalidInput if the file name has the extension of a mesh or a world. The message starts with the path:
+/// "'a.obj' is a mesh, not a collider; bake it first: relief bake …".
 [[nodiscard]] Result<void> refuseMeshName(const std::filesystem::path& path);
 
 /// Likewise, but accepts any name if the contents start with the container signature.

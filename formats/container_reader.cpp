@@ -17,9 +17,9 @@
 namespace relief {
 namespace {
 
-/// zstd compresses at most a 128 KiB block into four bytes, so a payload that claims more is invalid.
+/// zstd compresses at most 128 KiB into four bytes, so a payload that claims a higher ratio is invalid.
 constexpr std::uint64_t kZstdRatioMax = 32768;
-constexpr flatbuffers::uoffset_t kMetadataDepthMax = 4;  // collider, map or provenance
+constexpr flatbuffers::uoffset_t kMetadataDepthMax = 4;  // collider, provenance, option
 
 glm::vec3 fromFb(const fb::Vec3& v) {
     return {v.x(), v.y(), v.z()};
@@ -51,13 +51,14 @@ DepthMap readFrame(const fb::Map& map) {
 std::optional<std::string> texelsBeyond(const ContainerLimits& limits, std::uint64_t texel_bytes,
                                         std::uint64_t file_size) {
     if (texel_bytes > limits.texel_bytes) {
-        return "with it, the texels exceed the limit of " + std::to_string(limits.texel_bytes) + " bytes";
+        return "with this map, the texels exceed the limit of " + std::to_string(limits.texel_bytes) +
+               " bytes";
     }
-    const std::uint64_t worth = kUnpackedPerStored * std::min(file_size, limits.texel_bytes);
-    if (texel_bytes > std::max(limits.memory, worth)) {
-        return "with it, the texels take " + std::to_string(texel_bytes) + " bytes in memory, " +
+    const std::uint64_t proportional = kUnpackedPerStored * std::min(file_size, limits.texel_bytes);
+    if (texel_bytes > std::max(limits.memory, proportional)) {
+        return "with this map, the texels take " + std::to_string(texel_bytes) + " bytes in memory, " +
                std::to_string(texel_bytes / std::max<std::uint64_t>(file_size, 1)) +
-               " times the file; if you trust it, allow more with --max-memory";
+               " times the file; if you trust the file, raise --max-memory";
     }
     return std::nullopt;
 }
@@ -81,8 +82,8 @@ Result<void> validatePayloadSizes(const StoredMap& map) {
                             " and its compression");
     }
     if (packed && info.raw_size / kZstdRatioMax > info.stored_size) {
-        return invalidInput("its " + std::to_string(info.stored_size) + " stored bytes cannot hold the " +
-                            std::to_string(info.raw_size) + " that they declare");
+        return invalidInput("its " + std::to_string(info.stored_size) +
+                            " stored bytes cannot unpack to a raw_size of " + std::to_string(info.raw_size));
     }
     return {};
 }
@@ -379,7 +380,7 @@ void ContainerReader::checkMaps() {
     }
 }
 
-/// \return whether its payload's sizes are valid as well.
+/// \return whether the frame and the payload's sizes are valid.
 bool ContainerReader::checkFrame(StoredMap& map, int index) {
     if (const Result<void> ok = validateFrame(map.frame); !ok) {
         const bool limit = ok.error().code == ErrorCode::kLimit;
@@ -459,14 +460,14 @@ std::optional<Error> ContainerReader::refusal() const {
 }
 
 ErrorCode errorCodeOf(std::span<const Issue> issues) {
-    bool limits_alone = true;
+    bool only_limits = true;
     for (const Issue& issue : issues) {
         if (issue.code == IssueCode::kMajorVersion) {
             return ErrorCode::kUnsupported;
         }
-        limits_alone = limits_alone && (issue.severity() == Severity::kWarning || isLimit(issue.code));
+        only_limits = only_limits && (issue.severity() == Severity::kWarning || isLimit(issue.code));
     }
-    return limits_alone ? ErrorCode::kLimit : ErrorCode::kInvalidInput;
+    return only_limits ? ErrorCode::kLimit : ErrorCode::kInvalidInput;
 }
 
 }  // namespace relief

@@ -125,14 +125,14 @@ std::optional<Vote> voteCube(const DepthMap& map, const glm::vec3& p) {
 }
 
 std::optional<Vote> voteLocal(const DepthMap& map, const glm::vec3& p) {
-    const std::optional<PatchVote> said = votePatches(map.texels, p);
-    if (!said) {
+    const std::optional<PatchVote> local = votePatches(map.texels, p);
+    if (!local) {
         return map.encloses ? std::optional(kFarOutsideVote) : std::nullopt;
     }
     const float root = map.object_per_map.x;  // T has a rotation and a uniform scale
     const auto row = [&](int i) { return glm::vec3(map.object_to_map.row[i]) * root; };
-    return Vote{said->distance * root,
-                row(0) * said->normal.x + (row(1) * said->normal.y + row(2) * said->normal.z)};
+    return Vote{local->distance * root,
+                row(0) * local->normal.x + (row(1) * local->normal.y + row(2) * local->normal.z)};
 }
 
 }  // namespace
@@ -157,7 +157,7 @@ glm::vec3 Affine::apply(const glm::vec3& p) const {
 }
 
 glm::dmat3 Affine::linear() const {
-    // glm takes columns.
+    // glm expects columns.
     return glm::transpose(glm::dmat3(glm::vec3(row[0]), glm::vec3(row[1]), glm::vec3(row[2])));
 }
 

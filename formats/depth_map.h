@@ -40,7 +40,7 @@ enum class Compare : std::uint8_t { kLess = 0, kGreater = 1, kBoth = 2 };
 [[nodiscard]] const char* compareName(Compare compare);  ///< "less", "greater" or "both"
 
 /// How a texel becomes a vote: the distance along the ray to a surface that faces the viewer (as in the paper), or the
-/// distance to the plane through the surface point at the texel's centre. plane.h serves encoders of planes.
+/// distance to the plane through the surface point at the texel's centre. Encoders of planes use plane.h.
 enum class Decode : std::uint8_t { kProjected = 0, kPlane = 1 };
 
 [[nodiscard]] const char* decodeName(Decode decode);  ///< "projected" or "plane"
@@ -78,8 +78,8 @@ inline constexpr float kFarOutside = 1e30F;
 /// ANGLE, the shader translator of browsers, parses the shortest decimal form as infinity.
 inline constexpr float kFarInside = -16777215.0F * 2.028240960365167e31F;
 
-/// Map size limit, along with kMapSizeMax; `container.h` rejects files beyond them.
-inline constexpr std::uint32_t kMapSizeMin = 3;  ///< for orthographic maps: one texel inside the border
+/// Minimum size of an orthographic map: one texel inside the border. The maximum is kMapSizeMax.
+inline constexpr std::uint32_t kMapSizeMin = 3;
 
 struct DepthMap {
     MapFormat format = MapFormat::kFixed8;

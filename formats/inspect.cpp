@@ -11,7 +11,7 @@ namespace {
 /// Returns the fraction of texels with a surface, 0…1.
 double coverageOf(const DepthMap& map) {
     if (map.projection() == Projection::kLocal) {
-        return 1.0;  // patches exist only where there is surface
+        return 1.0;  // patches exist only where there is a surface
     }
     std::size_t texels = 0;
     std::size_t covered = 0;

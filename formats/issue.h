@@ -15,7 +15,7 @@
 namespace relief {
 
 enum class Severity : std::uint8_t {
-    kFatal,    ///< nothing after it can be read
+    kFatal,    ///< the rest of the file cannot be read
     kError,    ///< readers reject the file
     kWarning,  ///< readers accept the file, but its contents are suspicious
 };

@@ -65,11 +65,11 @@ void fields(FieldVisitor& visit, MaterialResponse& response) {
     visit("restitution", response.restitution,
           leftOut({.help = "Multiplies the restitution of particles and colliders",
                    .range = kShareRange,
-                   .fallback = "that of the container: the mesh's, or 1"}));
+                   .fallback = "the container's value: the mesh's, or 1"}));
     visit("friction", response.friction,
           leftOut({.help = "1 − friction multiplies 1 − friction of particles and colliders",
                    .range = kShareRange,
-                   .fallback = "that of the container: the mesh's, or 0"}));
+                   .fallback = "the container's value: the mesh's, or 0"}));
     visit("lifetime_loss", response.lifetime_loss,
           leftOut({.help = "Lifetime lost in each step in contact, in addition to the particle type's",
                    .unit = "s",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Overrides of material responses by name, given by scenes and worlds in place of the containers' values.
+// Material responses by name, with which scenes and worlds override the values of containers.
 #pragma once
 
 #include <optional>

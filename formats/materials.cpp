@@ -12,7 +12,7 @@
 namespace relief {
 namespace {
 
-bool isShare(float value) {
+bool isFraction(float value) {
     return value >= 0.0F && value <= 1.0F;
 }
 
@@ -30,9 +30,9 @@ std::string faultOfList(const Materials& materials) {
                    std::to_string(kMaterialNameMax) + " bytes";
         }
         if (!names.insert(one.name).second) {
-            return place + " has the name '" + one.name + "' of an earlier one";
+            return place + " repeats the name '" + one.name + "' of an earlier material";
         }
-        if (!isShare(one.restitution) || !isShare(one.friction) || !isShare(one.area_fraction)) {
+        if (!isFraction(one.restitution) || !isFraction(one.friction) || !isFraction(one.area_fraction)) {
             return place + " has a restitution, friction or area fraction that is not in 0...1";
         }
         if (!(one.lifetime_loss >= 0.0F && one.lifetime_loss <= kMaterialLossMax)) {
@@ -119,8 +119,8 @@ std::size_t materialAt(const Materials& materials, const glm::vec3& p, const glm
     }
     float q[3];
     for (int i = 0; i < 3; ++i) {
-        const float share = (p[i] - materials.origin[i]) * (1.0F / materials.size);
-        q[i] = share > 0.0F ? std::min(share, 1.0F) : 0.0F;  // also handles NaN
+        const float fraction = (p[i] - materials.origin[i]) * (1.0F / materials.size);
+        q[i] = fraction > 0.0F ? std::min(fraction, 1.0F) : 0.0F;  // also handles NaN
     }
     std::size_t node = 0;
     std::size_t leaf = 0;

@@ -56,7 +56,8 @@ class Corner {
     }
 
   private:
-    [[nodiscard]] bool take(const glm::vec3& y) {
+    /// Makes y the foot if it is behind all planes.
+    [[nodiscard]] bool tryFoot(const glm::vec3& y) {
         for (int i = 0; i < count_; ++i) {
             if (!(planes_[i].at + dot(planes_[i].normal, y) <= 1e-4F * planes_[i].at)) {
                 return false;
@@ -67,22 +68,23 @@ class Corner {
     }
 
     /// Finds the nearest point on the intersection of two planes that P is in front of.
-    [[nodiscard]] bool takeEdge(const Plane& a, const Plane& b) {
+    [[nodiscard]] bool tryEdge(const Plane& a, const Plane& b) {
         const float cosine = dot(a.normal, b.normal);
         const float sine2 = 1.0F - cosine * cosine;
         const float along_a = cosine * b.at - a.at;
         const float along_b = cosine * a.at - b.at;
         return sine2 > 1e-4F && along_a <= 0.0F && along_b <= 0.0F &&
-               take((along_a / sine2) * a.normal + (along_b / sine2) * b.normal);
+               tryFoot((along_a / sine2) * a.normal + (along_b / sine2) * b.normal);
     }
 
-    /// Intersects three planes. Returns false if they have no common point that floats can represent.
+    /// Sets the foot: on the newest plane, else on its edge with another plane, else at the corner of all three. Returns
+    /// false if there is none in float precision.
     [[nodiscard]] bool meet() {
         const Plane& a = planes_[count_ - 1];
-        if (take(-a.at * a.normal) || count_ == 1) {
+        if (tryFoot(-a.at * a.normal) || count_ == 1) {
             return true;
         }
-        if (takeEdge(a, planes_[0]) || (count_ == 3 && takeEdge(a, planes_[1]))) {
+        if (tryEdge(a, planes_[0]) || (count_ == 3 && tryEdge(a, planes_[1]))) {
             return true;
         }
         if (count_ < 3) {
@@ -117,8 +119,8 @@ class Search {
             follow({sign_ * sample.normal, sign_ * sample.distance}, nullptr, NearestSearch::kSteps);
         }
         findAny();
-        lookAround();
-        turn();
+        probeAround();
+        tilt();
     }
 
     [[nodiscard]] bool found() const { return best_.distance < kFarOutside; }
@@ -128,7 +130,7 @@ class Search {
   private:
     // ---- point evaluation
 
-    /// Clamps to the bounds: there is no solid outside them.
+    /// If P is outside, clamps to the bounds: there is no solid beyond them.
     [[nodiscard]] glm::vec3 clamped(const glm::vec3& q) const {
         if (sign_ < 0.0F) {
             return q;
@@ -152,7 +154,7 @@ class Search {
         return {normal, sign_ * sample.distance - dot(normal, y)};
     }
 
-    [[nodiscard]] FieldSample ask(const glm::vec3& q) {
+    [[nodiscard]] FieldSample sampleAt(const glm::vec3& q) {
         --left_;
         return evaluate(collider_, q);
     }
@@ -184,35 +186,36 @@ class Search {
             float to_foot = 1.0F;  // fraction of y
             if (!halving) {
                 const glm::vec3& foot = corner.foot();
-                const float way = length(foot);
-                if (!(way < best_.distance)) {
+                const float distance = length(foot);
+                if (!(distance < best_.distance)) {
                     return;
                 }
                 const float beyond =
-                    std::max(std::min(NearestSearch::kBeyond * way, NearestSearch::kBeyondMax * side_),
+                    std::max(std::min(NearestSearch::kBeyond * distance, NearestSearch::kBeyondMax * side_),
                              NearestSearch::kBeyondMin * side_);
-                y = foot + (way > NearestSearch::kBeyondMin * side_ ? (beyond / way) * foot
-                                                                    : -beyond * corner.normal());
-                to_foot = way / (way + beyond);
+                y = foot + (distance > NearestSearch::kBeyondMin * side_ ? (beyond / distance) * foot
+                                                                         : -beyond * corner.normal());
+                to_foot = distance / (distance + beyond);
             }
-            const FieldSample sample = ask(p_ + y);
-            const Plane met = planeOf(sample, y);
+            const FieldSample sample = sampleAt(p_ + y);
+            const Plane new_plane = planeOf(sample, y);
             if (isOther(sample)) {
                 // The plane predicts where the surface lies between the foot and y. It is not used before the foot,
                 // where it may not hold.
-                const float share = met.at > 0.0F ? met.at / (met.at - sign_ * sample.distance) : 1.0F;
-                const bool nearest = offer(std::max(share, to_foot) * y, sample);
+                const float fraction =
+                    new_plane.at > 0.0F ? new_plane.at / (new_plane.at - sign_ * sample.distance) : 1.0F;
+                const bool nearest = offer(std::max(fraction, to_foot) * y, sample);
                 has_other = true;
                 other = y;
                 if (!halving) {
-                    if (!(met.at > 0.0F && met.at < NearestSearch::kNearer * best_.distance)) {
+                    if (!(new_plane.at > 0.0F && new_plane.at < NearestSearch::kNearer * best_.distance)) {
                         settled_ = settled_ || nearest;
                         return;
                     }
-                    corner = Corner(met);
+                    corner = Corner(new_plane);
                 }
-            } else if (met.at > 0.0F && corner.isCutBy(met)) {
-                corner.add(met);
+            } else if (new_plane.at > 0.0F && corner.isCutBy(new_plane)) {
+                corner.add(new_plane);
                 halving = false;
             } else if (has_other) {
                 failed = y;
@@ -228,7 +231,7 @@ class Search {
         glm::vec3 own(0.0F);
         for (int i = 0; i < NearestSearch::kHalvings && left_ > 0; ++i) {
             const glm::vec3 middle = 0.5F * (own + y);
-            const FieldSample sample = ask(p_ + middle);
+            const FieldSample sample = sampleAt(p_ + middle);
             if (isOther(sample)) {
                 offer(middle, sample);
                 y = middle;
@@ -243,26 +246,26 @@ class Search {
     /// Tests whether q is on the other side; with `whole`, also follows planes on P's own side.
     void probe(const glm::vec3& q, bool whole) {
         glm::vec3 y = q - p_;
-        const float way = length(y);
-        if (left_ == 0 || !(way > 0.0F && way < best_.distance)) {
+        const float distance = length(y);
+        if (left_ == 0 || !(distance > 0.0F && distance < best_.distance)) {
             return;
         }
         if (sign_ > 0.0F && !whole && !evaluateInside(collider_, q).inside) {  // usually costs one vote
             --left_;
             return;
         }
-        const FieldSample sample = ask(q);
-        Plane met = planeOf(sample, y);
+        const FieldSample sample = sampleAt(q);
+        Plane new_plane = planeOf(sample, y);
         const bool other = isOther(sample);
         if (other) {
             const bool first = !found();
             offer(y, sample);
             if (first) {
-                y = nearerOther(y, met);
+                y = nearerOther(y, new_plane);
             }
         }
-        if ((other || whole) && met.at > 0.0F) {
-            follow(met, other ? &y : nullptr, NearestSearch::kStepsFromProbe);
+        if ((other || whole) && new_plane.at > 0.0F) {
+            follow(new_plane, other ? &y : nullptr, NearestSearch::kStepsFromProbe);
         }
     }
 
@@ -277,8 +280,8 @@ class Search {
         return {(i & 1) != 0 ? kUnit : -kUnit, (i & 2) != 0 ? kUnit : -kUnit, (i & 4) != 0 ? kUnit : -kUnit};
     }
 
-    /// If the vote at P led nowhere, probes rings around P, or around the nearest point of the bounds, until something
-    /// is found.
+    /// If the vote at P led to no surface, probes rings around P, or around the nearest point of the bounds, until a
+    /// surface is found.
     void findAny() {
         const glm::vec3 center = clamped(p_);
         if (center != p_) {
@@ -298,37 +301,37 @@ class Search {
     }
 
     /// Checks whether another surface is nearer.
-    void lookAround() {
+    void probeAround() {
         float before = kFarOutside;
         for (int round = 0; round < NearestSearch::kRounds && best_.distance < before; ++round) {
             before = best_.distance;
             for (int i = 0; i < 14; ++i) {
-                const glm::vec3 way =
+                const glm::vec3 offset =
                     i < 8 ? NearestSearch::kShareNear * diagonal(i) : NearestSearch::kShareFar * axis(i - 8);
-                probe(clamped(p_ + best_.distance * way), false);
+                probe(clamped(p_ + best_.distance * offset), false);
             }
         }
     }
 
-    /// If no plane confirmed that the point found is the nearest of its surface, tilts the direction to it in four
-    /// directions while that shortens the distance.
-    void turn() {
-        float tilt = NearestSearch::kTilt;
-        for (int k = 0; k < NearestSearch::kTurns && tilt >= NearestSearch::kTiltMin && found() && !settled_;
+    /// If no plane confirmed that the point found is the nearest of its surface, tilts its direction from P to four sides
+    /// while this shortens the distance.
+    void tilt() {
+        float slope = NearestSearch::kTilt;
+        for (int k = 0; k < NearestSearch::kTurns && slope >= NearestSearch::kTiltMin && found() && !settled_;
              ++k) {
             const float before = best_.distance;
-            const glm::vec3 way = (best_.point - p_) / before;
-            const glm::vec3 across = std::abs(way.x) < 0.6F ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
-            const glm::vec3 right = across - dot(across, way) * way;
+            const glm::vec3 direction = (best_.point - p_) / before;
+            const glm::vec3 across = std::abs(direction.x) < 0.6F ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
+            const glm::vec3 right = across - dot(across, direction) * direction;
             const glm::vec3 side = right / length(right);
-            const glm::vec3 up = cross(way, side);
+            const glm::vec3 up = cross(direction, side);
             for (int i = 0; i < 4 && best_.distance == before; ++i) {
-                const glm::vec3 turned = way + ((i & 1) != 0 ? -tilt : tilt) * (i < 2 ? side : up);
-                const float radius = before * (1.0F - 0.25F * tilt);
-                probe(clamped(p_ + (radius / length(turned)) * turned), false);
+                const glm::vec3 tilted = direction + ((i & 1) != 0 ? -slope : slope) * (i < 2 ? side : up);
+                const float radius = before * (1.0F - 0.25F * slope);
+                probe(clamped(p_ + (radius / length(tilted)) * tilted), false);
             }
             if (best_.distance == before) {
-                tilt *= 0.5F;
+                slope *= 0.5F;
             }
         }
     }

@@ -9,11 +9,11 @@
 //            ·  P  ·          1. Project P onto the plane of the vote (1), and step slightly beyond.
 //         ·    /|\    ·       2. Still on P's side: the plane there (2) also counts; continue to the nearest
 //        ·    / | \    ·         point of both planes. On the other side: a surface lies between.
-//        ·   2  1  ·   ·      3. Probe eight points on spheres around P, inside the distance found. If one
+//        ·   2  1  ·   ·      3. Probe 14 points on two spheres around P, inside the distance found. If one
 //     ____\ /______ ·            is on the other side, a nearer surface exists there.
 //          X
-// Other implementations may evaluate other points. They must keep the sign, and return only points on the other side,
-// or projections onto a plane that was found just behind them.
+// Other implementations may evaluate other points. They must keep the sign, and return only points on the other side, or
+// points on a plane with the other side just behind it.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -41,7 +41,7 @@ struct NearestSearch {
     static constexpr int kEvaluationsMax = 192;
     static constexpr int kSteps = 8;           // from the plane of the vote at P
     static constexpr int kStepsFromProbe = 4;  // from a plane found by a probe
-    // How far behind a plane the maps are evaluated, as a fraction of the way to it.
+    // Overshoot of an evaluation behind a plane, as a fraction of the distance to the plane.
     static constexpr float kBeyond = 0.015625F;
     static constexpr float kBeyondMin = 1.52587890625e-5F;  // 2⁻¹⁶, as a fraction of the longest side
     // As a fraction of the longest side; small enough not to step over thin parts.
@@ -65,9 +65,10 @@ struct NearestSearch {
 
 /// Computes the distance from P to the nearest surface that the maps represent.
 ///
-/// The sign is that of evaluate(). The distance is that to `point`, which lies on a plane that the maps vote by,
-/// between P and a point on the other side. The search never invents a surface, but may miss a nearer one: a part that
-/// is thin relative to its distance from P. If no point on the other side is found, the result is that of evaluate().
+/// The sign is that of evaluate(). The distance is measured to `point`, which is on the other side, or on the plane of a
+/// vote with the other side just behind it. The search never returns a surface that the maps do not represent, but may
+/// miss a nearer surface: a part that is thin relative to its distance from P. If no point on the other side is found, the
+/// result is that of evaluate().
 ///
 /// \param p  object space; any finite point. For points or colliders beyond 10¹⁵, or flatter than 10⁻¹², the search is
 /// skipped and the result is that of evaluate().

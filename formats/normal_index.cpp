@@ -11,7 +11,7 @@ namespace {
 constexpr auto kHalfRange = static_cast<float>(kNormalHalfRange);
 constexpr int kLast = 2 * kNormalHalfRange;
 
-/// The fold of equation 3 swaps the corners of the square (lower octants) with the outside of the inner diamond.
+/// Sign in the fold of equation 3, which maps the lower octants to the corners of the square.
 float signNotZero(float value) {
     return value < 0.0F ? -1.0F : 1.0F;
 }

@@ -8,7 +8,7 @@
 
 namespace relief {
 
-/// Steps of an index from 0 to 1.
+/// Number of index steps from coordinate 0 to coordinate 1.
 inline constexpr int kNormalHalfRange = 127;
 
 /// A normal as a pair of 8-bit indices (s, t) into the 256×256 table of normals.

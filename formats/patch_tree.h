@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A map of patches: an octree whose leaves contain small depth maps of the surface. Each patch looks along one of 13
-// axes: the one that sees its piece of the surface best. No part of a mesh is hidden. formats/README.md specifies the
+// A map of patches: an octree whose leaves contain small depth maps of the surface. Each patch is projected along the one
+// of 13 axes that suits its piece of the surface best, so no part of a mesh is hidden. formats/README.md specifies the
 // format and shaders/engines/relief.glsl implements it in GLSL; change all three together.
 //
 // Map space is measured in root cells: the volume is [0, n.x] × [0, n.y] × [0, n.z], and cells are cubes in object
@@ -81,7 +81,7 @@ struct PatchHeights {
     std::uint8_t scale = 0;  ///< of the range: (1 + (scale & 15)/16) · 2^((scale >> 4) − 12)
     std::array<std::uint8_t, kPatchSideMax * kPatchSideMax> codes{};
 
-    /// Encodes heights as the nearest codes; clamps them to −4…4.
+    /// Encodes heights as the nearest codes; clamps them to ±3.99.
     [[nodiscard]] static PatchHeights of(std::span<const double> heights, std::uint32_t side);
     [[nodiscard]] float low() const { return static_cast<float>(base) * (1.0F / 512.0F); }
     [[nodiscard]] float step() const;  ///< height of one code step
@@ -125,7 +125,7 @@ using PatchTexels = std::span<const std::byte>;
 
 /// \param index  less than the number of texels.
 [[nodiscard]] PatchRecord patchTexel(PatchTexels texels, std::uint32_t index);
-/// Returns the encoded heights of a patch. \param patch  no pair.
+/// Returns the encoded heights of a patch. \param patch  not a pair.
 [[nodiscard]] PatchHeights patchHeights(PatchTexels texels, const PatchRecord& patch);
 /// Appends a texel.
 void appendPatchTexel(std::vector<std::byte>& texels, const PatchRecord& record);

@@ -64,7 +64,7 @@ inline constexpr std::array<MapFormatInfo, kMapFormatCount> kMapFormats{{
     {"front-back", "unorm16", "FRONT_BACK_FIXED", 8, 4},
     {"patches", "unorm8", "PATCHES", 8, 0},
 }};
-/// The different names: front-back has two formats.
+/// The distinct names: two formats are named front-back.
 inline constexpr std::array<std::string_view, 5> kMapFormatWords{
     kMapFormats[0].name, kMapFormats[1].name, kMapFormats[2].name, kMapFormats[3].name, kMapFormats[5].name};
 
@@ -116,7 +116,7 @@ inline constexpr int kDepthSteps = 65534;
 /// \param bytes  exactly texelSize(format) bytes.
 void encodeTexel(MapFormat format, const Texel& texel, std::span<std::byte> bytes);
 
-/// A surface with its encodeNormal(normal). kFloat32 ignores the index; other formats ignore the normal.
+/// A surface and the index encodeNormal(normal). kFloat32 ignores the index; other formats ignore the normal.
 struct IndexedSurface {
     Surface surface;
     NormalIndex index;

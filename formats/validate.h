@@ -23,7 +23,7 @@ inline constexpr double kFrameCosineMax = 1e-4;         ///< between any two row
 inline constexpr double kObjectPerMapTolerance = 1e-3;  ///< relative to the inverse of T
 
 // All Results fail with kInvalidInput, or with kLimit for too many texels. Messages name the field and its value.
-// Functions for one map leave the map's index to the caller.
+// Functions for one map do not name the map; callers add it with inMap().
 
 /// Returns problems of bounds (first), unit, provenance and materials.
 [[nodiscard]] std::vector<Issue> descriptionIssues(const Collider& collider);
@@ -40,8 +40,8 @@ inline constexpr double kObjectPerMapTolerance = 1e-3;  ///< relative to the inv
 /// Prefixes an error with the index of its map.
 [[nodiscard]] Error inMap(std::size_t index, const Error& error);
 
-/// Returns the name of a mesh in a container, and of its file in a scene's render.meshes: cleanUtf8 with '_' for '/'
-/// and '\', truncated to kMeshNameMax bytes. Node names may look like paths.
+/// Returns a mesh name as containers store it, and as the name of the mesh's file in a scene's render.meshes: cleanUtf8
+/// with '_' for '/' and '\', because node names may look like paths; truncated to kMeshNameMax bytes.
 [[nodiscard]] std::string storedMeshName(std::string name);
 
 /// Returns whether a text is well-formed UTF-8 (no overlong forms, no surrogates) without control characters.

@@ -44,7 +44,7 @@ bool isName(std::string_view name) {
 
 /// Returns whether `begin` is a list of offsets with one more entry than there are vertices, ascending from 0 to
 /// `count`.
-bool areStarts(const std::vector<std::uint32_t>& begin, std::size_t vertices, std::size_t count) {
+bool areOffsets(const std::vector<std::uint32_t>& begin, std::size_t vertices, std::size_t count) {
     return begin.size() == vertices + 1 && begin.front() == 0 && begin.back() == count &&
            std::is_sorted(begin.begin(), begin.end());
 }
@@ -88,7 +88,7 @@ Result<void> checkMaterials(const AnimatedMesh& mesh) {
 }
 
 Result<void> checkInfluences(const AnimatedMesh& mesh) {
-    if (!areStarts(mesh.influence_begin, mesh.positions.size(), mesh.influences.size())) {
+    if (!areOffsets(mesh.influence_begin, mesh.positions.size(), mesh.influences.size())) {
         return invalidInput("animation.influence_begin does not ascend from 0 to the number of influences");
     }
     for (std::size_t vertex = 0; vertex < mesh.positions.size(); ++vertex) {
@@ -100,12 +100,12 @@ Result<void> checkInfluences(const AnimatedMesh& mesh) {
         }
         double sum = 0.0;
         for (std::uint32_t i = begin; i < end; ++i) {
-            const VertexInfluence& by = mesh.influences[i];
-            if (by.joint >= mesh.joints.size() || !(by.weight > 0.0F)) {
+            const VertexInfluence& influence = mesh.influences[i];
+            if (influence.joint >= mesh.joints.size() || !(influence.weight > 0.0F)) {
                 return wrong("influences", i,
                              "refers to a missing joint, or has a weight that is not above 0");
             }
-            sum += double{by.weight};
+            sum += double{influence.weight};
         }
         if (!(std::abs(sum - 1.0) <= double{kWeightSumTolerance})) {
             return wrong("positions", vertex, "has weights that do not sum to 1");
@@ -120,16 +120,16 @@ Result<void> checkWeights(const AnimatedMesh& mesh) {
 }
 
 Result<void> checkDeltas(const AnimatedMesh& mesh) {
-    if (!areStarts(mesh.delta_begin, mesh.positions.size(), mesh.deltas.size())) {
+    if (!areOffsets(mesh.delta_begin, mesh.positions.size(), mesh.deltas.size())) {
         return invalidInput("animation.delta_begin does not ascend from 0 to the number of deltas");
     }
     for (std::size_t vertex = 0; vertex < mesh.positions.size(); ++vertex) {
         for (std::uint32_t i = mesh.delta_begin[vertex]; i < mesh.delta_begin[vertex + 1]; ++i) {
-            const MorphDelta& by = mesh.deltas[i];
-            if (by.target >= mesh.weights.size() || !isFinite(by.delta)) {
+            const MorphDelta& delta = mesh.deltas[i];
+            if (delta.target >= mesh.weights.size() || !isFinite(delta.delta)) {
                 return wrong("deltas", i, "refers to a missing target, or is not finite");
             }
-            if (i > mesh.delta_begin[vertex] && by.target <= mesh.deltas[i - 1].target) {
+            if (i > mesh.delta_begin[vertex] && delta.target <= mesh.deltas[i - 1].target) {
                 return wrong("deltas", i, "is not in ascending order of targets");
             }
         }
@@ -172,8 +172,8 @@ Result<void> checkJoints(const AnimatedMesh& mesh) {
     return {};
 }
 
-/// \return the problem of a channel, or "".
-std::string faultOf(const AnimatedMesh& mesh, const MeshClip& clip, const ClipChannel& channel) {
+/// Returns the problem of a channel, or "".
+std::string channelFault(const AnimatedMesh& mesh, const MeshClip& clip, const ClipChannel& channel) {
     if (channel.node >= mesh.nodes.size() || channel.member > NodeMember::kWeights ||
         channel.curve > KeyCurve::kCubic) {
         return "refers to an unknown node, member or curve";
@@ -211,7 +211,7 @@ Result<void> checkClips(const AnimatedMesh& mesh) {
         }
         std::set<std::pair<std::uint32_t, NodeMember>> moved;
         for (const ClipChannel& channel : clip.channels) {
-            std::string fault = faultOf(mesh, clip, channel);
+            std::string fault = channelFault(mesh, clip, channel);
             if (fault.empty() && !moved.emplace(channel.node, channel.member).second) {
                 fault = "animates the same member as another channel";
             }

@@ -6,7 +6,7 @@
 //                          │                   │
 //     position + Σ weight · delta  ──▶  Σ weight · joint · position     glTF 2.0, 3.7.2.2 and 3.7.3.1
 //
-// Nodes that place a mesh without a skin also count as joints, of weight 1. Machines and characters share one path.
+// Nodes that place a mesh without a skin count as joints of weight 1, so machines and characters share one code path.
 #pragma once
 
 #include <cstddef>
@@ -78,9 +78,8 @@ struct ClipChannel {
     std::uint32_t node = 0;
     NodeMember member = NodeMember::kTranslation;
     KeyCurve curve = KeyCurve::kLinear;
-    std::vector<float> times;  ///< seconds, 0 or more, ascending; at least one
-    std::vector<float>
-        values;  ///< per key: 3 or 4, or the node's weight count; three times as many for kCubic
+    std::vector<float> times;   ///< seconds, 0 or more, ascending; at least one
+    std::vector<float> values;  ///< keyNumbers() per key; three times as many for kCubic
     friend bool operator==(const ClipChannel&, const ClipChannel&) = default;
 };
 

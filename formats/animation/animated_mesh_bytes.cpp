@@ -26,7 +26,7 @@ Offset<flatbuffers::Vector<const Stored*>> addAll(FlatBufferBuilder& builder, co
 }
 
 template <class T, class Stored>
-std::vector<T> takeAll(const flatbuffers::Vector<const Stored*>& stored) {
+std::vector<T> copyAll(const flatbuffers::Vector<const Stored*>& stored) {
     static_assert(sizeof(Stored) == sizeof(T));
     std::vector<T> values(stored.size());
     if (!values.empty()) {
@@ -36,7 +36,7 @@ std::vector<T> takeAll(const flatbuffers::Vector<const Stored*>& stored) {
 }
 
 template <class T>
-std::vector<T> takeAll(const flatbuffers::Vector<T>& stored) {
+std::vector<T> copyAll(const flatbuffers::Vector<T>& stored) {
     return {stored.begin(), stored.end()};
 }
 
@@ -106,8 +106,8 @@ MeshClip readClip(const fb::Clip& from) {
     MeshClip clip{from.name()->str(), from.seconds(), {}};
     for (const fb::Channel* channel : *from.channels()) {
         clip.channels.push_back({channel->node(), static_cast<NodeMember>(channel->member()),
-                                 static_cast<KeyCurve>(channel->curve()), takeAll(*channel->times()),
-                                 takeAll(*channel->values())});
+                                 static_cast<KeyCurve>(channel->curve()), copyAll(*channel->times()),
+                                 copyAll(*channel->values())});
     }
     return clip;
 }
@@ -134,7 +134,7 @@ bool fits(const fb::AnimatedMesh& from, std::size_t file_bytes) {
     return bytes <= file_bytes;
 }
 
-/// Checks only the structure.
+/// Decodes the bytes; checks the structure of the file, but not the values.
 Result<AnimatedMesh> unpack(std::span<const std::byte> bytes) {
     // Accessors require an alignment that `bytes` may lack.
     const auto aligned = std::make_unique<std::uint64_t[]>(bytes.size() / sizeof(std::uint64_t) + 1);
@@ -150,19 +150,19 @@ Result<AnimatedMesh> unpack(std::span<const std::byte> bytes) {
                     "its animation declares more nodes, clips or keys than fit into the file; bake it again");
     }
     AnimatedMesh mesh;
-    mesh.positions = takeAll<glm::vec3>(*from.positions());
-    mesh.triangles = takeAll<glm::uvec3>(*from.triangles());
-    mesh.influence_begin = takeAll(*from.influence_begin());
-    mesh.influences = takeAll<VertexInfluence>(*from.influences());
-    mesh.delta_begin = takeAll(*from.delta_begin());
-    mesh.deltas = takeAll<MorphDelta>(*from.deltas());
+    mesh.positions = copyAll<glm::vec3>(*from.positions());
+    mesh.triangles = copyAll<glm::uvec3>(*from.triangles());
+    mesh.influence_begin = copyAll(*from.influence_begin());
+    mesh.influences = copyAll<VertexInfluence>(*from.influences());
+    mesh.delta_begin = copyAll(*from.delta_begin());
+    mesh.deltas = copyAll<MorphDelta>(*from.deltas());
     for (const fb::Node* node : *from.nodes()) {
         mesh.nodes.push_back(readNode(*node));
     }
     for (const fb::Joint* joint : *from.joints()) {
         mesh.joints.push_back({joint->node(), fromFb(joint->bind())});
     }
-    mesh.weights = takeAll(*from.weights());
+    mesh.weights = copyAll(*from.weights());
     for (const fb::Clip* clip : *from.clips()) {
         mesh.clips.push_back(readClip(*clip));
     }
@@ -172,7 +172,7 @@ Result<AnimatedMesh> unpack(std::span<const std::byte> bytes) {
         }
     }
     if (from.triangle_materials() != nullptr) {
-        mesh.triangle_materials = takeAll(*from.triangle_materials());
+        mesh.triangle_materials = copyAll(*from.triangle_materials());
     }
     return mesh;
 }

@@ -12,10 +12,10 @@ namespace {
 constexpr std::size_t kListedMax = 20;
 
 /// Returns 1 for each joint that moves a vertex.
-std::vector<char> movers(const AnimatedMesh& mesh) {
+std::vector<char> movingJoints(const AnimatedMesh& mesh) {
     std::vector<char> moves(mesh.joints.size(), 0);
-    for (const VertexInfluence& by : mesh.influences) {
-        moves[by.joint] = 1;
+    for (const VertexInfluence& influence : mesh.influences) {
+        moves[influence.joint] = 1;
     }
     return moves;
 }
@@ -23,34 +23,34 @@ std::vector<char> movers(const AnimatedMesh& mesh) {
 }  // namespace
 
 std::string listedNames(const std::vector<std::string>& names) {
-    std::set<std::string> known{""};
+    std::set<std::string> seen{""};
     std::string list;
-    for (const std::string& one : names) {
-        if (!known.insert(one).second) {
+    for (const std::string& name : names) {
+        if (!seen.insert(name).second) {
             continue;
         }
-        if (known.size() > kListedMax + 1) {
+        if (seen.size() > kListedMax + 1) {
             list += ", …";
             break;
         }
-        list += (list.empty() ? "'" : ", '") + cleanUtf8(one) + "'";
+        list += (list.empty() ? "'" : ", '") + cleanUtf8(name) + "'";
     }
     return list;
 }
 
 std::string noSuchPart(const char* kind, std::string_view name, const std::vector<std::string>& names) {
     const std::string list = listedNames(names);
-    return "there is no " + std::string(kind) + " '" + cleanUtf8(name, kAnimatedNameMax) + "'; it has " +
-           (list.empty() ? "none with a name" : list);
+    return "there is no " + std::string(kind) + " '" + cleanUtf8(name, kAnimatedNameMax) +
+           "'; the mesh has " + (list.empty() ? "none with a name" : list);
 }
 
 std::vector<std::string> groupNames(const AnimatedMesh& mesh) {
-    const std::vector<char> moves = movers(mesh);
+    const std::vector<char> moves = movingJoints(mesh);
     std::vector<std::string> names;
-    std::set<std::string> known{""};
+    std::set<std::string> seen{""};
     for (std::size_t i = 0; i < mesh.joints.size(); ++i) {
         const std::string& name = mesh.nodes[mesh.joints[i].node].name;
-        if (moves[i] != 0 && known.insert(name).second) {
+        if (moves[i] != 0 && seen.insert(name).second) {
             names.push_back(name);
         }
     }
@@ -58,7 +58,7 @@ std::vector<std::string> groupNames(const AnimatedMesh& mesh) {
 }
 
 Result<std::vector<float>> groupWeights(const AnimatedMesh& mesh, std::string_view name) {
-    std::vector<char> wanted = movers(mesh);
+    std::vector<char> wanted = movingJoints(mesh);
     for (std::size_t i = 0; i < wanted.size(); ++i) {
         wanted[i] = wanted[i] != 0 && !name.empty() && mesh.nodes[mesh.joints[i].node].name == name ? 1 : 0;
     }
@@ -68,8 +68,8 @@ Result<std::vector<float>> groupWeights(const AnimatedMesh& mesh, std::string_vi
     std::vector<float> weights(mesh.positions.size(), 0.0F);
     for (std::size_t vertex = 0; vertex < weights.size(); ++vertex) {
         for (std::uint32_t i = mesh.influence_begin[vertex]; i < mesh.influence_begin[vertex + 1]; ++i) {
-            const VertexInfluence& by = mesh.influences[i];
-            weights[vertex] += wanted[by.joint] != 0 ? by.weight : 0.0F;
+            const VertexInfluence& influence = mesh.influences[i];
+            weights[vertex] += wanted[influence.joint] != 0 ? influence.weight : 0.0F;
         }
         weights[vertex] = std::min(weights[vertex], 1.0F);
     }

@@ -17,17 +17,17 @@ namespace relief {
 
 /// Returns for each vertex the sum of its weights, 0 … 1, for all joints whose node has this name. Child nodes are
 /// included only if they have the same name. Errors: kInvalidInput if no such joint moves a vertex; the message lists
-/// up to 20 that do.
+/// up to 20 names of other joints.
 [[nodiscard]] Result<std::vector<float>> groupWeights(const AnimatedMesh& mesh, std::string_view name);
 
-/// Returns the triangles of a material. Errors: kInvalidInput if it does not exist; the message lists up to 20 that do.
+/// Returns the triangles of a material. Errors: kInvalidInput if it does not exist; the message lists up to 20 others.
 [[nodiscard]] Result<std::vector<glm::uvec3>> materialTriangles(const AnimatedMesh& mesh,
                                                                 std::string_view name);
 
 /// Returns "'A', 'B', …" for the first 20 distinct, non-empty names; "" if there are none.
 [[nodiscard]] std::string listedNames(const std::vector<std::string>& names);
 
-/// Returns "there is no KIND 'NAME'; it has 'A', 'B', …".
+/// Returns "there is no KIND 'NAME'; the mesh has 'A', 'B', …".
 [[nodiscard]] std::string noSuchPart(const char* kind, std::string_view name,
                                      const std::vector<std::string>& names);
 

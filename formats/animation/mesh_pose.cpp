@@ -16,14 +16,14 @@ namespace {
 
 /// If the cosine of two rotations' half angle exceeds this, linear interpolation is as accurate as slerp.
 constexpr double kStraightCosine = 0.9999999;
-/// At ten turns per second, this is 15 degrees; bounding boxes grow by less than kRoom in between.
-constexpr double kPoseSeconds = 1.0 / 240.0;
-/// Limit of all sampled times together, in nodes and joints.
-constexpr double kPoseWork = 2e7;
-/// Tolerance relative to the longest side.
-constexpr float kSeam = 0.02F;
-/// Margin for motion between the sampled times.
-constexpr float kRoom = 0.02F;
+/// Interval between samples: 15 degrees at ten turns per second. Bounding boxes grow by less than kMotionMargin in it.
+constexpr double kSampleSeconds = 1.0 / 240.0;
+/// Limit on samples · (nodes + joints), over all clips.
+constexpr double kSampleWork = 2e7;
+/// Tolerance of isCyclic(), relative to the longest side.
+constexpr float kLoopTolerance = 0.02F;
+/// Margin for motion between samples.
+constexpr float kMotionMargin = 0.02F;
 
 struct Motion {
     glm::dmat3 linear{1.0};
@@ -71,7 +71,7 @@ Motion motionOf(const NodeState& state) {
 }
 
 /// Interpolates unit quaternions along the shorter arc.
-void turn(std::span<const float> a, std::span<const float> b, double t, double* out) {
+void slerp(std::span<const float> a, std::span<const float> b, double t, double* out) {
     double cosine = 0.0;
     for (std::size_t i = 0; i < 4; ++i) {
         cosine += double{a[i]} * double{b[i]};
@@ -112,16 +112,16 @@ void valueAt(const ClipChannel& channel, std::size_t numbers, double seconds, do
     const double t = (seconds - double{channel.times[key]}) / length;
     const std::span<const float> other = part(next, 1);
     if (cubic) {
-        const std::span<const float> leaves = part(key, 2);
-        const std::span<const float> arrives = part(next, 0);
+        const std::span<const float> out_tangent = part(key, 2);
+        const std::span<const float> in_tangent = part(next, 0);
         for (std::size_t i = 0; i < numbers; ++i) {
             out[i] = (2 * t * t * t - 3 * t * t + 1) * double{value[i]} +
-                     length * (t * t * t - 2 * t * t + t) * double{leaves[i]} +
+                     length * (t * t * t - 2 * t * t + t) * double{out_tangent[i]} +
                      (3 * t * t - 2 * t * t * t) * double{other[i]} +
-                     length * (t * t * t - t * t) * double{arrives[i]};
+                     length * (t * t * t - t * t) * double{in_tangent[i]};
         }
     } else if (channel.member == NodeMember::kRotation) {
-        turn(value, other, t, out);
+        slerp(value, other, t, out);
     } else {
         for (std::size_t i = 0; i < numbers; ++i) {
             out[i] += t * (double{other[i]} - double{value[i]});
@@ -143,18 +143,18 @@ MeshPose poseOf(const AnimatedMesh& mesh, const std::vector<NodeState>& states, 
     return pose;
 }
 
-/// Returns ascending times at most `apart` seconds apart, including all keys unless there are more keys than times.
-std::vector<double> timesOf(const MeshClip& clip, double apart) {
+/// Returns ascending times at most `interval` seconds apart, including all keys unless there are more keys than times.
+std::vector<double> timesOf(const MeshClip& clip, double interval) {
     std::vector<double> times{double{clip.seconds}};
-    for (double t = 0.0; t < double{clip.seconds}; t += apart) {
+    for (double t = 0.0; t < double{clip.seconds}; t += interval) {
         times.push_back(t);
     }
-    const std::size_t least = times.size();
+    const std::size_t count = times.size();
     std::set<float> keys;
     for (const ClipChannel& channel : clip.channels) {
         keys.insert(channel.times.begin(), channel.times.end());
     }
-    if (keys.size() <= least) {
+    if (keys.size() <= count) {
         times.insert(times.end(), keys.begin(), keys.end());
         std::sort(times.begin(), times.end());
     }
@@ -247,8 +247,8 @@ PoseBounds::PoseBounds(const AnimatedMesh& mesh) : boxes_(mesh.joints.size()), r
             boxes_[mesh.influences[i].joint].add(mesh.positions[vertex]);
         }
     }
-    for (const MorphDelta& by : mesh.deltas) {
-        reach_[by.target] = glm::max(reach_[by.target], glm::abs(by.delta));
+    for (const MorphDelta& delta : mesh.deltas) {
+        reach_[delta.target] = glm::max(reach_[delta.target], glm::abs(delta.delta));
     }
 }
 
@@ -281,17 +281,17 @@ PoseExtent poseExtent(const AnimatedMesh& mesh) {
         const Bounds box = bounds.of(pose);
         extent.box.add(box.min);
         extent.box.add(box.max);
-        extent.box_size = glm::max(extent.box_size, (1.0F + kRoom) * box.size());
+        extent.box_size = glm::max(extent.box_size, (1.0F + kMotionMargin) * box.size());
     };
     add(firstPose(mesh));
     double seconds = 0.0;
     for (const MeshClip& clip : mesh.clips) {
         seconds += double{clip.seconds};
     }
-    const double most = kPoseWork / static_cast<double>(mesh.nodes.size() + mesh.joints.size());
-    const double apart = std::max(kPoseSeconds, seconds / most);
+    const double samples_max = kSampleWork / static_cast<double>(mesh.nodes.size() + mesh.joints.size());
+    const double interval = std::max(kSampleSeconds, seconds / samples_max);
     for (const MeshClip& clip : mesh.clips) {
-        for (const double t : timesOf(clip, apart)) {
+        for (const double t : timesOf(clip, interval)) {
             add(poseAt(mesh, clip, t));
         }
     }
@@ -302,8 +302,8 @@ bool isCyclic(const AnimatedMesh& mesh, const MeshClip& clip) {
     const PoseBounds bounds(mesh);
     const Bounds begin = bounds.of(poseAt(mesh, clip, 0.0));
     const Bounds end = bounds.of(poseAt(mesh, clip, double{clip.seconds}));
-    const float off = std::max(glm::length(begin.min - end.min), glm::length(begin.max - end.max));
-    return off <= kSeam * begin.longestSide();
+    const float difference = std::max(glm::length(begin.min - end.min), glm::length(begin.max - end.max));
+    return difference <= kLoopTolerance * begin.longestSide();
 }
 
 }  // namespace relief

@@ -80,7 +80,7 @@ struct FieldRules {
     std::string_view needs = {};       ///< the field requires at least one of these keys
     std::string_view instead_of = {};  ///< keys that this field excludes
     std::string_view only = {};        ///< values of the selecting field for which this field is valid
-    /// A top-level key: the value is an index into its tables, or the name of one of them.
+    /// Key of top-level tables: the value is the index of one of these tables, or its name.
     std::string_view index_of = {};
     std::size_t most = std::numeric_limits<std::size_t>::max();  ///< maximum number of elements of a vector
     bool required = false;  ///< if `only` is set, required only for those values
@@ -131,7 +131,7 @@ struct FieldPair {
     FieldRef second;
 };
 
-/// A member whose default depends on other values, and a flag that is set if the file contains it.
+/// A member whose default depends on other values, and a flag that is set if the file contains the member.
 struct FieldMaybe {
     FieldRef value;
     bool& given;
@@ -327,7 +327,7 @@ constexpr FieldType describe() {
         }
     } else {
         static_assert(kFieldCustom<T> != nullptr,
-                      "neither fields() nor a form of its own is declared before");
+                      "declare fields(), or readForm() and formText(), before this use");
     }
     return type;
 }

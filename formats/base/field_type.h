@@ -43,7 +43,7 @@ enum class FieldForm : std::uint8_t {
     kList,    ///< std::vector; write-only: any contiguous range
     kOptional,
     kVariant,  ///< write-only
-    kSpan,     ///< FieldSpan; likewise below
+    kSpan,     ///< FieldSpan; the next four likewise
     kPair,
     kMaybe,
     kFile,
@@ -117,7 +117,7 @@ class FieldRef {
         return *static_cast<T*>(value_);
     }
 
-    /// Returns the value of an optional, or a blank one if empty; for other types, the value itself.
+    /// Returns the value of an optional, or a default value if empty; for other types, the value itself.
     [[nodiscard]] FieldRef heldOrBlank() const;
     /// Returns a default value of the type, which must have one.
     [[nodiscard]] FieldRef blank() const { return {type_->blank(), *type_}; }
@@ -133,7 +133,7 @@ class FieldRef {
     [[nodiscard]] bool isNumber() const;  ///< false for bool
     [[nodiscard]] std::uint64_t whole() const;
     [[nodiscard]] std::int64_t integer() const;
-    [[nodiscard]] double number() const;       ///< of any number
+    [[nodiscard]] double number() const;       ///< for every number type
     void setWhole(std::uint64_t value) const;  ///< truncated to the size of the type
     void setReal(double value) const;          ///< rounded to the type
 

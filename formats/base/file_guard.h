@@ -36,7 +36,7 @@ struct FilesByEnding {
     std::string ending;  ///< ".relief"
 };
 
-/// Identifies files by identity, not by name: it resolves symbolic links (including dangling ones), hard links, and the
+/// Compares files by identity, not by name: it resolves symbolic links (including dangling ones), hard links, and the
 /// files behind standard input and output. Register every file before writing the first one. Devices may be registered
 /// any number of times.
 class FileGuard {
@@ -59,7 +59,7 @@ class FileGuard {
     [[nodiscard]] Result<void> reads(const std::filesystem::path& path);
     /// Registers an output. "-" is standard output; an empty path is ignored.
     /// \param option  the option that names the file, for messages: "--dump".
-    /// \param made    a folder that the run will create with its parents and fill; the file may be in it.
+    /// \param made    a folder that the run creates with its parents and fills; may contain the file.
     /// Errors: those of preflightFile; kUsage if it is an input, another output, or a link out of `made`.
     [[nodiscard]] Result<void> writes(const std::filesystem::path& path, std::string_view option,
                                       const std::filesystem::path& made = {});
@@ -67,8 +67,8 @@ class FileGuard {
     /// that leaves the folder.
     [[nodiscard]] Result<void> writes(const NumberedFiles& files, std::string_view option);
     [[nodiscard]] Result<void> writes(const FilesByEnding& files, std::string_view option);
-    /// Creates a folder that the run fills, like preflightFolder(). The last copy of this guard removes the folders that
-    /// it created and that are empty, unless keepFolders() was called.
+    /// Creates a folder that the run fills, like preflightFolder(). The last copy of this guard removes the
+    /// created folders that are still empty, unless keepFolders() was called.
     [[nodiscard]] Result<void> makes(const std::filesystem::path& folder, std::string_view option);
     void keepFolders() { folders_->made.clear(); }
     /// Registers a cache file. A link at that path is replaced, not followed. Several caches may share one file, and

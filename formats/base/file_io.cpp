@@ -28,7 +28,7 @@ constexpr std::size_t kChunk = std::size_t{1} << 20;  // bytes per system call, 
 constexpr int kLinksMax = 40;                         // limit of Linux
 
 /// Returns the advice for an errno.
-const char* cure(int code, bool reads) {
+const char* advice(int code, bool reads) {
     switch (code) {
         case ENOENT:
         case ENOTDIR:
@@ -56,7 +56,7 @@ const char* cure(int code, bool reads) {
 tl::unexpected<Error> ioError(const char* action, const std::string& name, int code) {
     const bool reads = std::string_view(action) == "read";
     return fail(ErrorCode::kIo, std::string("cannot ") + action + " " + name + ": " +
-                                    std::system_category().message(code) + "; " + cure(code, reads));
+                                    std::system_category().message(code) + "; " + advice(code, reads));
 }
 
 /// Checks for paths that the system would truncate or misinterpret.
@@ -106,8 +106,8 @@ Result<std::vector<std::byte>> readAll(int fd, const std::string& name, std::uin
     }
 }
 
-/// weakly_canonical treats a dangling link as a file that does not exist and does not resolve it.
-fs::path settled(const fs::path& path, std::error_code& error) {
+/// Returns the canonical path, but keeps a dangling link, which weakly_canonical treats as a missing file.
+fs::path canonicalPath(const fs::path& path, std::error_code& error) {
     fs::path result = fs::weakly_canonical(fs::absolute(path, error), error);
     // A missing folder keeps its trailing slash, which would count as a component.
     return result.has_filename() ? result : result.parent_path();
@@ -328,7 +328,7 @@ Result<void> preflightFolder(const fs::path& path, std::string_view option) {
 }
 
 fs::path destination(const fs::path& path, std::error_code& error) {
-    fs::path result = settled(path, error);
+    fs::path result = canonicalPath(path, error);
     for (int i = 0; i < kLinksMax && !error; ++i) {
         const auto link =
             std::find_if(result.begin(), result.end(), [walked = fs::path()](const fs::path& part) mutable {
@@ -342,7 +342,7 @@ fs::path destination(const fs::path& path, std::error_code& error) {
         std::for_each(result.begin(), link, [&](const fs::path& part) { before /= part; });
         fs::path followed = before / fs::read_symlink(before / *link, error);
         std::for_each(std::next(link), result.end(), [&](const fs::path& part) { followed /= part; });
-        result = settled(followed, error);
+        result = canonicalPath(followed, error);
     }
     if (!error) {
         error = std::make_error_code(std::errc::too_many_symbolic_link_levels);

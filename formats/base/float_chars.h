@@ -42,7 +42,7 @@ template <class Number>
 std::from_chars_result fromChars(const char* first, const char* last, Number& value, bool fixed = false) {
     if constexpr (std::is_floating_point_v<Number>) {
         // Keep only characters that std::from_chars accepts: strtod would also accept spaces, a plus sign and
-        // hexadecimals.
+        // hexadecimal numbers.
         const std::string_view text(first, static_cast<std::size_t>(last - first));
         const std::string number(text.substr(
             0, std::min(text.find_first_not_of(fixed ? "+-.0123456789infaty" : "+-.0123456789infatyeE"),

@@ -15,9 +15,9 @@ namespace {
 
 /// Size of later heap extensions; large because assimp makes many small allocations.
 constexpr int kStepBytes = 16 << 20;
-/// Largest block that glibc may take from the heap instead of mmap.
+/// Largest block that glibc may allocate from the heap instead of with mmap.
 constexpr int kLargestBlock = 32 << 20;
-/// Smaller than any first extension and larger than the initial heap.
+/// A block that does not fit into the initial heap, but into its first extension.
 constexpr std::size_t kFirstBlock = std::size_t{1} << 20;
 
 std::uintptr_t heapEnd() {

@@ -28,8 +28,8 @@ std::pair<std::int64_t, double> quarterTurns(double radians) {
             ((radians - turns * kHalfPi1) - turns * kHalfPi2) - turns * kHalfPi3};
 }
 
-/// Evaluates the Taylor series from the term of x^first on by Horner's scheme; each term is −x²/((n + 1)(n + 2)) times
-/// the previous one.
+/// Returns the sum of the Taylor terms after that of x^first, divided by that term, by Horner's scheme. The term of x^n
+/// is −x²/(n(n − 1)) times the previous one.
 double alternating(double x_squared, int first) {
     double sum = 0.0;
     for (int n = first + 18; n > first; n -= 2) {
@@ -47,7 +47,7 @@ double cosNearZero(double x) {
 }
 
 /// \param t  in [0, 1]
-double atanOfShare(double t) {
+double atanOfRatio(double t) {
     // Halve the angle twice: tan(a/2) = tan a / (1 + √(1 + tan² a)).
     double tangent = t;
     for (int i = 0; i < 2; ++i) {
@@ -114,7 +114,7 @@ double atan2(double y, double x) {
     if (height == 0.0 && width == 0.0) {
         return 0.0;
     }
-    double angle = height <= width ? atanOfShare(height / width) : 0.5 * kPi - atanOfShare(width / height);
+    double angle = height <= width ? atanOfRatio(height / width) : 0.5 * kPi - atanOfRatio(width / height);
     if (x < 0.0) {
         angle = kPi - angle;
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Elementary functions whose results are bit-identical on every processor and compiler. Those of libm vary: glibc has
-// several variants of each and selects one for the processor. These use only operations that IEEE 754 rounds exactly:
-// sums, products, quotients and square roots.
+// Elementary functions whose results are bit-identical on every processor and compiler. Results of libm vary: glibc
+// selects one of several variants of each function for the processor. The functions below use only operations that
+// IEEE 754 rounds exactly: sums, products, quotients and square roots.
 #pragma once
 
 namespace relief::portable {

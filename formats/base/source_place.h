@@ -7,7 +7,7 @@
 
 namespace relief {
 
-/// A position such as "scene.toml:3:8", for messages. All positions compare equal, so that values compare without it.
+/// A position such as "scene.toml:3:8", for messages. All positions compare equal, so comparisons ignore them.
 struct SourcePlace {
     std::string text;
 

@@ -28,7 +28,7 @@ struct TemporaryFile::Slot {
     std::atomic<bool> live = false;  ///< the file may exist
     std::array<char, PATH_MAX> name{};
 
-    static std::array<Slot, 32> all;  ///< lets a signal handler find them
+    static std::array<Slot, 32> all;  ///< global, for signal handlers
 };
 std::array<TemporaryFile::Slot, 32> TemporaryFile::Slot::all;
 
@@ -36,7 +36,7 @@ namespace {
 
 constexpr int kAttempts = 8;
 
-/// Removes a decimal number without leading zeros, followed by the character `behind`, from the front.
+/// Removes a decimal number without leading zeros, and the character `behind` after it, from the start of `text`.
 std::optional<std::uint64_t> takeNumber(std::string_view& text, char behind) {
     std::uint64_t number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -58,10 +58,10 @@ std::optional<pid_t> processOf(std::string_view name) {
     }
     name.remove_prefix(kStart.size());
     const std::optional<std::uint64_t> process = takeNumber(name, '-');
-    const bool right = process && *process > 0 && *process <= INT_MAX && takeNumber(name, '-') &&
+    const bool valid = process && *process > 0 && *process <= INT_MAX && takeNumber(name, '-') &&
                        name.size() == kRandomDigits + kEnd.size() &&
                        name.find_first_not_of("0123456789abcdef") == kRandomDigits;
-    return right ? std::optional(static_cast<pid_t>(*process)) : std::nullopt;
+    return valid ? std::optional(static_cast<pid_t>(*process)) : std::nullopt;
 }
 
 }  // namespace

@@ -30,8 +30,8 @@ class TemporaryFile {
     /// Removes all temporary files of this process. Safe in a signal handler.
     static void removeAll();
 
-    /// Removes the temporary files in a folder whose process has ended: regular files of this user with such a name
-    /// that no process has locked. The lock protects files that another machine or container is writing.
+    /// Removes the temporary files that ended processes left in a folder: regular files of this user with such a name
+    /// and without a lock. The lock protects files that another machine or container is writing.
     static void removeLeftovers(const std::filesystem::path& folder);
 
   private:

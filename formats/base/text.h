@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers and words of command lines and text files: strict, exact, and independent of the locale.
+// Parses and formats the numbers and words of command lines and text files: strict, exact, independent of the locale.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,7 @@ void appendShortest(std::string& out, float value);
 /// Parses the whole text as a finite float, otherwise returns nullopt. Accepts a leading '+'; values that are too small
 /// become 0.
 [[nodiscard]] std::optional<float> parseFloat(std::string_view text);
-/// Parses a double likewise, which may also be infinite or NaN.
+/// Parses a double in the same way, but also accepts infinity and NaN.
 [[nodiscard]] std::optional<double> parseDouble(std::string_view text);
 /// Parses the whole text as decimal digits. Values beyond 64 bits return the maximum.
 [[nodiscard]] std::optional<std::uint64_t> parseUnsigned(std::string_view text);

@@ -57,7 +57,7 @@ class TextScanner {
 /// quoting.
 class CsvReader {
   public:
-    /// Fields beyond this number and one more are dropped, because a hostile line could have millions.
+    /// A line returns at most one field more than this, to show that it has too many; a hostile line could have millions.
     static constexpr std::size_t kFieldsMax = 8;
 
     /// \param text  borrowed; line() and fields() point into it.

@@ -42,8 +42,8 @@ Header headerOf(const BrickAtlas& atlas) {
     return header;
 }
 
-/// Returns false for values that no writer produces.
-bool takeHeader(const Header& header, BrickAtlas& atlas) {
+/// Copies the header. Returns false for values that no writer produces.
+bool readHeader(const Header& header, BrickAtlas& atlas) {
     std::array<glm::vec3, 4> vectors;
     for (std::size_t i = 0; i < 12; ++i) {
         vectors[i / 3][static_cast<int>(i % 3)] = header.floats[i];
@@ -86,7 +86,7 @@ Result<BrickAtlas> loadBrickAtlas(const std::filesystem::path& path) {
         return wrong();
     }
     std::memcpy(&header, bytes.data(), sizeof header);
-    if (!takeHeader(header, atlas)) {
+    if (!readHeader(header, atlas)) {
         return wrong();
     }
     // Sides of up to 2^16 multiply to at most 2^48, which fits into 64 bits.
@@ -101,9 +101,10 @@ Result<BrickAtlas> loadBrickAtlas(const std::filesystem::path& path) {
     std::memcpy(atlas.index.data(), bytes.data() + sizeof header, 4 * cubes);
     std::memcpy(atlas.codes.data(), bytes.data() + sizeof header + 4 * cubes, 2 * header.codes);
     const std::size_t values = BrickAtlas::kFirstBrick + atlas.bricks();
-    const auto most = static_cast<std::int16_t>(atlas.codeMax());
+    const auto code_max = static_cast<std::int16_t>(atlas.codeMax());
     if (std::any_of(atlas.index.begin(), atlas.index.end(), [&](auto i) { return i >= values; }) ||
-        std::any_of(atlas.codes.begin(), atlas.codes.end(), [&](auto c) { return c < -most || c > most; })) {
+        std::any_of(atlas.codes.begin(), atlas.codes.end(),
+                    [&](auto c) { return c < -code_max || c > code_max; })) {
         return wrong();
     }
     return atlas;

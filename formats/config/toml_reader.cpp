@@ -22,7 +22,7 @@ class TableRules : public FieldVisitor {
     void refuseUnknown(const TomlValue& table) const;
     /// Returns the value that the present keys imply for the missing selecting field; empty: none.
     [[nodiscard]] std::string_view chosen(const TomlValue& table) const;
-    /// Fails if a key is missing, or has no effect with or without the others.
+    /// Fails if a required key is missing, two keys exclude each other, or a key has no effect.
     /// \param selected  value of the selecting field; empty if there is none.
     void checkTable(const TomlValue& table, std::string_view selected) const;
 
@@ -215,7 +215,7 @@ class PartNumber {
     PartNumber& operator=(const PartNumber&) = delete;
 
     [[nodiscard]] FieldRef ref() const { return number_; }
-    void give(FieldRef part) const {
+    void storeIn(FieldRef part) const {
         const FieldRef to = part.form() == FieldForm::kOptional ? part.add() : part;
         isWhole(to.type()) ? to.setWhole(number_.whole()) : to.setReal(number_.number());
     }
@@ -238,8 +238,8 @@ void readSpan(const TomlValue& from, const FieldSpan& span, const FieldInfo& inf
     if (least.ref().number() > most.ref().number()) {
         from.fail(from.name() + " has a minimum above its maximum; swap them");
     }
-    least.give(span.least);
-    most.give(span.most);
+    least.storeIn(span.least);
+    most.storeIn(span.most);
 }
 
 void readPair(const TomlValue& from, const FieldPair& pair, const FieldInfo& info) {
@@ -248,8 +248,8 @@ void readPair(const TomlValue& from, const FieldPair& pair, const FieldInfo& inf
     static_cast<void>(from.list(2, isWhole(first.ref().type()), info.unit));
     readNumber(from[0], first.ref(), info);
     readNumber(from[1], second.ref(), info);
-    first.give(pair.first);
-    second.give(pair.second);
+    first.storeIn(pair.first);
+    second.storeIn(pair.second);
 }
 
 }  // namespace

@@ -63,8 +63,8 @@ class JsonWriter : public FieldVisitor {
         if (info.left_out && !info.rules.needs.empty()) {
             needs_.emplace_back(name, info.rules.needs);
         }
-        const bool alone = value.form() == FieldForm::kList && info.rules.single && value.count() == 1;
-        json_[std::string(name)] = jsonOf(alone ? value[0] : value);
+        const bool unwrapped = value.form() == FieldForm::kList && info.rules.single && value.count() == 1;
+        json_[std::string(name)] = jsonOf(unwrapped ? value[0] : value);
     }
     Json take() {
         for (const auto& [name, keys] : needs_) {
@@ -80,7 +80,7 @@ class JsonWriter : public FieldVisitor {
   private:
     Json json_ = Json::object();
     std::string_view selected_;
-    /// Keys with the keys in FieldRules::needs.
+    /// Written keys, each with its FieldRules::needs.
     std::vector<std::pair<std::string, std::string_view>> needs_;
 };
 

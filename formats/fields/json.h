@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Converts structs with fields() to JSON text, and derives its JSON Schema. The tools write their reports with it.
+// Converts structs with fields() to JSON text, and derives the JSON Schema. The tools write their reports with it.
 // formats/fields/json_value.h declares the JSON values.
 #pragma once
 

@@ -19,7 +19,7 @@ std::string superscript(int exponent) {
     return text;
 }
 
-/// Formats powers such as 10⁶ and 2²⁴ as such.
+/// Formats a number; powers of 10 and 2 as "10⁶" and "2²⁴".
 std::string prettyNumber(double value) {
     for (int exponent = -15; exponent <= 15; ++exponent) {
         if ((exponent >= 4 || exponent <= -3) && value == parseDouble("1e" + std::to_string(exponent))) {

@@ -14,7 +14,7 @@ namespace {
 
 using PlainJson = nlohmann::json;
 
-constexpr std::size_t kMessageBytesMax = 200;  // maximum bytes of the file or the parser's message to show
+constexpr std::size_t kMessageBytesMax = 200;  // limit for a key or the parser's text in a message
 
 /// Checks a text before it is parsed: with a callback, nlohmann's parser takes time quadratic in the length of an
 /// array.

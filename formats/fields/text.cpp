@@ -19,11 +19,11 @@ bool isBytes(const FieldInfo& info) {
 }
 
 /// Returns the largest integer that the range allows.
-std::uint64_t mostOf(const FieldRange& range, std::uint64_t most) {
+std::uint64_t maximumOf(const FieldRange& range, std::uint64_t most) {
     return range.high < static_cast<double>(most) ? static_cast<std::uint64_t>(range.high) : most;
 }
 
-std::string mustOf(const FieldInfo& info, std::uint64_t least, std::uint64_t most) {
+std::string requirementOf(const FieldInfo& info, std::uint64_t least, std::uint64_t most) {
     if (!info.must.empty()) {
         return std::string(info.must);
     }
@@ -73,16 +73,16 @@ namespace {
 std::string readUnsigned(std::string_view word, const FieldInfo& info, std::uint64_t most,
                          std::uint64_t& value) {
     const auto least = info.range.low > 0.0 ? static_cast<std::uint64_t>(info.range.low) : 0;
-    most = mostOf(info.range, most);
+    most = maximumOf(info.range, most);
     const std::optional<std::uint64_t> number = isBytes(info) ? parseByteCount(word) : parseUnsigned(word);
     if (!number || *number < least || *number > most) {
-        return butMustBe(word, mustOf(info, least, most));
+        return butMustBe(word, requirementOf(info, least, most));
     }
     value = *number;
     return {};
 }
 
-/// Removes the unit of a length and returns its factor to metres, the object unit of files that specify one.
+/// Removes the unit of a length and returns its factor to metres, the object unit of files that specify a unit.
 double takeUnit(std::string_view& word) {
     static constexpr std::array<std::pair<std::string_view, double>, 4> kUnits{
         {{"mm", 1e-3}, {"cm", 1e-2}, {"km", 1e3}, {"m", 1.0}}};

@@ -64,7 +64,7 @@ std::uint64_t integer(std::string_view digits) {
     return value;
 }
 
-/// Returns 10 to the power of an exponent with few digits.
+/// Returns 10 to the power of an exponent with at most four digits.
 float powerOfTen(const Decimal& parts) {
     std::array<char, 8> text{'1', 'e', parts.shrinks ? '-' : '+'};
     parts.exponent.copy(text.data() + 3, 4);

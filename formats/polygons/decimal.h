@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers in the text formats parsed here: OBJ, OFF and STL.
+// Numbers in OBJ, OFF and STL text files.
 #pragma once
 
 #include <optional>

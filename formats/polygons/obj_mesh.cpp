@@ -229,9 +229,9 @@ class ObjReader {
     std::string name_;  // current group or object
     std::string group_;
     std::string material_;
-    bool has_faces_ = false;    // faces have used name_
-    bool by_material_ = false;  // a material followed those faces
-    bool renamed_ = false;      // since the last face
+    bool has_faces_ = false;    // a face uses name_
+    bool by_material_ = false;  // usemtl followed such a face
+    bool renamed_ = false;      // name_ or material_ was set after the last face
     std::vector<std::uint32_t> in_others_;
     std::uint64_t triangles_ = 0;
     std::uint64_t furthest_ = 0;  // largest vertex index of a face

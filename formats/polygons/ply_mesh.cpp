@@ -93,9 +93,8 @@ class PlyImport {
                    ? Result<void>()
                    : invalidInput(numbers.where() + "element " + cleanUtf8(element.name, kNameMax) + " " +
                                   std::to_string(index) +
-                                  " does not end with its line, according to the header; correct the counts "
-                                  "and properties "
-                                  "there, or export it again");
+                                  " does not end with its line; correct the counts and properties in the "
+                                  "header, or export the mesh again");
     }
 
     Result<void> readElement(const PlyElement& element, PlyNumbers& numbers) {

@@ -59,7 +59,7 @@ Result<void> addProperty(std::span<const std::string_view> words, PlyHeader& hea
 Result<PlyHeader> takePlyHeader(std::string_view& data) {
     PlyHeader header;
     std::optional<PlyEncoding> encoding;
-    // After a header with carriage returns as line ends, a line feed belongs to the numbers.
+    // If header lines end in carriage returns, a line feed after the header belongs to the numbers.
     bool returns = false;
     for (;;) {
         const std::string_view before = data;

@@ -51,7 +51,7 @@ struct PolygonMesh {
     std::vector<std::uint32_t> sizes;   ///< corners of each polygon; may be 1 or 2, but not 0
     std::vector<PolygonGroup> groups;   ///< ascending by begin; polygons before the first group have no names
     std::vector<std::string> warnings;  ///< without the file name
-    /// Counts that are not derived from the polygons: lines, points, free forms, and vertices that only those use.
+    /// Counts that are not derived from the polygons: lines, points and free forms.
     MeshParts others;
     std::vector<std::uint8_t>
         in_others;  ///< for each position, 1 if lines or points use it; empty if none are used
@@ -88,7 +88,7 @@ struct ObjMesh {
 /// "7/1", "7//3" or "7/1/3"; negative indices count back from the last vertex so far. Faces may precede their vertices.
 /// A face has the name of its material, and the names of the current group or object, whichever started last. The names
 /// of a group are its whole line and each of its words. A new material does not end the group.
-/// Errors, with the line but not the file: kInvalidInput.
+/// Errors, with the line but not the file: kInvalidInput, kLimit.
 [[nodiscard]] Result<ObjMesh> readObj(std::span<const std::byte> bytes,
                                       PolygonColors colors = PolygonColors::kSkip);
 

@@ -10,8 +10,8 @@
  *     float d = relief_distance(&bunny, p, n);     d < 0: p is inside; n is the normal of the surface
  *     relief_close(&bunny);
  *
- * It reads the containers that `relief bake` writes by default: one map of patches, not compressed. Containers of
- * `relief bake --compress` also need a decompressor: pass ZSTD_decompress of <zstd.h>. Containers of `--map` and
+ * It reads the containers that `relief bake` writes by default: one map of patches, not compressed. Containers baked
+ * with `--compress` also need a decompressor: pass ZSTD_decompress of <zstd.h>. Containers baked with `--map` or
  * `--paper` are rejected as RELIEF_UNSUPPORTED.
  *
  * Files may be hostile. relief_open() validates a container completely, as formats/README.md specifies. The other
@@ -51,7 +51,7 @@ extern "C" {
  * (row_x[2]*z + row_x[3])), likewise y' and z'.
  *
  * size: edge of a root cell in object units; number of root cells along x', y' and z'.
- * place: index of the collider's first texel in the texture, 0; steps from root cell to root cell along y' and z';
+ * place: index of the collider's first texel in the texture, 0; texels from root cell to root cell along y' and z';
  * levels below the root cells. To pack colliders into one texture, set place[0] in your copies of the constants. */
 typedef struct relief_constants {
     float row_x[4];
@@ -99,7 +99,7 @@ typedef size_t (*relief_decompress)(void* out, size_t out_size, const void* in, 
 
 /* Reads a container from memory. `bytes` may have any alignment; they are not used after the call. `decompress` may be
  * NULL, which rejects compressed containers. On failure, *collider is zero and owns nothing. Allocates at most `size`
- * bytes plus 16 kB, or for a compressed container what RELIEF_UNPACKED_MAX permits plus 12 MiB. */
+ * bytes plus 16 kB; for a compressed container, at most the bytes that RELIEF_UNPACKED_MAX permits plus 12 MiB. */
 relief_status relief_open(relief_collider* collider, const void* bytes, size_t size,
                           relief_decompress decompress);
 
@@ -116,9 +116,9 @@ void relief_close(relief_collider* collider);
 float relief_distance(const relief_collider* collider, const float point[3], float normal[3]);
 
 /* Collides a particle with a collider. If the distance of `position` is less than `radius`, moves the particle along
- * the normal to that distance. If it also moves inwards, multiplies its normal velocity by -restitution and its
- * tangential velocity by 1 - friction, both in 0...1: 0 and 0 make it slide, 0 and 1 make it stick. Returns
- * whether it hit. Threads may share a collider. */
+ * the normal to the distance `radius`. If its velocity points inwards, multiplies the normal velocity by -restitution
+ * and the tangential velocity by 1 - friction, both in 0...1: 0 and 0 make it slide, 0 and 1 make it stick. Returns
+ * whether the particle hit. Threads may share a collider. */
 int relief_collide(const relief_collider* collider, float position[3], float velocity[3], float radius,
                    float restitution, float friction);
 
@@ -345,7 +345,7 @@ static const rlf_field rlf_map[] = {
     {RLF_VALUE, 1, 48, 4, NULL}, {RLF_VALUE, 1, 12, 4, NULL}, {RLF_VALUE, 0, 1, 1, NULL}, {RLF_VALUE, 0, 1, 1, NULL},
     {RLF_VALUE, 0, 1, 1, NULL}, {RLF_VALUE, 1, 32, 8, NULL}, {RLF_VALUE, 0, 1, 1, NULL}, {RLF_END, 0, 0, 0, NULL}};
 
-enum { RLF_MATERIAL_NAME, RLF_RESTITUTION, RLF_FRICTION, RLF_LIFETIME_LOSS, RLF_AREA_SHARE };
+enum { RLF_MATERIAL_NAME, RLF_RESTITUTION, RLF_FRICTION, RLF_LIFETIME_LOSS, RLF_AREA_FRACTION };
 static const rlf_field rlf_material[] = {
     {RLF_TEXT, 1, 1, 1, NULL}, {RLF_VALUE, 0, 4, 4, NULL}, {RLF_VALUE, 0, 4, 4, NULL}, {RLF_VALUE, 0, 4, 4, NULL},
     {RLF_VALUE, 0, 4, 4, NULL}, {RLF_END, 0, 0, 0, NULL}};
@@ -387,12 +387,12 @@ static int rlf_is_offset(const rlf_metadata* m, uint64_t place) {
            rlf_holds(m, rlf_target(m, place), 1, 1);
 }
 
-/* Returns the place of the offsets of a table's fields. A negative place becomes a large one. */
+/* Returns the place of a table's vtable. A negative place wraps to a large number. */
 static uint64_t rlf_vtable(const rlf_metadata* m, uint64_t table) {
     return table - (uint64_t)(int64_t)(int32_t)rlf_u32(m->bytes + table);
 }
 
-/* Returns the place of a field of a table, or 0 if the table does not have it. */
+/* Returns the place of a field of a table, or 0 if the field is absent. */
 static uint64_t rlf_find(const rlf_metadata* m, uint64_t table, unsigned field) {
     const unsigned char* vtable = m->bytes + rlf_vtable(m, table);
     unsigned entry = 4 + 2 * field, offset = entry < rlf_u16(vtable) ? rlf_u16(vtable + entry) : 0;
@@ -506,7 +506,7 @@ static uint64_t rlf_item(const rlf_metadata* m, rlf_list list, uint32_t index) {
 
 /* --- descriptions: texts, materials, frame --- */
 
-/* The rest of a UTF-8 character: the number of its bytes, and the range of the next. */
+/* The rest of a UTF-8 character: the number of bytes to read, and the valid range of the next byte. */
 typedef struct rlf_utf8 {
     int rest;
     unsigned low, high;
@@ -603,7 +603,7 @@ static int rlf_are_materials(const rlf_metadata* m, rlf_list list) {
         float loss = rlf_get_float(m, one, RLF_LIFETIME_LOSS, 0);
         if (!rlf_is_whole_text(name, 256) || !rlf_is_fraction(rlf_get_float(m, one, RLF_RESTITUTION, 1)) ||
             !rlf_is_fraction(rlf_get_float(m, one, RLF_FRICTION, 0)) ||
-            !rlf_is_fraction(rlf_get_float(m, one, RLF_AREA_SHARE, 0)) || !(loss >= 0 && loss <= 1e6F)) {
+            !rlf_is_fraction(rlf_get_float(m, one, RLF_AREA_FRACTION, 0)) || !(loss >= 0 && loss <= 1e6F)) {
             return 0;
         }
         for (k = 0; k + 2 < name.count;
@@ -828,7 +828,7 @@ static uint32_t rlf_count_bits(uint32_t byte) {
     return (byte + (byte >> 4)) & 15U;
 }
 
-/* Checks the record of a patch. Heights must lie between the records of cells, which end at `records`, and the end. */
+/* Checks the record of a patch. Heights must follow the records of cells, which end at `records`. */
 static int rlf_is_patch(const uint16_t* texels, uint32_t count, uint32_t records, uint32_t index) {
     rlf_record record = rlf_texel(texels, index);
     uint32_t side = rlf_side(record);
@@ -849,7 +849,7 @@ static int rlf_is_tree(const uint16_t* texels, uint32_t count) {
     }
     end = 1 + (uint32_t)roots;
     for (level = 0; at < end;
-         ++level) { /* from `at` to `end`: the records of a level; `next`: the end of the next */
+         ++level) { /* from `at` to `end`: the records of a level; `next`: end of the next level */
         for (next = end; at < end; ++at) {
             rlf_record record = rlf_texel(texels, at);
             if (rlf_kind(record) == RLF_SPLIT) {
@@ -1069,29 +1069,29 @@ static rlf_vote rlf_vote_tree(const relief_collider* collider, const float p[3])
     return vote;
 }
 
-/* As relief_distance(), but extrapolates the surface up to `reach` beyond the root cells. */
+/* Like relief_distance(), but extrapolates the surface up to `reach` beyond the root cells. */
 static float rlf_near(const relief_collider* collider, const float point[3], float reach, float normal[3]) {
     RLF_EXACT
     const relief_constants* constants = &collider->constants;
     const float* rows[3];
     const float scale = constants->size[0];
-    float held[3], way[3] = {0, 0, 0}, distance, end, q;
+    float held[3], offset[3] = {0, 0, 0}, distance, end, q;
     rlf_vote vote;
     int i, k, within = 1;
     rows[0] = constants->row_x;
     rows[1] = constants->row_y;
     rows[2] = constants->row_z;
     normal[0] = normal[1] = normal[2] = 0;
-    for (i = 0; i < 3; ++i) { /* the nearest point of the root cells, and the way from it */
+    for (i = 0; i < 3; ++i) { /* the nearest point of the root cells, and the offset from it */
         q = rows[i][0] * point[0] + (rows[i][1] * point[1] + (rows[i][2] * point[2] + rows[i][3]));
-        end = 0.99999994F * constants->size[1 + i]; /* the last number below */
+        end = 0.99999994F * constants->size[1 + i]; /* the largest float below the size */
         held[i] = q < 0.0F ? 0.0F : q > end ? end : q;
         within = within && held[i] == q; /* false for NaN */
         for (k = 0; k < 3; ++k) {
-            way[k] += scale * scale * (q - held[i]) * rows[i][k];
+            offset[k] += scale * scale * (q - held[i]) * rows[i][k];
         }
     }
-    if (collider->texels == NULL || (!within && !(reach > 0.0F && rlf_dot(way, way) < reach * reach))) {
+    if (collider->texels == NULL || (!within && !(reach > 0.0F && rlf_dot(offset, offset) < reach * reach))) {
         return RELIEF_FAR_OUTSIDE;
     }
     vote = rlf_vote_tree(collider, held);
@@ -1103,7 +1103,7 @@ static float rlf_near(const relief_collider* collider, const float point[3], flo
         normal[i] = rows[0][i] * scale * vote.normal[0] +
                     (rows[1][i] * scale * vote.normal[1] + rows[2][i] * scale * vote.normal[2]);
     }
-    return within ? distance : distance + rlf_dot(way, normal);
+    return within ? distance : distance + rlf_dot(offset, normal);
 }
 
 float relief_distance(const relief_collider* collider, const float point[3], float normal[3]) {
@@ -1368,7 +1368,8 @@ const char* relief_message(relief_status status) {
         case RELIEF_COMPRESSED:
             return "it is compressed; bake the mesh again without --compress, or pass ZSTD_decompress";
         case RELIEF_TOO_LARGE:
-            return "it has or unpacks to too many bytes; bake the mesh again without --compress and --map";
+            return "it is too large, or unpacks to too many bytes; bake the mesh again without --compress "
+                   "and --map";
         case RELIEF_OUT_OF_MEMORY:
             return "there is not enough memory";
     }

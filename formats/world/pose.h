@@ -30,7 +30,7 @@ struct Pose {
     return world;
 }
 
-/// Converts a row of a transform from object space into that row of the transform from world space. Computes in double,
+/// Converts a row of an object-to-map transform to the same row of the world-to-map transform. Computes in double,
 /// because a world may be large.
 [[nodiscard]] inline glm::vec4 fromWorld(const Pose& pose, const glm::vec4& row) {
     const glm::dvec3 turned =

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 /// A body has 15 values, a collider has 17.
 constexpr std::size_t kValuesMax = 20 * (kWorldBodiesMax + kWorldCollidersMax) + 100;
 constexpr std::size_t kDepthMax = 8;
-/// Tolerance for the length of a rotation, which decimals with few digits exceed by rounding.
+/// Tolerance for the length of a rotation that is written with few decimals.
 constexpr double kUnitTolerance = 1e-3;
 constexpr const char* kBakeAgain = "; bake the level again";
 
@@ -273,13 +273,15 @@ Result<LoadedWorld> loadWorld(const fs::path& path, const ContainerLimits& limit
 void fields(FieldVisitor& visit, WorldFile& file) {
     visit(
         "file", file.file,
-        {.help = "Path of its container, relative to the world's folder and inside it", .rules = kRequired});
+        {.help = "Path of the container, relative to the world's folder and inside it", .rules = kRequired});
     visit("hash", file.hash,
-          {.help = "XXH3-128 hash of that file, in hexadecimal",
+          {.help = "XXH3-128 hash of the container, in hexadecimal",
            .rules = kRequired,
            .pattern = "^[0-9a-f]{32}$"});
     visit("gpu_bytes", file.gpu_bytes,
-          {.help = "Bytes of its maps on the GPU", .range = {1.0, kWorldFileBytesMax}, .rules = kRequired});
+          {.help = "Bytes of the container's maps on the GPU",
+           .range = {1.0, kWorldFileBytesMax},
+           .rules = kRequired});
 }
 
 void fields(FieldVisitor& visit, WorldCollider& collider) {

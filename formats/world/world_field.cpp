@@ -6,7 +6,7 @@ namespace {
 
 /// Margin around the box of a body, relative to its longest side, because maps extend slightly beyond the box of their
 /// mesh. Also covers rounding of its largest coordinate.
-constexpr float kRoom = 0.01F;
+constexpr float kMargin = 0.01F;
 constexpr float kRounding = 1e-5F;
 
 bool isLocal(const Collider& collider) {
@@ -19,9 +19,9 @@ bool isLocal(const Collider& collider) {
 WorldField::WorldField(LoadedWorld loaded) : loaded_(std::move(loaded)) {
     for (std::size_t i = 0; i < world().bodies.size(); ++i) {
         Bounds placed = toWorld(poseOf(world().bodies[i]), solidBox(colliderOf(i)));
-        const glm::vec3 room(kRoom * placed.longestSide() + kRounding * placed.farthest());
-        placed.min -= room;
-        placed.max += room;
+        const glm::vec3 margin(kMargin * placed.longestSide() + kRounding * placed.farthest());
+        placed.min -= margin;
+        placed.max += margin;
         boxes_.push_back(placed);
         local_.push_back(isLocal(colliderOf(i)) ? 1 : 0);
     }

@@ -245,7 +245,7 @@ TEST(MeshParts, GroupsAndMaterialsByName) {
     const auto none = materialTriangles(mesh, "Cl\noth");
     ASSERT_FALSE(none);
     EXPECT_EQ(none.error().message.find('\n'), std::string::npos);
-    EXPECT_NE(none.error().message.find("it has 'cloth'"), std::string::npos) << none.error().message;
+    EXPECT_NE(none.error().message.find("the mesh has 'cloth'"), std::string::npos) << none.error().message;
     // Long lists are truncated.
     std::vector<std::string> many;
     for (int i = 0; i < 30; ++i) {
