@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Formats relief-accuracy's JSON for scripts/accuracy.sh: accuracy_table.py [METHOD] <REPORT.json, with METHOD as ours
+"""Formats relief-accuracy's JSON for scripts/accuracy.sh: accuracy_table.py [METHOD] <REPORT.json
 
-Prints a row for each mesh, with the figures of all budgets in a cell. Then prints to standard error, for each budget,
-geometric means of ratios over meshes, and whether the claims of bake/measure/README.md hold.
+Compares METHOD (default: ours) with its rivals. Prints a row for each mesh, with the figures of all budgets in a cell. Then
+prints to standard error, for each budget, geometric means of ratios over meshes, and whether the claims of
+bake/measure/README.md hold.
 """
 import json
 import math
@@ -32,7 +33,7 @@ def geometric_mean(values):
 
 
 def contests(report, ours="ours"):
-    """The results of each mesh and budget by method, one of which is ours, with their ratios."""
+    """For each mesh and budget, the results by method and the ratios of wrong points. `ours` is the method stored as "ours"."""
     samples = report["meshes"][0]["samples"]
     found = {}
     for result in report["results"]:
@@ -146,8 +147,8 @@ def legend(meshes):
             f"{mesh['samples']} points, seed {mesh['seed']}, at a distance of {mesh['sigma_percent']:.1f} % of the longest side "
             "(standard deviation).",
             "open: an edge has an odd number of triangles.",
-            *(["as it came: ours near sheets, against the surface of the file: points within half the thickness of it are inside. "
-               "The truth of the other columns is the shells that the bake makes of sheets."] if came else []),
+            *(["as it came: ours near sheets, measured against the imported surface: points within half the thickness of it are "
+               "inside. The truth of the other columns is the shells that the bake makes of sheets."] if came else []),
             f"Below, at {budget_text(TIMED_BUDGET)}: medians over the meshes of the mean and the 99th percentile of the error of the "
             "signed distance at those points, and of the angle of the normal at the surface. Bricks store distances only near the "
             "surface: larger distances count as their band."]

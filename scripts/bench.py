@@ -32,7 +32,7 @@ BUNNY = "/usr/share/glmark2/models/bunny.obj"
 LARGE = os.environ.get("RELIEF_BENCH_LARGE") == "1"
 LEAST_CHANGE = 0.03
 CHANCE = 0.001
-# Three front-back maps, whose texels take one ray per surface.
+# Three front-back maps: six surfaces, with one ray per texel and surface.
 SIX_MAPS = [word for way in ("-x", "-y", "-z")
             for word in ("--map", f"front-back:dir={way},depth=half,decode=projected")]
 LEAST_MAP = ["--map", "front-back:dir=-x,size=8,decode=projected"]
@@ -159,7 +159,7 @@ def compare(old_path, new_path):
     def spread(taken):
         return f"{statistics.median(taken):9.3f} ({min(taken):.3f} to {max(taken):.3f})"
 
-    print(f"{'figure':34s} {'old, least to most':32s} {'new, least to most':32s} new/old")
+    print(f"{'figure':34s} {'old, min to max':32s} {'new, min to max':32s} new/old")
     bad = 0
     for name in both:
         found = verdict(old[name], new[name], len(both))

@@ -169,7 +169,7 @@ def chosen(paths, options):
 
 
 def arguments(words):
-    parser = argparse.ArgumentParser(prog='accuracy.sh --corpus', description='The sixty of corpus.txt at 1 MB')
+    parser = argparse.ArgumentParser(prog='accuracy.sh --corpus', description='Measures the sixty models of corpus.txt at 1 MB')
     parser.add_argument('--only', metavar='A,B', help='measure only these models, by name or by the last part of their path')
     parser.add_argument('--rivals', type=lambda text: text.split(','), default=list(RIVALS), metavar='A,B',
                         help=f'distance volumes to compare with (default: {",".join(RIVALS)}); fitted bricks take most of the time')

@@ -4,6 +4,6 @@
 # out/samples/bunny_in_the_snow/contact_sheet.png. Needs no GPU and no window.
 cat <<'T'
 Installs missing packages, compiles relief and relief-sim, bakes the Stanford bunny, and simulates snow. This takes about
-4 minutes on two cores, plus the download of packages; the second time half a minute.
+4 minutes on two cores, plus the download of packages; a second run takes half a minute.
 T
 RELIEF_QUIET=1 exec "$(dirname "$0")/samples.sh" bunny_in_the_snow

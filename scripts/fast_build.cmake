@@ -59,7 +59,7 @@ function(relief_unity target)
     endif()
 endfunction()
 
-# relief_unity_by_folder(TARGET): as relief_unity, for a target with the sources of many folders: joins those of each folder.
+# relief_unity_by_folder(TARGET): like relief_unity, but joins only sources of the same folder.
 function(relief_unity_by_folder target)
     if(RELIEF_UNITY)
         set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)

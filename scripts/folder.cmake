@@ -48,7 +48,7 @@ function(relief_folder folder)
     set_property(GLOBAL APPEND PROPERTY RELIEF_FOLDERS "${folder}: ${uses}")
 endfunction()
 
-# relief_folder_options(OUT [NUMBERS] [READER]): the compile options of such a folder in a sanitizer build.
+# relief_folder_options(OUT [NUMBERS] [READER]): sets OUT to the compile options of a folder of this kind in a sanitizer build.
 function(relief_folder_options out)
     set(options)
     if(RELIEF_SANITIZE AND "NUMBERS" IN_LIST ARGN)
@@ -74,7 +74,7 @@ function(relief_precompiled_folders)
     endforeach()
 endfunction()
 
-# relief_compile_as(TARGET [NUMBERS] [READER]): compiles TARGET with the options of such a folder.
+# relief_compile_as(TARGET [NUMBERS] [READER]): compiles TARGET with the options of a folder of this kind.
 function(relief_compile_as target)
     relief_folder_options(options ${ARGN})
     target_compile_options(${target} PRIVATE ${options})
@@ -100,8 +100,8 @@ function(relief_unit folder file)
 endfunction()
 
 # relief_archive(NAME FOLDER… [WITHIN FOLDER…])
-# Adds one library of several folders, for other people's programs. All their headers are public, except those of the folders
-# after WITHIN, which only sources include.
+# Adds one library of several folders, for other people's programs. All headers of these folders are public, except those of
+# the folders after WITHIN, which only sources include.
 function(relief_archive name)
     cmake_parse_arguments(ARG "" "" "WITHIN" ${ARGN})
     set(objects)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Ten randomly drawn meshes, for which nothing was tuned. scripts/accuracy.sh --lot and --draw run this.
+"""Ten randomly drawn meshes, on which Relief was not tuned. scripts/accuracy.sh --lot and --draw run this.
 
 lot.py FOLDER             unpacks the meshes of lot.txt into FOLDER, and prints their paths
 lot.py FOLDER --draw BIN  draws them, and writes lot.txt; BIN contains relief-accuracy
@@ -26,13 +26,13 @@ PACKAGES = ('cura', 'geomview', 'libirrlicht-doc', 'libsimbody-dev', 'morse-simu
 FORMATS = ('.obj', '.stl', '.ply', '.off', '.gltf', '.glb', '.fbx', '.dae', '.3ds', '.blend', '.x', '.lwo', '.b3d', '.lxo', '.ms3d',
            '.smd')
 SEED = 'relief'
-MESHES, OF_A_PACKAGE = 10, 2
+MESHES, PER_PACKAGE_MAX = 10, 2
 TRIANGLES = range(500, 500_001)
 NOTE = f"""# The meshes of scripts/accuracy.sh --lot: a package of Debian 12, and a path in it.
 #
 # Drawn by `scripts/accuracy.sh --draw`, before anything was measured on them. The files of {len(PACKAGES)} packages in formats that
-# the import reads are sorted by the SHA-256 of "{SEED}:package:path". In this order, a file is taken if it has
-# {TRIANGLES[0]} to {TRIANGLES[-1]} triangles, a name that no taken file has, and fewer than {OF_A_PACKAGE} files of its package are taken.
+# the import reads are sorted by the SHA-256 of "{SEED}:package:path". In this order, a file is chosen if it has
+# {TRIANGLES[0]} to {TRIANGLES[-1]} triangles, no chosen file has the same name, and fewer than {PER_PACKAGE_MAX} files of its package are chosen.
 """
 
 
@@ -90,7 +90,7 @@ def draw(folder, bin):
     for package, name in drawn:
         if len(taken) == MESHES:
             break
-        if of_package[package] == OF_A_PACKAGE:
+        if of_package[package] == PER_PACKAGE_MAX:
             continue
         if any(os.path.basename(name) == os.path.basename(other) for _, other, _ in taken):
             continue

@@ -111,7 +111,7 @@ play() {
         done
     fi
     local every=()
-    [ -z "${RELIEF_QUIET-}" ] || every=(--steps-per-frame 50)  # only the six of the sheet
+    [ -z "${RELIEF_QUIET-}" ] || every=(--steps-per-frame 50)  # only the six frames of the sheet
     "$bin/relief-sim" "$out/$name.toml" --frames "$out/frames" "${every[@]}" --json >"$out/report.json"
     sheet
     convert "$out/contact_sheet.png" -resize 1200x -define jpeg:extent=150kB "$out/contact_sheet.jpg"

@@ -34,7 +34,7 @@ using Json = nlohmann::ordered_json;
 
 /// The result of a method for one mesh and budget.
 struct AccuracyEntry {
-    std::string what;  ///< the lattice or the maps
+    std::string what;  ///< description of the lattice or the maps
     std::size_t maps = 0;
     std::uint64_t bytes = 0;
     std::optional<double> build_seconds;  ///< for maps: acceleration structure, rays and fit
@@ -43,8 +43,8 @@ struct AccuracyEntry {
 
 // --- Methods ---
 
-/// Returns three front-back maps along the axes on tight boxes. Their texels are as square and as equal in size as
-/// whole numbers allow, and as many as fit.
+/// Returns three front-back maps along the axes on tight boxes, with as many texels as fit into `bytes`. The texels are
+/// as square and as equal in size as whole numbers allow.
 Result<std::vector<MapSpec>> threeMaps(const TriangleMesh& mesh, std::uint64_t bytes) {
     std::vector<MapSpec> specs(3);
     glm::dvec2 extent[3];
@@ -105,7 +105,7 @@ Result<Baked> bakeOurs(const PreparedMesh& mesh, std::uint64_t bytes) {
 /// Keeps the volume with the fewest wrong points.
 class BestVolume {
   public:
-    /// \param atlas  receives the data of the best; null if not needed
+    /// \param atlas  receives the data of the best volume; may be null
     BestVolume(const TruthSamples& samples, BrickAtlas* atlas) : samples_(samples), atlas_(atlas) {}
 
     /// \param volume  DistanceVolume or BrickVolume
@@ -262,7 +262,7 @@ Result<BakeRequest> recordedShapeOf(const Arguments& arguments) {
 }
 
 /// Measures one mesh at one budget with all methods.
-/// \param shape  without a thickness, the default for the budget is used.
+/// \param shape  the default of its thickness depends on the budget.
 Result<void> measureBudget(const PreparedMesh& imported, const Arguments& arguments, BakeRequest shape,
                            std::uint64_t budget, Measured& measured) {
     shape.budget = budget;
@@ -288,15 +288,15 @@ Result<void> measureBudget(const PreparedMesh& imported, const Arguments& argume
     }
     measured.meshes.push_back(std::move(mesh_report));
     BrickAtlas atlas;
-    BrickAtlas* const wanted = arguments.atlas.empty() ? nullptr : &atlas;
+    BrickAtlas* const atlas_output = arguments.atlas.empty() ? nullptr : &atlas;
     for (const std::string& method : arguments.methods) {
         AccuracyEntry entry;
         if (method == "ours" && !arguments.collider.empty()) {
             entry = RELIEF_TRY(loadAndMeasure(truth, arguments.collider));
         } else if (method == "volume") {
-            entry = measureVolume(query, samples, budget, wanted);
+            entry = measureVolume(query, samples, budget, atlas_output);
         } else if (method != "paper" && method != "ours") {
-            entry = measureBricks(query, samples, method, budget, wanted);
+            entry = measureBricks(query, samples, method, budget, atlas_output);
         } else {
             entry = RELIEF_TRY(bakeAndMeasure(truth, method, budget));
         }
@@ -311,7 +311,7 @@ Result<void> measureBudget(const PreparedMesh& imported, const Arguments& argume
              {"build_seconds", entry.build_seconds ? Json(*entry.build_seconds) : Json()},
              {"accuracy", entry.accuracy}});
     }
-    if (wanted != nullptr) {
+    if (atlas_output != nullptr) {
         RELIEF_TRY(saveBrickAtlas(atlas, arguments.atlas));
     }
     return {};
@@ -368,7 +368,7 @@ int main(int argc, char** argv) {
     app.add_option("mesh", arguments.meshes, "Meshes")->option_text("MESH...")->required();
     app.add_option("--budgets,--budget", arguments.budgets, "Bytes per collider (default: 0.25MB,1MB,4MB)")
         ->delimiter(',');
-    app.add_option("--samples", arguments.samples, "Points of each kind (default: 200000)")
+    app.add_option("--samples", arguments.samples, "Number of points of each kind (default: 200000)")
         ->check(CLI::Range(1U, 100'000'000U));
     app.add_option("--seed", arguments.seed, "Seed of the points (default: 1)");
     app.add_option("--methods", arguments.methods,

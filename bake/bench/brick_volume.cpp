@@ -19,7 +19,7 @@ namespace relief {
 namespace {
 
 constexpr double kCodeMax = 127.0;
-// A fit uses one random point in each of this many parts of a voxel along each axis.
+// A fit divides a voxel into this many parts along each axis, and uses one random point in each part.
 constexpr unsigned kFitParts = 3;
 // Surface points that determine which cubes to split: number per byte of the budget, and maximum.
 constexpr double kSamplesPerByte = 0.5;
@@ -37,7 +37,7 @@ struct Box {
 
     [[nodiscard]] glm::dvec3 middle() const { return low + 0.5 * size; }
     [[nodiscard]] double halfDiagonal() const { return 0.5 * std::sqrt(3.0) * size; }
-    [[nodiscard]] bool holds(const glm::dvec3& p) const {
+    [[nodiscard]] bool contains(const glm::dvec3& p) const {
         return glm::all(glm::greaterThanEqual(p, low)) && glm::all(glm::lessThanEqual(p, low + size));
     }
     [[nodiscard]] Box octant(unsigned i) const {
@@ -50,18 +50,18 @@ struct Box {
     }
 };
 
-/// Whether a box contains surface. Exact, except for corners of a sixteenth of its side, which count as surface.
-bool holdsSurface(const MeshQuery& query, const Box& box, std::optional<std::uint32_t> hint = {},
-                  unsigned halvings = 4) {
+/// Whether a box contains surface. May also return true if surface is outside, within a fortieth of the box's side.
+bool containsSurface(const MeshQuery& query, const Box& box, std::optional<std::uint32_t> hint = {},
+                     unsigned halvings = 4) {
     const ClosestPoint closest = query.closest(glm::vec3(box.middle()), hint);
     if (closest.distance > 1.0001 * box.halfDiagonal()) {
         return false;
     }
-    if (halvings == 0 || box.holds(closest.point)) {
+    if (halvings == 0 || box.contains(closest.point)) {
         return true;
     }
     for (unsigned i = 0; i < 8; ++i) {
-        if (holdsSurface(query, box.octant(i), closest.triangle, halvings - 1)) {
+        if (containsSurface(query, box.octant(i), closest.triangle, halvings - 1)) {
             return true;
         }
     }
@@ -70,12 +70,12 @@ bool holdsSurface(const MeshQuery& query, const Box& box, std::optional<std::uin
 
 /// Returns the trilinear weights of the eight corners of a voxel, x fastest.
 std::array<double, 8> weightsAt(const glm::dvec3& t) {
-    std::array<double, 8> shares;
+    std::array<double, 8> weights;
     for (unsigned i = 0; i < 8; ++i) {
-        shares[i] = ((i & 1U) != 0 ? t.x : 1.0 - t.x) * ((i >> 1U & 1U) != 0 ? t.y : 1.0 - t.y) *
-                    ((i >> 2U) != 0 ? t.z : 1.0 - t.z);
+        weights[i] = ((i & 1U) != 0 ? t.x : 1.0 - t.x) * ((i >> 1U & 1U) != 0 ? t.y : 1.0 - t.y) *
+                     ((i >> 2U) != 0 ? t.z : 1.0 - t.z);
     }
-    return shares;
+    return weights;
 }
 
 /// The nodes and voxels of a brick of `cells`³ voxels.
@@ -96,10 +96,10 @@ struct BrickGrid {
     template <class Value>
     [[nodiscard]] double valueAt(const std::vector<Value>& values, const glm::dvec3& in_voxels) const {
         const glm::uvec3 voxel = voxelAt(in_voxels);
-        const std::array<double, 8> shares = weightsAt(in_voxels - glm::dvec3(voxel));
+        const std::array<double, 8> weights = weightsAt(in_voxels - glm::dvec3(voxel));
         double value = 0.0;
         for (unsigned i = 0; i < 8; ++i) {
-            value += shares[i] * static_cast<double>(values[corner(voxel, i)]);
+            value += weights[i] * static_cast<double>(values[corner(voxel, i)]);
         }
         return value;
     }
@@ -110,7 +110,7 @@ std::vector<double> exactNodes(const MeshQuery& query, const BrickGrid& grid, co
     DistanceWalk walk(query);
     const double voxel = box.size / grid.cells;
     for (unsigned i = 0; i < nodes.size(); ++i) {
-        // Back and forth, so that consecutive nodes are neighbours.
+        // Rows alternate in direction, so that consecutive nodes are neighbours.
         glm::uvec3 at = grid.node(i);
         at.y = at.z % 2 == 0 ? at.y : grid.cells - at.y;
         at.x = (at.z * grid.side() + at.y) % 2 == 0 ? at.x : grid.cells - at.x;
@@ -147,12 +147,12 @@ void fitNodes(const MeshQuery& query, const BrickGrid& grid, const Box& box, std
             const glm::dvec3 t = (part + glm::dvec3(unit(), unit(), unit())) / double{kFitParts};
             const double distance = walk.at(box.low + voxel * (glm::dvec3(at) + t)) / voxel;
             const double weight = 1.0 / (0.01 + distance * distance);
-            const std::array<double, 8> shares = weightsAt(t);
+            const std::array<double, 8> weights = weightsAt(t);
             for (unsigned a = 0; a < 8; ++a) {
                 const unsigned row = grid.corner(at, a);
-                right(row) += weight * shares[a] * distance;
+                right(row) += weight * weights[a] * distance;
                 for (unsigned b = 0; b < 8; ++b) {
-                    normal(row, grid.corner(at, b)) += weight * shares[a] * shares[b];
+                    normal(row, grid.corner(at, b)) += weight * weights[a] * weights[b];
                 }
             }
         }
@@ -256,7 +256,7 @@ class BrickBuilder {
         while (span < std::max({n.x, n.y, n.z})) {
             span *= 2;
         }
-        // A few levels on one core, then on all.
+        // Descends a few levels on one core, and the rest on all cores.
         std::vector<glm::uvec3> blocks = {glm::uvec3(0)};
         for (int level = 0; level < 4 && span > 1; ++level) {
             span /= 2;
@@ -291,7 +291,7 @@ class BrickBuilder {
         }
         if (span == 1) {
             const std::uint64_t cell = (std::uint64_t{at.z} * n.y + at.y) * n.x + at.x;
-            if (holdsSurface(query_, boxOf(cell))) {
+            if (containsSurface(query_, boxOf(cell))) {
                 found.push_back(cell);
             }
             return;
@@ -329,7 +329,7 @@ class BrickBuilder {
         leaf.box = box;
         leaf.level = level;
         leaf.samples = std::move(samples);
-        leaf.surface = holdsSurface(query_, box);
+        leaf.surface = containsSurface(query_, box);
         if (!leaf.surface) {
             return leaf;
         }
@@ -439,7 +439,7 @@ BrickVolume BrickVolume::withVoxels(const MeshQuery& query, const BrickLayout& l
 BrickVolume BrickVolume::build(const MeshQuery& query, const BrickLayout& layout, std::uint64_t bytes) {
     const auto longest = static_cast<double>(query.mesh().bounds.longestSide());
     if (layout.octree) {
-        // One root per 80 bytes: the index takes a twentieth.
+        // One root per 80 bytes, so that the index takes a twentieth of the bytes.
         const glm::dvec3 size = query.mesh().bounds.size();
         const auto roots = [&](double root) {
             const glm::dvec3 n = glm::ceil(size / root);
@@ -464,7 +464,7 @@ BrickVolume BrickVolume::build(const MeshQuery& query, const BrickLayout& layout
         (BrickBuilder(query, layout, middle * layout.cells).uniformBytes() <= bytes ? large : small) = middle;
     }
     BrickVolume best = withVoxels(query, layout, large);
-    // Bricks of a single sign freed bytes.
+    // Bricks with a single sign are not stored, which frees bytes for smaller voxels.
     for (int i = 0; i < 3 && best.bytes() < bytes - bytes / 64; ++i) {
         const double finer = best.voxel() * std::sqrt(static_cast<double>(best.bytes()) /
                                                       (static_cast<double>(bytes) * 0.997));
@@ -538,12 +538,12 @@ FieldValue BrickVolume::inBrick(std::uint32_t brick, const glm::dvec3& in_voxels
     const BrickGrid grid{layout_.cells};
     const glm::uvec3 at = grid.voxelAt(in_voxels);
     const glm::dvec3 t = in_voxels - glm::dvec3(at);
-    const std::array<double, 8> shares = weightsAt(t);
+    const std::array<double, 8> weights = weightsAt(t);
     double value = 0.0;
     glm::dvec3 gradient(0.0);
     for (unsigned i = 0; i < 8; ++i) {
         const double code = codes_[std::size_t{brick} * grid.nodes() + grid.corner(at, i)];
-        value += shares[i] * code;
+        value += weights[i] * code;
         for (int axis = 0; axis < 3; ++axis) {
             glm::dvec3 without = t;
             without[axis] = (i >> unsigned(axis) & 1U) != 0 ? 1.0 : 0.0;
@@ -561,25 +561,25 @@ FieldValue BrickVolume::inBrick(std::uint32_t brick, const glm::dvec3& in_voxels
 FieldValue BrickVolume::at(const glm::vec3& p) const {
     const Bounds& bounds = query_->mesh().bounds;
     const glm::dvec3 exact = p;
-    const glm::dvec3 held = glm::clamp(exact, glm::dvec3(bounds.min), glm::dvec3(bounds.max));
-    const std::uint64_t cell = cellAt(held);
+    const glm::dvec3 in_bounds = glm::clamp(exact, glm::dvec3(bounds.min), glm::dvec3(bounds.max));
+    const std::uint64_t cell = cellAt(in_bounds);
     Box box{origin_ + root_size_ * glm::dvec3(rootOf(cell)), root_size_};
     Cube cube = cubeOf(cell);
     while (cube.kind == Kind::kSplit) {
-        const unsigned octant = box.octantOf(held);
+        const unsigned octant = box.octantOf(in_bounds);
         cube = cubes_[cube.first + octant];
         box = box.octant(octant);
     }
     FieldValue value;
     if (cube.kind == Kind::kBrick) {
         const double voxel = box.size / layout_.cells;
-        value = inBrick(cube.first, (held - box.low) / voxel, voxel);
+        value = inBrick(cube.first, (in_bounds - box.low) / voxel, voxel);
     } else {
         value = clamped(cube.kind == Kind::kInside ||
                             (cube.kind == Kind::kTruth && query_->inside(glm::vec3(box.middle()))),
                         box.size);
     }
-    const double beyond = glm::distance(exact, held);
+    const double beyond = glm::distance(exact, in_bounds);
     if (beyond > 0.0) {
         value.distance = std::max(value.distance, 0.0F) + static_cast<float>(beyond);
     }
@@ -598,12 +598,12 @@ BrickAtlas BrickVolume::atlas() const {
     atlas.codes.assign(codes_.begin(), codes_.end());
     atlas.index.resize(std::size_t{roots_count_.x} * roots_count_.y * roots_count_.z);
     forEachIndex(0, atlas.index.size(), 256, [&](std::size_t cell) {
-        const Cube held = cubeOf(cell);
+        const Cube cube = cubeOf(cell);
         const bool inside =
-            held.kind == Kind::kTruth
+            cube.kind == Kind::kTruth
                 ? query_->inside(glm::vec3(origin_ + root_size_ * (glm::dvec3(rootOf(cell)) + 0.5)))
-                : held.kind == Kind::kInside;
-        atlas.index[cell] = held.kind == Kind::kBrick ? BrickAtlas::kFirstBrick + held.first
+                : cube.kind == Kind::kInside;
+        atlas.index[cell] = cube.kind == Kind::kBrick ? BrickAtlas::kFirstBrick + cube.first
                             : inside                  ? BrickAtlas::kInside
                                                       : BrickAtlas::kOutside;
     });

@@ -9,7 +9,7 @@
 //   crosses: by least squares, with the largest weights close to the surface.
 // - 8-bit codes for distances up to `band` voxels; larger distances are clamped.
 // - In an octree, the cubes with the largest displacement of the surface are split until the bytes are used up.
-// - Bytes are those on the GPU: the nodes and the index. The index has a texel per cube in a dense or two-level grid,
+// - Sizes are bytes on the GPU: the nodes and the index. The index has a texel per cube in a dense or two-level grid,
 //   whichever is smaller, or eight entries per split cube of an octree.
 // - Points beyond the box are outside; their distance to the box is added.
 #pragma once
@@ -42,7 +42,7 @@ class BrickVolume {
     [[nodiscard]] static BrickVolume withVoxels(const MeshQuery& query, const BrickLayout& layout,
                                                 double voxel);
 
-    /// Clamped distances and those of cubes without a brick are ±band.
+    /// Returns the field. Distances in cubes without a brick, and clamped distances, are ±band.
     [[nodiscard]] FieldValue at(const glm::vec3& p) const;
     [[nodiscard]] std::uint64_t nodeBytes() const { return codes_.size(); }
     [[nodiscard]] std::uint64_t indexBytes() const { return indexBytes(bricks()); }

@@ -104,8 +104,9 @@ DistanceVolume::DistanceVolume(const DistanceGrid& grid, double range)
 
 FieldValue DistanceVolume::at(const glm::vec3& p) const {
     const glm::dvec3 exact = p;
-    const glm::dvec3 held = glm::clamp(exact, glm::dvec3(lattice_.box.min), glm::dvec3(lattice_.box.max));
-    const glm::dvec3 in_lattice = (held - lattice_.origin) / lattice_.spacing;
+    const glm::dvec3 in_bounds =
+        glm::clamp(exact, glm::dvec3(lattice_.box.min), glm::dvec3(lattice_.box.max));
+    const glm::dvec3 in_lattice = (in_bounds - lattice_.origin) / lattice_.spacing;
     std::size_t cell[3];
     double t[3];
     for (int i = 0; i < 3; ++i) {
@@ -145,7 +146,7 @@ FieldValue DistanceVolume::at(const glm::vec3& p) const {
     if (length > 0.0) {
         result.normal = gradient / length;
     }
-    const double beyond = glm::length(exact - held);
+    const double beyond = glm::length(exact - in_bounds);
     result.distance = static_cast<float>(beyond > 0.0 ? std::max(value, 0.0) + beyond : value);
     return result;
 }

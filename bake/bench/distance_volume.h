@@ -6,8 +6,7 @@
 //   nodes; headers and padding are not counted. If the sides of the box are not whole numbers of voxels, the lattice
 //   may extend beyond the box on both sides, extend beyond one corner, or be stretched to fit. The best choice depends
 //   on the positions of flat faces: the caller measures all of them and uses the best.
-// - Every node stores the exact distance to the nearest triangle, with the sign of the truth that is used to measure
-//   it.
+// - Every node stores the exact distance to the nearest triangle, with the same sign as the truth of the measurement.
 // - 16-bit signed normalised values. Their range is either the largest distance of any node, or a narrow band around
 //   the surface, where the resolution is finer; the caller measures both.
 // - Trilinear lookup in double precision; texture units of GPUs have 8-bit weights.

@@ -14,8 +14,8 @@
 namespace relief {
 namespace {
 
-/// Minimum cosine between the normal of a triangle and the direction to a point nearest to it. Below it, the nearest
-/// point is on an edge.
+/// Minimum cosine between the normal of the nearest triangle and the direction from the nearest point. Below it, the
+/// nearest point is on an edge.
 constexpr double kFacing = 0.98;
 
 /// Returns a mesh of only these triangles.
@@ -71,9 +71,9 @@ std::optional<bool> SheetTruth::inside(const glm::vec3& p) const {
             continue;
         }
         const ClosestPoint closest = sheet.query.closest(p);
-        const glm::dvec3 way = glm::dvec3(p) - closest.point;
+        const glm::dvec3 offset = glm::dvec3(p) - closest.point;
         const glm::dvec3 normal = unitNormal(sheet.query.mesh(), closest.triangle);
-        const bool faces = std::abs(dot(way, normal)) >= kFacing * closest.distance;
+        const bool faces = std::abs(dot(offset, normal)) >= kFacing * closest.distance;
         if (faces && closest.distance < 0.5 * sheet.thickness) {
             return true;
         }

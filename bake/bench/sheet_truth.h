@@ -39,7 +39,7 @@ class SheetTruth {
     struct Sheet {
         MeshQuery query;
         double thickness;
-        double area;  ///< cumulative, including all previous ones
+        double area;  ///< cumulative, including all previous sheets
     };
     std::vector<Sheet> sheets_;
     bool others_ = false;  ///< the solid has other parts than sheets

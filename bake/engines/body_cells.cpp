@@ -54,7 +54,7 @@ std::size_t entriesOf(const Grid& grid, std::span<const EngineBody> bodies) {
     return entries;
 }
 
-/// Returns the finest grid with few entries: about one cell per body.
+/// Returns a grid with about one cell per body, or a coarser grid if it would have too many entries.
 Grid gridOf(std::span<const EngineBody> bodies) {
     std::array<double, 3> low{};
     std::array<double, 3> high{};

@@ -14,20 +14,21 @@ namespace relief {
 
 /// A body of a level: 7 texels of RGBA32F.
 struct EngineBody {
-    PatchConstants constants;  ///< in world space
-    std::array<float, 4>
-        min_restitution{};  ///< minimum of the world-space box; factor of the particle's restitution
-    std::array<float, 4> max_friction{};  ///< maximum; friction of the body
+    PatchConstants constants;                ///< in world space
+    std::array<float, 4> min_restitution{};  ///< minimum of the world-space box; restitution factor
+    std::array<float, 4> max_friction{};     ///< maximum of the box; friction of the body
 };
 static_assert(sizeof(EngineBody) == 112);
 
 /// Bodies in a row of their texture.
 inline constexpr std::size_t kBodiesInRow = 256;
 
-/// Returns a grid over the boxes of the bodies, each widened by half a cell, so that balls find all bodies near them. As
-/// words: the numbers of cells along x, y and z; the number of entries;
-/// as floats, the minimum corner and the edge of a cell; the index of the first entry of each cell, x fastest, and of
-/// the end; the entries, which are indices of bodies in ascending order within a cell.
+/// Returns a grid over the boxes of the bodies. Each box is widened by half a cell, so that balls find all bodies near
+/// them. The grid consists of 32-bit words:
+/// - the numbers of cells along x, y and z; the number of entries;
+/// - as floats, the minimum corner, and the edge of a cell;
+/// - the index of the first entry of each cell, x fastest, and of the end;
+/// - the entries, which are indices of bodies in ascending order within a cell.
 [[nodiscard]] std::vector<std::uint32_t> bodyCells(std::span<const EngineBody> bodies);
 
 }  // namespace relief

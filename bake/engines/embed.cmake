@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # relief_embed_engines(OUTPUT): generates OUTPUT, a C++ file with the texts that `relief export --engine` copies
-# (engine_texts.h): those of the tables in engine_export.cpp. Links of pages to other files of the project become plain text, and pictures
-# are left out.
+# (engine_texts.h). The tables in engine_export.cpp list them. In pages, links to other files of the project become plain
+# text, and pictures are left out.
 file(READ ${CMAKE_CURRENT_LIST_DIR}/engine_export.cpp table)
 string(REGEX MATCHALL "\"(bake|formats|runtime|samples|shaders)/[A-Za-z0-9_/.]+\"[,)]" texts "${table}")
 list(TRANSFORM texts REPLACE "[\",)]" "")

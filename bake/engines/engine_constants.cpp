@@ -8,7 +8,7 @@ namespace relief {
 Result<const DepthMap*> engineMap(const Collider& collider) {
     if (collider.maps.size() != 1 || collider.maps.front().format != MapFormat::kPatches) {
         return fail(ErrorCode::kUsage,
-                    "engines read one map of patches, and this collider has " +
+                    "engines read one map of patches, but this collider has " +
                         (collider.maps.size() == 1
                              ? std::string("a map of format ") + mapFormatName(collider.maps.front().format)
                              : std::to_string(collider.maps.size()) + " maps") +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colliders as shaders/engines/relief.glsl reads them: texels and constants.
+// Converts colliders to the texels and constants that shaders/engines/relief.glsl reads.
 #pragma once
 
 #include <cstddef>

@@ -104,7 +104,7 @@ void replaceAll(std::string& text, std::string_view from, std::string_view to) {
     }
 }
 
-/// Appends the texts of an engine. A sample of the web then imports and loads the files of the export.
+/// Appends the texts of an engine. Adapts web samples, so that they import and load the files of the export.
 /// \param name  of the collider; empty for a level, which has no samples.
 void appendTexts(std::vector<EngineFile>& files, Engine engine, std::string_view name) {
     for (const CopiedText& copied : kTexts) {
@@ -122,7 +122,7 @@ void appendTexts(std::vector<EngineFile>& files, Engine engine, std::string_view
     }
     for (const std::string_view module : kModules) {
         std::string text(engineText(module));
-        // Browsers import no shaders, which a bundler embeds in the npm package.
+        // Embeds the shaders, which browsers cannot import. For the npm package, a bundler embeds them.
         for (const std::string language : {"glsl", "wgsl"}) {
             const std::string shader = "shaders/engines/relief." + language;
             replaceAll(text, "export { default as " + language + " } from \"../../../" + shader + "\"",

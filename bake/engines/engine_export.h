@@ -35,7 +35,7 @@ struct EngineFile {
                                                           Engine engine);
 
 /// Returns NAME.texels, NAME.bodies and NAME.cells of a level, the collision function, and a page that describes them.
-/// Errors: those of engineMap(); kLimit (more texels than a texture holds).
+/// Errors: those of engineMap(); kLimit (more than kEngineTexelsMax texels).
 [[nodiscard]] Result<std::vector<EngineFile>> engineFiles(const LoadedWorld& world, std::string_view name,
                                                           Engine engine);
 

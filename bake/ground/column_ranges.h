@@ -28,7 +28,7 @@ struct ColumnRange {
     float low = 0.0F;  ///< heights, object units
     float high = 0.0F;
     bool ground = false;  ///< at least one square has ground
-    bool hole = false;    ///< at least one square has none, or lies outside the grid
+    bool hole = false;    ///< at least one square has no ground, or lies outside the grid
 };
 
 void add(ColumnRange& to, const ColumnRange& from);
@@ -41,7 +41,7 @@ class ColumnRanges {
     /// \param grid    must outlive this object.
     ColumnRanges(const HeightGrid& grid, unsigned levels);
 
-    /// Columns of a level, along x or z.
+    /// Number of columns of a level: width() along x, depth() along z.
     [[nodiscard]] std::uint32_t width(unsigned level) const { return levels_[level].width; }
     [[nodiscard]] std::uint32_t depth(unsigned level) const { return levels_[level].depth; }
     /// Returns the range of a column; outside the grid, all squares are holes.

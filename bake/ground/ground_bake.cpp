@@ -29,11 +29,11 @@ namespace fs = std::filesystem;
 constexpr std::size_t kKeyDigits = 16;
 constexpr std::uint32_t kRowsBetweenReports = 256;
 
-/// A part of a row or column of squares, and the samples around it.
+/// A range of squares along an axis, and the range of their samples.
 struct Stretch {
     std::uint32_t first = 0;  ///< its first square
-    std::uint32_t begin = 0;  ///< its first sample, a leaf before the first square
-    std::uint32_t end = 0;    ///< the end of its samples, a leaf beyond the last square
+    std::uint32_t begin = 0;  ///< its first sample, one leaf before the first square
+    std::uint32_t end = 0;    ///< the end of its samples, one leaf beyond the last square
 };
 
 std::vector<Stretch> stretchesOf(std::uint32_t samples, std::uint32_t squares) {
@@ -81,7 +81,7 @@ class RowBand {
     std::vector<float> heights_;
 };
 
-/// A tile and its containers. `bytes` is empty without ground, `coarse` without a coarse collider.
+/// A tile and its containers. `bytes` is empty if the tile has no ground, `coarse` if it has no coarse collider.
 struct BakedTile {
     GroundTile tile;
     std::vector<std::byte> bytes;
@@ -344,7 +344,8 @@ class GroundBaker {
                (format.eight_bits ? ", unless they are 8 bits times 256" : "");
     }
 
-    /// Names settings that probably do not match the file. \param most  most of its squares are steep.
+    /// Returns the settings that probably do not match the file; empty if there are none.
+    /// \param most  whether most of its squares are steep.
     [[nodiscard]] std::string causeOfSteep(bool most) const {
         std::optional<LoneSample> lone = map_.lone();
         if (lone && lone->gap <= kSteepest * heights().spacing) {

@@ -35,7 +35,7 @@ struct GroundTile {
     std::uint64_t gpu_bytes = 0;
     std::optional<WorldFile> coarse;  ///< set if hasCoarse()
     std::uint64_t squares = 0;        ///< number of squares with ground
-    std::uint64_t steep = 0;          ///< number of its own squares, without the rim, steeper than kSteepest
+    std::uint64_t steep = 0;          ///< number of squares steeper than kSteepest, excluding the overlap
     double error_max = 0.0;  ///< error of its heights, excluding steep squares, metres; 0: all are steep
     Bounds box;              ///< of its surface, in its own space
 };
@@ -45,7 +45,7 @@ struct GroundResult {
     std::uint32_t rows = 0;
     HeightsSpec heights;                ///< settings, including those that the file's extension implies
     std::vector<InputFile> inputs;      ///< the height map, for a request
-    std::vector<GroundTile> tiles;      ///< only those with ground, row by row
+    std::vector<GroundTile> tiles;      ///< only tiles with ground, row by row
     std::vector<std::byte> container;   ///< set if there is no folder
     std::vector<std::string> removed;   ///< containers referenced only by the previous world
     std::vector<std::string> warnings;  ///< one line each
@@ -62,8 +62,8 @@ struct GroundOptions {
     std::function<void(double)> progress{};
 };
 
-/// Bakes a height map. Holds one row of tiles in memory, or all of a single collider. The result does not depend on the
-/// number of threads.
+/// Bakes a height map. Holds one row of tiles in memory, or the whole map for a single collider. The result does not
+/// depend on the number of threads.
 /// \param map  positioned before its first row.
 /// Errors, prefixed with the file: kInvalidInput (a damaged image; no square has ground), kLimit (the tree or world is
 /// too large); kIo.

@@ -152,7 +152,7 @@ class GroundChecker {
                 double{below_[column + 1]}};
     }
 
-    /// Whether a square, by its index along x or z, is at a seam. \param squares  along that axis.
+    /// Whether a square is at a seam along an axis. \param number  index of the square. \param squares  along the axis.
     [[nodiscard]] bool atSeam(std::uint32_t number, std::uint32_t squares) const {
         const std::uint32_t tile = request_.heights.tile;
         const std::uint32_t at = number % tile;
@@ -209,8 +209,8 @@ class GroundChecker {
         const glm::dvec2 off = glm::max(glm::abs(low - own_low), glm::abs(high - own_high));
         if (!(std::max(off.x, off.y) <= kLeafSquares * spacing())) {
             return invalidInput(
-                map_.name() + ": its ground lies " + extentText(low, high) + " in x and z, but that of " +
-                name_ + " " + extentText(own_low, own_high) +
+                map_.name() + ": its ground lies " + extentText(low, high) +
+                " in x and z, but the ground of " + name_ + " lies " + extentText(own_low, own_high) +
                 "; give the height map that it was baked from, and its --heights spacing and offset");
         }
         return {};
@@ -353,7 +353,8 @@ class GroundChecker {
         return {bottom, offset().y + highest_ + deep};
     }
 
-    /// Bisects down to adjacent floats.
+    /// Returns the height error of the collider's surface, by bisection down to adjacent floats; nullopt if the range
+    /// does not contain that surface.
     template <class Inside>
     static std::optional<double> errorAlong(const Inside& inside, double from, double to, double height) {
         auto low = static_cast<float>(from);
@@ -410,7 +411,7 @@ class GroundChecker {
         worst.resize(std::min(worst.size(), kWorst));
     }
 
-    /// Returns the body at a point; if several overlap, the one that extends farthest around it.
+    /// Returns the body at a point. If several overlap there, returns the body whose nearest edge is farthest away.
     [[nodiscard]] std::string nodeAt(const Probe& probe) const {
         const glm::dvec2 p(probe.x, probe.z);
         std::string node;

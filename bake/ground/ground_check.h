@@ -66,7 +66,7 @@ struct GroundAccuracy {
 };
 
 /// Returns the settings that ground was baked with. \param name  of the file, for messages.
-/// Errors: kUsage (a part was not baked from a height map, or with other settings than the rest).
+/// Errors: kUsage (a collider was not baked from a height map, or its settings differ from those of another).
 [[nodiscard]] Result<HeightsSpec> recordedHeights(const WorldField& field, const std::string& name);
 
 /// Measures ground. The result does not depend on the number of threads.

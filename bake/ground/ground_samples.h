@@ -13,7 +13,7 @@ namespace relief {
 
 enum class GroundSample : std::uint8_t { kNear, kSeam, kAnywhere };
 
-/// Draws squares in ascending order, stratified: equally many from each equal part.
+/// Draws squares in ascending order, one from each of `samples` equal strata.
 class GroundStrata {
   public:
     GroundStrata(std::uint64_t squares, std::uint64_t samples, std::uint64_t seed, GroundSample kind);

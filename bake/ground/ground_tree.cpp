@@ -18,16 +18,16 @@ namespace {
 constexpr double kGroundDepth = 0.05;
 /// Patches store heights up to this distance from the bottom of their cell, in units of its side, and slightly beyond.
 constexpr double kStoredHeightMax = 3.99;
-/// Test positions along each axis of a steep cell, at which its two approximations are compared with it.
+/// Number of test positions along each axis of a steep cell, at which its two approximations are compared.
 constexpr int kTestPositions = 8;
-/// Heights upwards, rows and columns across.
+/// The frame of all patches: depth along y.
 constexpr PatchFrame kUp{0, 1, 0};
 constexpr int kBasesPerCell = 512;
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 /// Cells along an axis that floats can distinguish, with a margin for positions within each.
 constexpr double kCellsMax = 1 << 20;
 
-/// A cell with a record. Indices count cells of its level; x and z from the grid's first sample, y from height 0.
+/// A cell with a record. Its indices count cells of its level: x and z from the grid's first sample, y from height 0.
 struct Cell {
     std::uint32_t x = 0;
     std::int32_t y = 0;
@@ -66,7 +66,7 @@ class GroundTree {
     [[nodiscard]] double cellSize(unsigned level) const {
         return place_.spacing * root_squares_ / static_cast<double>(1U << level);
     }
-    /// Returns the squares along the side of a cell; 1 for half a square, which has no further heights.
+    /// Returns the squares along the side of a cell; also 1 for half a square, which has no heights of its own.
     [[nodiscard]] std::uint32_t squaresOf(unsigned level) const {
         return std::max(root_squares_ >> level, 1U);
     }
@@ -150,8 +150,7 @@ class GroundTree {
                         "tile=, or give a larger spacing or a smaller range of heights");
     }
 
-    /// Classifies a cell. Returns kSplit if the column cannot be one patch, also for a cell that will become a leaf of
-    /// another kind.
+    /// Classifies a cell. Returns kSplit if one patch cannot represent its column.
     [[nodiscard]] PatchRecord::Kind kindOf(const Cell& cell, const ColumnRange& column) const {
         const double size = cellSize(cell.level);
         if (!column.ground || !(double{column.high} > size * cell.y)) {
@@ -184,7 +183,7 @@ class GroundTree {
             if (cells_[i].kind == PatchRecord::Kind::kSplit) {
                 split(i);
             } else if (cells_[i].kind == PatchRecord::Kind::kPatch) {
-                takeRoom(cells_[i]);
+                placeHeights(cells_[i]);
             }
             if (1 + cells_.size() + std::size_t{height_texels_} > kPatchTexelsMax) {
                 return tooLarge("it has so many samples, or rises so steeply,");
@@ -214,7 +213,7 @@ class GroundTree {
         cells_[i] = parent;
     }
 
-    void takeRoom(Cell& cell) {
+    void placeHeights(Cell& cell) {
         std::uint32_t own = kNone;
         std::uint32_t& place =
             cell.level == leaf_level_ ? shared_[std::size_t{cell.z} * ranges_.width(0) + cell.x] : own;
@@ -265,18 +264,18 @@ class GroundTree {
     /// edges. Heights scaled towards the cell's middle preserve the line where the surface crosses the middle. The
     /// approximation with the smaller error is used.
     [[nodiscard]] static std::array<double, 4> approximationOf(const std::array<double, 4>& heights) {
-        std::array<double, 4> cut = heights;
-        std::array<double, 4> drawn = heights;
+        std::array<double, 4> clamped = heights;
+        std::array<double, 4> scaled = heights;
         double most = 0.0;
         for (const double height : heights) {
             most = std::max(most, std::abs(height - 0.5));
         }
         for (std::size_t i = 0; i < 4; ++i) {
-            cut[i] = std::clamp(heights[i], -kStoredHeightMax, kStoredHeightMax);
-            drawn[i] = 0.5 + (heights[i] - 0.5) * std::min((kStoredHeightMax - 0.5) / most, 1.0);
+            clamped[i] = std::clamp(heights[i], -kStoredHeightMax, kStoredHeightMax);
+            scaled[i] = 0.5 + (heights[i] - 0.5) * std::min((kStoredHeightMax - 0.5) / most, 1.0);
         }
-        int of_cut = 0;
-        int of_drawn = 0;
+        int clamped_errors = 0;
+        int scaled_errors = 0;
         for (int place = 0; place < kTestPositions * kTestPositions * kTestPositions; ++place) {
             const auto at = [&](int i) { return (i % kTestPositions + 0.5) / kTestPositions; };
             const double s = at(place);
@@ -287,10 +286,10 @@ class GroundTree {
                 return w < lower + t * (h[2] + s * (h[3] - h[2]) - lower);
             };
             const bool right = inside(heights);
-            of_cut += inside(cut) != right ? 1 : 0;
-            of_drawn += inside(drawn) != right ? 1 : 0;
+            clamped_errors += inside(clamped) != right ? 1 : 0;
+            scaled_errors += inside(scaled) != right ? 1 : 0;
         }
-        return of_cut < of_drawn ? cut : drawn;
+        return clamped_errors < scaled_errors ? clamped : scaled;
     }
 
     /// The surface of a column as a plane through the middle of its square.

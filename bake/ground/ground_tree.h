@@ -11,7 +11,7 @@
 //        |___.--´|___|___|_______|_______|       inside
 //
 // Several stacked cells may intersect a leaf's column of squares; these cells and the next cell below share its
-// heights. Distances are therefore those of the surface, down to a leaf's side below it. A column that is partly
+// heights. Distances are therefore those to the surface, down to one leaf side below it. A column that is partly
 // without ground, or too steep, is split into single squares of 2² heights.
 //
 // Every stored height is within half a step of its leaf from the sample. 255 steps span the range of the leaf's 25

@@ -44,7 +44,8 @@ struct LikelierFormat {
 /// "type=int16,order=big"; empty if no better setting was found.
 [[nodiscard]] std::string toString(const LikelierFormat& format);
 
-/// Searches for better settings, by the differences between neighbours in at most 64 rows and the values of all bytes.
+/// Searches for better settings. Compares the differences between neighbours in at most 64 rows, and the values of all
+/// bytes.
 [[nodiscard]] LikelierFormat likelierRawFormat(std::span<const std::byte> bytes, const HeightsSpec& spec);
 
 /// Up to three extreme values, lowest or highest, far from all others: the gap is more than half the range.
@@ -61,7 +62,7 @@ class SampleRange {
         insert(low_, sample);
         insert(high_, -sample);
     }
-    /// Returns the lone values, with the gap in samples; nullopt if the other values are at most twice as many.
+    /// Returns the lone values, with the gap in sample units; nullopt unless there are more other values than lone ones.
     [[nodiscard]] std::optional<LoneSample> lone() const;
 
   private:

@@ -10,7 +10,7 @@
 namespace relief {
 namespace {
 
-/// Squares along the side of a leaf; tile sizes are multiples, so that leaves of neighbouring tiles coincide.
+/// Squares along the side of a leaf. Tile sizes are multiples of it, so that leaves of neighbouring tiles coincide.
 constexpr std::uint32_t kTileStep = 4;
 
 /// Reads one key, and collects the names of all keys.
@@ -43,7 +43,7 @@ class KeySetter : public FieldVisitor {
     std::string fault_;
 };
 
-/// Returns the fault of a combination of valid values; empty if there is none.
+/// Returns the error in a combination of valid values; empty if there is none.
 std::string faultOf(const HeightsSpec& spec) {
     if (spec.low && spec.high && !(*spec.low < *spec.high)) {
         return "low is " + numberWord(*spec.low) + " but must be below high, " + numberWord(*spec.high) +

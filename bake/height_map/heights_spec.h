@@ -62,7 +62,7 @@ void fields(FieldVisitor& visit, HeightsSpec& spec);
 [[nodiscard]] Result<HeightsSpec> parseHeightsSpec(std::string_view text);
 /// Adds the settings that the extension of a raw file implies: .hgt is big-endian int16 with -32768 as hole.
 [[nodiscard]] HeightsSpec completed(HeightsSpec spec, const std::filesystem::path& file);
-/// Lists every setting that differs from its default; parseHeightsSpec() reads the result.
+/// Lists the spacing, and every other setting that differs from its default; parseHeightsSpec() reads the result.
 [[nodiscard]] std::string toString(const HeightsSpec& spec);
 
 }  // namespace relief

@@ -28,13 +28,13 @@ RawFormat formatOf(const HeightsSpec& spec) {
 }
 
 /// Whether a 16-bit sample is -32768 in int16, which usually stands for no data. The search for better settings ignores
-/// these samples in every format, unless they are most of a file: they are spikes that hide how smooth the ground is.
+/// these samples in every format, unless they are the majority: they are spikes that hide how smooth the ground is.
 bool isUsualHole(float sample, SampleType type) {
     return (type == SampleType::kInt16 && sample == -32768.0F) ||
            (type == SampleType::kUint16 && sample == 32768.0F);
 }
 
-/// Returns NaN unless `spec` states both the hole and this format.
+/// Returns the hole of `spec`; NaN if `spec` has none, or another format.
 double holeOf(const HeightsSpec& spec, const RawFormat& format) {
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     return format == formatOf(spec) ? spec.hole.value_or(kNone) : kNone;
@@ -82,7 +82,7 @@ class RawRows : public SampleRows {
     RawFormat format_;
 };
 
-/// Returns the samples per row of a raw file of this size; 0 if there are no such rows.
+/// Returns the samples per row of a raw file of this size; 0 if the size is not a number of whole rows.
 std::uint64_t columnsOf(std::size_t bytes, std::optional<std::uint32_t> width, const RawFormat& format) {
     const std::uint64_t samples = bytes / format.bytes();
     const auto side = static_cast<std::uint64_t>(std::sqrt(static_cast<double>(samples)));
@@ -155,7 +155,8 @@ std::optional<Variation> variationOf(std::span<const std::byte> bytes, const Hei
     return variation;
 }
 
-/// The numbers of distinct low and high bytes in 16-bit samples, except those that isUsualHole() in the other order.
+/// The numbers of distinct low and high bytes in 16-bit samples. Samples that are isUsualHole() in the other byte order
+/// are excluded.
 struct ByteValues {
     std::size_t low = 0;
     std::size_t high = 0;
@@ -174,9 +175,9 @@ ByteValues byteValues(std::span<const std::byte> bytes, ByteOrder order) {
     return {values[0].count(), values[1].count()};
 }
 
-/// Whether 16-bit samples are at both ends of their type's range with nothing between, and neighbours at different ends
-/// are as close as others if the range wraps around: 65535 next to 0 is -1 in int16. Files with only two values are
-/// excluded; these may be two levels.
+/// Whether 16-bit samples probably have the opposite signedness: 65535 next to 0 is -1 in int16. True if samples lie
+/// only at the two ends of their type's range, and neighbours at opposite ends are as close as other neighbours if the
+/// range wraps around. False for files with only two values, which may be two levels.
 bool wrapsAround(std::span<const std::byte> bytes, const HeightsSpec& spec, const RawFormat& format) {
     const std::uint64_t columns = columnsOf(bytes.size(), spec.width, format);
     if (columns == 0) {
@@ -210,9 +211,9 @@ bool wrapsAround(std::span<const std::byte> bytes, const HeightsSpec& spec, cons
             }
             if (before != nullptr) {
                 const double step = std::abs(double{sample} - double{*before});
-                Steps& those = steps.at(step > 2.0 * kClear ? 1 : 0);
-                those.sum += std::min(step, 65536.0 - step);
-                ++those.count;
+                Steps& group = steps.at(step > 2.0 * kClear ? 1 : 0);
+                group.sum += std::min(step, 65536.0 - step);
+                ++group.count;
             }
             before = &sample;
         }
@@ -262,15 +263,15 @@ LikelierFormat likelierRawFormat(std::span<const std::byte> bytes, const Heights
     const std::size_t in_order = own.order == ByteOrder::kLittle ? 0 : 1;
     std::size_t best = own.bytes() == 2 ? in_order : 2 + in_order;
     const std::size_t swapped = 1 - in_order;
-    constexpr double kAlike = 1.25;
+    constexpr double kSimilar = 1.25;
     const ByteValues values = own.bytes() == 2 ? byteValues(bytes, own.order) : ByteValues{};
     // Heights within 256 m are as smooth in the wrong byte order as in the right one, and scaled by 256.
-    if (values.high > 2 * values.low && roughness.at(swapped) <= kAlike * roughness.at(best)) {
+    if (values.high > 2 * values.low && roughness.at(swapped) <= kSimilar * roughness.at(best)) {
         best = swapped;
     }
     const RawFormat first = formats.at(best);
     constexpr double kNoise = 1.3;
-    constexpr double kLess = 0.95;  // more than ignored samples change
+    constexpr double kLess = 0.95;  // ignored samples change the roughness by less
     if (first.order != own.order || first == own) {
         double least = 0.5 * std::min(roughness.at(best), kNoise);
         for (std::size_t i = 0; i < formats.size(); ++i) {

@@ -21,7 +21,7 @@ BakeRequest completed(BakeRequest request) {
     return request;
 }
 
-/// Returns the settings of a bake, before reading anything large. \param given  used instead of the file; may be null.
+/// Validates a request before any mesh is read. \param given  mesh used instead of the file; may be null.
 Result<BakeSettings> checkedSettings(const BakeRequest& request, const TriangleMesh* given) {
     BakeSettings settings = RELIEF_TRY(settingsOf(request));
     if (!request.heights.empty()) {
@@ -42,7 +42,7 @@ Result<BakeSettings> checkedSettings(const BakeRequest& request, const TriangleM
     return settings;
 }
 
-/// Limits the threads to --threads, also for measurements, during its lifetime.
+/// Limits all threads to --threads, including those of measurements, while the result exists.
 std::optional<tbb::global_control> threadLimit(const BakeRequest& request) {
     if (!request.threads) {
         return std::nullopt;

@@ -53,8 +53,8 @@ struct BakeResult : SolidMesh {
 /// Prepares the solid of a mesh. Errors: those of bake().
 [[nodiscard]] Result<SolidMesh> prepareSolid(const BakeRequest& request, TriangleMesh mesh);
 
-/// Bakes a prepared solid, with the request of prepareSolid(), or one with another budget if
-/// SolidMesh::suitsAnyBudget().
+/// Bakes a prepared solid.
+/// \param request  that of prepareSolid(); its budget may differ if solid.suitsAnyBudget().
 [[nodiscard]] Result<BakeResult> bake(const BakeRequest& request, const SolidMesh& solid);
 
 /// Returns the error curve of the trees of patches of a solid (bake/patches/patch_planner.h).

@@ -27,7 +27,7 @@ const char* sizeOption(const BakeRequest& request) {
                                : nullptr;
 }
 
-/// Returns the option that chooses the maps. Errors: kUsage if there are several.
+/// Returns the source of the maps. Errors: kUsage if several options choose it.
 Result<MapSource> sourceOf(const BakeRequest& request) {
     struct Chooser {
         const char* name;
@@ -59,7 +59,7 @@ constexpr std::array<std::string_view, 12> kWithAnimated = {
     "animated", "clips", "resolution",        "quality",        "prefer",        "threads",
     "unit",     "up",    "max_import_memory", "import_timeout", "max_triangles", "timeout"};
 
-/// Returns an error if another option is set.
+/// Returns an error if an option outside `allowed` is set; otherwise an empty text.
 std::string otherThan(std::span<const std::string_view> allowed, const BakeRequest& request,
                       const char* error) {
     for (const FieldWords& field : changedFields(request)) {
@@ -70,7 +70,7 @@ std::string otherThan(std::span<const std::string_view> allowed, const BakeReque
     return {};
 }
 
-/// Returns an error if options have no effect together; empty: there is none.
+/// Returns an error if an option has no effect with another; otherwise an empty text.
 std::string conflictOf(const BakeRequest& request, const BakeSettings& settings) {
     if (!request.heights.empty()) {
         return otherThan(kWithHeights, request, " has no effect with --heights; remove it");
@@ -217,7 +217,7 @@ std::string importOptionOf(const ImportOptions& options, const ImportLimits& lim
 }
 
 std::string shellWord(const std::string& path) {
-    return shellQuoted(path.starts_with("-") ? "./" + path : path);  // otherwise it reads as an option
+    return shellQuoted(path.starts_with("-") ? "./" + path : path);  // "-…" would be parsed as an option
 }
 
 void fields(FieldVisitor& visit, BakeRequest& request) {

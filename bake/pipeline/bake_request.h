@@ -92,7 +92,7 @@ struct RecordedBake {
 };
 
 [[nodiscard]] RecordedBake recordedBake(const std::vector<RecordedOption>& options);
-/// Hollow if the record has no value: there were no voids, or the version that baked it ignored them.
+/// Returns kKeep if the record has no value: there were no voids, or the version that baked it ignored them.
 [[nodiscard]] inline VoidsAs voidsOf(const BakeRequest& recorded) {
     return recorded.voids.value_or(VoidsAs::kKeep);
 }

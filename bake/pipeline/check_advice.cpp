@@ -117,7 +117,7 @@ class Advisor {
     [[nodiscard]] Result<double> wrongOf(const BakeRequest& request) const {
         return wrongOf(request, run_.baked, truth_);
     }
-    /// Measures another solid against itself.
+    /// Measures the bake of another solid against that solid.
     [[nodiscard]] Result<double> wrongOfSolid(const BakeRequest& request) const {
         const ShapedMesh shaped = RELIEF_TRY(makeSolid(request, run_.imported));
         const MeshQuery query = RELIEF_TRY(MeshQuery::build(shaped.mesh));

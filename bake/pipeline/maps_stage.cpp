@@ -21,7 +21,7 @@ std::optional<std::uint64_t> budgetOf(const BakeRequest& request) {
 }
 
 /// Finds the smallest budget that meets --max-error.
-/// \param truth  of the mesh to measure against: the imported one, if it was repaired.
+/// \param truth  of the mesh to measure against: the imported mesh if the mesh was repaired.
 Result<BudgetSearchResult> searchBudget(const BakeRequest& request, const BakeSettings& settings,
                                         const MeshQuery& query, const MeshQuery& truth,
                                         const BakeWatcher& watcher) {

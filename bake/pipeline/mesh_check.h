@@ -52,7 +52,7 @@ struct MeshCheck {
     ShapeReport shape;
     RecordedBake recorded;
     PreparedMesh baked{TriangleMesh()};  ///< the solid of the repaired mesh; `mesh` without a repair
-    std::optional<MeshQuery> query;      ///< of `baked`, which is judged
+    std::optional<MeshQuery> query;      ///< of `baked`
     bool same_file = false;
     std::vector<std::string> warnings;  ///< one line each
     bool watertight = false;
@@ -92,10 +92,10 @@ struct MeshCheck {
     const std::function<void()>& checkpoint = [] {});
 
 /// Suggests commands for a collider that is not accurate enough, after trying them in memory. The causes of the worst
-/// places determine them: patches of twice the bytes, closed holes, thicker sheets, a wrapped mesh. The best comes
-/// first; those that did not help come last. The result does not depend on the number of threads or the machine,
-/// because the choice of trials does not depend on time.
-/// \param run  result of a check. \param mesh_file  for the command. \param output  for the command
+/// places determine the commands: patches of twice the bytes, closed holes, thicker sheets, a wrapped mesh. The best
+/// command comes first; commands that did not help come last. The result does not depend on the number of threads or
+/// the machine, because the choice of trials does not depend on time.
+/// \param run  result of a check. \param mesh_file, output  file names for the commands
 [[nodiscard]] std::vector<Advice> adviceFor(const MeshCheck& run, const std::string& mesh_file,
                                             const std::string& output);
 

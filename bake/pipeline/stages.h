@@ -57,7 +57,7 @@ struct SolidMesh {
     std::optional<AnimatedMesh> animated;             ///< with --animated
     std::optional<PreparedMesh> imported;  ///< the imported mesh, if repaired and measured by --max-error
 
-    /// Whether it is the same for any budget, because it has no shells.
+    /// Whether the solid is the same for any budget, because it has no shells.
     [[nodiscard]] bool suitsAnyBudget() const { return shape.sheets == 0; }
 };
 
@@ -93,7 +93,8 @@ struct BakedMaps {
 [[nodiscard]] Result<BakedMaps> bakeMaps(const BakeRequest& request, const BakeSettings& settings,
                                          const SolidMesh& solid, const BakeWatcher& watcher);
 
-/// Bakes the named maps of a solid, or patches for its budget (not for an error). Errors: those of bake.
+/// Bakes the named maps of a solid, or patches for the budget or texel of the request. Ignores `max_error`.
+/// Errors: those of bake and bakePatchesWithin.
 [[nodiscard]] Result<Baked> bakeSolid(const BakeRequest& request, const PreparedMesh& solid);
 
 /// Returns the warnings of a bake: of the import, the parts and the unit, the maps, and the measurement.

@@ -30,13 +30,12 @@ constexpr std::array<double, 8> kEighths = {1.0,
                                             1.681792830507429,
                                             1.8340080864093424};
 
-/// A curve is planned again if its share grows by at least this factor, because the power law becomes inaccurate
-/// beyond.
-constexpr std::uint64_t kReach = 2;
+/// A mesh is planned again if its share grows by at least this factor, because the power law becomes inaccurate.
+constexpr std::uint64_t kReplanFactor = 2;
 /// The minimum share, as a fraction of an even share.
-constexpr double kEvenShare = 0.125;
+constexpr double kEvenFractionMin = 0.125;
 /// Range of the natural logarithm of a byte's worth, and number of bisections.
-constexpr double kLogWorthMost = 700.0;
+constexpr double kLogWorthMax = 700.0;
 constexpr int kBisections = 64;
 
 Result<void> checkBudget(std::uint64_t budget, std::size_t shares) {
@@ -53,15 +52,15 @@ std::uint64_t plannedOf(std::uint64_t share) {
     return std::bit_floor(std::clamp(share / kSharePerPlan, kPatchBytesMin, kPatchBytesMax));
 }
 
-/// The power of typical meshes (bake/patches/NOTES.md), and its limits beyond the end of a curve, where steep curves
-/// flatten.
+/// The exponent of the power law for typical meshes (bake/patches/NOTES.md), and its limits beyond the end of a curve,
+/// where steep curves flatten.
 constexpr double kPower = 0.73;
-constexpr double kPowerLeast = 0.4;
-constexpr double kPowerMost = 1.0;
-/// The power is fitted over a range of this factor of bytes at the end of the curve.
-constexpr double kPowerOver = 8.0;
+constexpr double kPowerMin = 0.4;
+constexpr double kPowerMax = 1.0;
+/// The exponent is fitted to the end of the curve, where the bytes grow by this factor.
+constexpr double kPowerFitFactor = 8.0;
 /// exp() of this exceeds any budget.
-constexpr double kLogMost = 60.0;
+constexpr double kLogBytesMax = 60.0;
 
 double slope(const ErrorPoint& a, const ErrorPoint& b) {
     return (a.wrong - b.wrong) / (b.bytes - a.bytes);
@@ -85,7 +84,7 @@ double powerOf(const ErrorCurve& hull) {
     }
     const ErrorPoint& end = hull.back();
     std::size_t from = 0;
-    while (from + 2 < hull.size() && hull[from + 1].bytes * kPowerOver <= end.bytes) {
+    while (from + 2 < hull.size() && hull[from + 1].bytes * kPowerFitFactor <= end.bytes) {
         ++from;
     }
     return portable::log(hull[from].wrong / end.wrong) / portable::log(end.bytes / hull[from].bytes);
@@ -98,7 +97,7 @@ class WorthCurve {
     /// \param curve  not empty. \param weight  factor on its errors, 0 or more.
     WorthCurve(const ErrorCurve& curve, double weight);
 
-    /// Returns the bytes up to which each byte saves at least this much; they grow as the worth falls.
+    /// Returns the number of bytes up to which one more byte has at least this worth; grows as the worth falls.
     /// \param log_worth  natural logarithm of the worth.
     [[nodiscard]] double bytesAt(double log_worth) const;
 
@@ -111,7 +110,7 @@ class WorthCurve {
 
     std::vector<Knot> knots_;  // in descending order of worth
     double power_;             // errors are proportional to bytes^-power beyond the last knot
-    double most_ = std::numeric_limits<double>::infinity();  // bytes; more bytes save nothing
+    double most_ = std::numeric_limits<double>::infinity();  // bytes; more bytes do not reduce the error
 };
 
 WorthCurve::WorthCurve(const ErrorCurve& curve, double weight) : power_(kPower) {
@@ -127,7 +126,7 @@ WorthCurve::WorthCurve(const ErrorCurve& curve, double weight) : power_(kPower) 
     const double power = powerOf(hull);
     const double worth = weight * power * end.wrong / end.bytes;
     add(end.bytes, knots_.empty() ? worth : std::min(worth, portable::exp(knots_.back().worth)));
-    power_ = std::clamp(power, kPowerLeast, kPowerMost);
+    power_ = std::clamp(power, kPowerMin, kPowerMax);
 }
 
 double WorthCurve::bytesAt(double log_worth) const {
@@ -135,7 +134,7 @@ double WorthCurve::bytesAt(double log_worth) const {
         return most_;
     }
     const auto bytes = [this](double log_bytes) {
-        return std::min(most_, portable::exp(std::min(log_bytes, kLogMost)));
+        return std::min(most_, portable::exp(std::min(log_bytes, kLogBytesMax)));
     };
     if (log_worth >= knots_.front().worth) {
         return bytes(knots_.front().bytes);
@@ -157,9 +156,9 @@ void WorthCurve::add(double bytes, double worth) {
     }
 }
 
-class Sharer {
+class ShareSolver {
   public:
-    Sharer(std::uint64_t budget, std::span<BudgetShare> shares, const PlanErrors& plan)
+    ShareSolver(std::uint64_t budget, std::span<BudgetShare> shares, const PlanErrors& plan)
         : budget_(budget), shares_(shares), plan_(plan), planned_(shares.size()), curves_(shares.size()) {}
 
     void run() {
@@ -176,7 +175,7 @@ class Sharer {
             share();
             todo.clear();
             for (std::size_t i = 0; i < shares_.size(); ++i) {
-                if (curves_[i] && plannedOf(shares_[i].bytes) >= kReach * planned_[i]) {
+                if (curves_[i] && plannedOf(shares_[i].bytes) >= kReplanFactor * planned_[i]) {
                     todo.push_back(i);
                 }
             }
@@ -198,25 +197,25 @@ class Sharer {
 
     [[nodiscard]] double bytesOf(std::size_t i, double log_worth) const {
         const double even = static_cast<double>(budget_) / static_cast<double>(shares_.size());
-        const double least = std::max(static_cast<double>(kShareMin), kEvenShare * even);
+        const double least = std::max(static_cast<double>(kShareMin), kEvenFractionMin * even);
         const double most = std::max(least, static_cast<double>(kPatchBytesMax));
         return curves_[i] ? std::clamp(curves_[i]->bytesAt(log_worth), least, most) : even;
     }
 
-    /// Uses the lowest worth of a byte for which all shares fit.
+    /// Sets all shares to the bytes of the lowest worth at which they fit into the budget.
     void share() {
-        double dear = kLogWorthMost;
-        double cheap = -kLogWorthMost;
+        double high = kLogWorthMax;
+        double low = -kLogWorthMax;
         for (int step = 0; step < kBisections; ++step) {
-            const double middle = 0.5 * (dear + cheap);
+            const double middle = 0.5 * (low + high);
             double sum = 0.0;
             for (std::size_t i = 0; i < shares_.size(); ++i) {
                 sum += bytesOf(i, middle);
             }
-            (sum > static_cast<double>(budget_) ? cheap : dear) = middle;
+            (sum > static_cast<double>(budget_) ? low : high) = middle;
         }
         for (std::size_t i = 0; i < shares_.size(); ++i) {
-            shares_[i].bytes = static_cast<std::uint64_t>(bytesOf(i, dear));
+            shares_[i].bytes = static_cast<std::uint64_t>(bytesOf(i, high));
         }
     }
 
@@ -244,7 +243,7 @@ Result<void> shareByErrors(std::uint64_t budget, std::span<BudgetShare> shares, 
     if (shares.size() == 1) {
         shares[0].bytes = roundDownToEighth(budget);
     } else {
-        Sharer(budget, shares, plan).run();
+        ShareSolver(budget, shares, plan).run();
     }
     return {};
 }

@@ -27,7 +27,7 @@ struct BudgetShare {
 /// Minimum share, in bytes.
 inline constexpr std::uint64_t kShareMin = 4096;
 
-/// A share is planned with this fraction (1/8) of its bytes, or down to half of that.
+/// The bytes of a share divided by the bytes of its plan, before the plan is rounded down to a power of two.
 inline constexpr std::uint64_t kSharePerPlan = 8;
 
 /// Plans trees of a mesh up to a number of bytes, which is a power of two. Called from several threads. A mesh gets an
@@ -35,7 +35,7 @@ inline constexpr std::uint64_t kSharePerPlan = 8;
 using PlanErrors = std::function<Result<ErrorCurve>(std::size_t mesh, std::uint64_t bytes)>;
 
 /// Plans each mesh for an even share, and again if its share grows by a factor of two or more.
-/// \param shares  at least one; a single share takes the whole budget without a plan. Weights apply to misclassified
+/// \param shares  at least one; a single share is the whole budget, without a plan. Weights apply to misclassified
 /// volume.
 /// Errors: kUsage (the budget is below 2·kShareMin per share).
 [[nodiscard]] Result<void> shareByErrors(std::uint64_t budget, std::span<BudgetShare> shares,

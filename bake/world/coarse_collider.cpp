@@ -11,7 +11,7 @@ namespace relief {
 namespace {
 
 constexpr std::uint64_t kCoarser = 16;
-/// Fraction of the longest side that exceeds the rounding of a box's corners.
+/// Margin around a box, as a fraction of its longest side; exceeds the rounding of its corners.
 constexpr float kMargin = 1e-5F;
 
 }  // namespace

@@ -11,10 +11,10 @@
 
 namespace relief {
 
-/// Bytes on the GPU: smaller colliders have no coarse version, because it would save little.
+/// Colliders up to this size in bytes on the GPU have no coarse version, because it would save little.
 inline constexpr std::uint64_t kCoarseFrom = 65'536;
 
-/// Whether a collider of a level has a coarse version: it is a single map of patches, and not small.
+/// Whether a collider of a level has a coarse version: it is a single map of patches, larger than kCoarseFrom.
 [[nodiscard]] bool hasCoarse(const Collider& fine);
 
 /// The collider that a coarse version replaces.
@@ -26,10 +26,10 @@ struct FineCollider {
     [[nodiscard]] static FineCollider of(const Collider& fine);
 };
 
-/// Bakes a coarse collider with a sixteenth of the bytes. Its box contains that of the fine one, so that a program need
-/// not re-sort its bodies when it replaces one with the other. Shells of open sheets are as thick as its texels
+/// Bakes a coarse collider with a sixteenth of the bytes. Its box contains the box of the fine collider, so that a
+/// program need not sort its bodies again when it swaps the two. Shells of open sheets are as thick as the coarse texels
 /// require.
-/// \param request  that baked the fine collider.
+/// \param request  the request that baked the fine collider.
 /// \param bake  bakes the same mesh with another request.
 /// Errors: those of bake().
 [[nodiscard]] Result<Collider> bakeCoarse(const BakeRequest& request, const FineCollider& fine,

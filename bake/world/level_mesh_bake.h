@@ -15,7 +15,7 @@ struct LevelMeshBake {
     const WorldRequest& world;
     const BakeRequest& request;  ///< of the mesh
     const SolidMesh& solid;
-    TriangleMesh& mesh;       ///< moved out
+    TriangleMesh& mesh;       ///< moved from
     const std::string& unit;  ///< of the level
     const PatchTileOptions& tiles;
     const ContainerNames& names;

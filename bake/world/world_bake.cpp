@@ -29,7 +29,7 @@ namespace {
 
 static_assert(kLevelMeshesMax == kWorldCollidersMax && kLevelBodiesMax == kWorldBodiesMax);
 
-/// Approximate limit on the triangles of solids kept between planning and baking; other solids are made again.
+/// Approximate limit on the triangles of solids kept between planning and baking; other solids are prepared twice.
 constexpr std::uint64_t kTrianglesKept = 4'000'000;
 
 double areaOf(const TriangleMesh& mesh) {
@@ -50,8 +50,8 @@ BakeRequest withoutImport(BakeRequest request) {
     return request;
 }
 
-/// The weight of misclassified volume in object space: 1 / area^(3/4). By volume, large meshes would take nearly all
-/// bytes; by area, small meshes would take too many.
+/// The weight of misclassified volume in object space: 1 / area^(3/4). Shares by volume would give nearly all bytes to
+/// large meshes; shares by area would give too many to small meshes.
 double errorWeight(double area) {
     return area > 0.0 ? 1.0 / (std::sqrt(area) * std::sqrt(std::sqrt(area))) : 0.0;
 }
@@ -120,7 +120,7 @@ class WorldBaker {
             ++collider.bodies;
             collider.largest_scale = std::max(collider.largest_scale, body.scale);
         }
-        // A level keeps the materials of each collider, even a single one, because all of them are one surface.
+        // If the level has several materials, each collider keeps even a single one: together they are one surface.
         const bool several = !request_.bake.materials && hasSeveralMaterials(level_.meshes);
         for (std::size_t i = 0; i < level_.meshes.size(); ++i) {
             TriangleMesh& mesh = level_.meshes[i];
@@ -192,7 +192,7 @@ class WorldBaker {
         return assetKey(tool_, optionWords(request, 0), inputs_[mesh]);
     }
 
-    /// Keeps the solid for the bake.
+    /// Returns the error curve of a mesh. Keeps its solid for the bake, within kTrianglesKept.
     [[nodiscard]] Result<ErrorCurve> planMesh(std::size_t mesh, std::uint64_t bytes) {
         BakeRequest request = withoutImport(requests_[mesh]);
         request.budget = kSharePerPlan * bytes;  // shells have the thickness for this budget
@@ -246,7 +246,7 @@ class WorldBaker {
         return {};
     }
 
-    /// Bakes the largest first, so that the last to finish is a small one.
+    /// Bakes the largest meshes first, so that the last one to finish is small.
     Result<void> bakeStale() {
         notify(watcher_.begin, "baking colliders");
         std::stable_sort(stale_.begin(), stale_.end(), [this](std::size_t a, std::size_t b) {
@@ -314,7 +314,8 @@ class WorldBaker {
                 fresh_[part.coarse->file] = entry;
             }
         }
-        // A killed run loses at most this much; the last write reports errors.
+        // Write every two seconds, because a killed run loses the results since the last write. Errors are reported by
+        // the final write.
         if (since_cached_.seconds() > 2.0 && updateBakeCache(request_.folder, fresh_)) {
             fresh_.clear();
             since_cached_ = Stopwatch();
@@ -363,10 +364,10 @@ class WorldBaker {
     const WorldWatcher& watcher_;
     WorldBakeResult result_;
     std::vector<std::string> names_;  // from --as
-    Level level_;                     // the meshes of stale entries are moved out
+    Level level_;                     // the meshes of stale entries are moved from
     std::string tool_;
     PatchTileOptions tiles_;
-    std::vector<WorldColliderResult> meshes_;              // shared by the colliders of each mesh
+    std::vector<WorldColliderResult> meshes_;              // by mesh; copied to its colliders
     std::vector<std::vector<WorldColliderResult>> parts_;  // colliders of each mesh; empty while stale
     std::vector<ContainerNames> file_names_;               // by mesh
     std::vector<BakeRequest> requests_;                    // by mesh

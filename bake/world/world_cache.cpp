@@ -59,7 +59,7 @@ bool coarseIsUpToDate(const std::filesystem::path& folder, const BakeCacheEntry&
     return true;
 }
 
-/// Returns the tiles of a mesh, as listed in the entry of any of them.
+/// Returns the tiles of a mesh, as listed in the cache entry of any of its tiles.
 std::vector<std::string> knownTiles(const ContainerNames& names, const BakeCacheEntries& cache) {
     const auto& [front, back] = names;
     std::vector<std::string> tiles;

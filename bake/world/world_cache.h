@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The containers of a world in its cache: their names, and which of them are up to date.
+// Names the containers of a world, and finds those that are up to date according to its cache.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace relief {
 
-/// Returns the words of the options that affect the bytes.
+/// Returns the options of a request that affect the bytes of a container, as words of a command line.
 [[nodiscard]] std::vector<std::string> optionWords(const BakeRequest& request, std::uint32_t compress);
 
 /// The names of the containers of one mesh.

@@ -141,11 +141,11 @@ class WorldChecker {
         std::vector<std::size_t> first;
         for (std::size_t i = 0; i < bodies.size(); ++i) {
             const WorldBody& body = bodies[i];
-            const bool goes_on =
+            const bool is_next_tile =
                 i > 0 && body.node == bodies[i - 1].node && body.collider > bodies[i - 1].collider &&
                 samePose(body, bodies[i - 1]) &&
                 field_.colliderOf(i).provenance.mesh_hash == field_.colliderOf(i - 1).provenance.mesh_hash;
-            if (!goes_on) {
+            if (!is_next_tile) {
                 first.push_back(i);
             }
         }
@@ -185,7 +185,7 @@ class WorldChecker {
             result_.warnings.push_back(level_.name + ": " +
                                        (first.size() != placed_.size()
                                             ? "it places " + countText(placed_.size(), "mesh", "meshes") +
-                                                  ", and the world " + std::to_string(first.size())
+                                                  ", but the world places " + std::to_string(first.size())
                                             : countText(other, "node") + " differ in pose from the world") +
                                        "; bake the level again");
         }
@@ -334,7 +334,7 @@ class WorldChecker {
     std::vector<SurfaceParts> parts_;  // by mesh of the level
     std::vector<PlacedMesh> placed_;
     std::vector<std::size_t> tiles_;  // by placed mesh: number of bodies of the world
-    std::vector<bool> moved_;         // by placed mesh: the world has another pose
+    std::vector<bool> moved_;         // by placed mesh: the pose differs from the world's
 };
 
 }  // namespace

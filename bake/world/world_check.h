@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Measures a world against the level from which it was baked. Truth is the union of the level's meshes at the poses of
-// its nodes, each queried by Embree in its own space: a point near one body may be inside another.
+// its nodes, because a point near one body may be inside another. Embree queries each mesh in its own space.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ namespace relief {
 struct WorldCheckRequest {
     /// `mesh` is the level; `samples` are distributed among its bodies; `min_part` is unused.
     CheckRequest check;
-    std::optional<float> within;  ///< world units; nullopt: as `relief check` for a single collider
+    std::optional<float> within;  ///< maximum distance of points, world units; nullopt: see AccuracyOptions
     bool pictures = false;        ///< adds slices through the worst places
 };
 
@@ -29,8 +29,7 @@ struct BodyAccuracy {
     std::string mesh;
     std::uint64_t points = 0;
     WrongShare wrong;
-    std::size_t tiles =
-        1;  ///< consecutive bodies of the world: several for a mesh in tiles; 0: the level differs
+    std::size_t tiles = 1;     ///< consecutive bodies of the world, one per tile; 0: the level has changed
     glm::vec3 position{0.0F};  ///< world space: a typical misclassified point, or the position of the body
 };
 

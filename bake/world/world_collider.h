@@ -20,8 +20,8 @@
 namespace relief {
 
 struct WorldRequest {
-    /// For each collider, except: `mesh` is the file of the level, `budget` is shared by all, and `texel` is in units
-    /// of the level.
+    /// The request for each collider, with three exceptions: `mesh` is the file of the level, `budget` is shared by all
+    /// colliders, and `texel` is in units of the level.
     BakeRequest bake;
     std::filesystem::path folder;  ///< must exist
     std::uint32_t compress = 0;

@@ -112,7 +112,7 @@ bool keepResponses(const Placed& from, const Placed& to, World& world) {
 using Nodes = std::vector<Placed*>;
 
 /// Matches the nodes of one key if the match is unambiguous: one each, or several with equal responses.
-/// \param exact  equal nodes also have equal poses; if their numbers match, they are paired in order.
+/// \param exact  the key consists of name, box and pose; if equally many nodes match, they are paired in order.
 void matchNodes(const Nodes& before, const Nodes& now, bool exact, World& world) {
     if (before.empty() || now.empty()) {
         return;
@@ -175,18 +175,18 @@ void keepBodies(World& world, const World& read, const World& before, std::vecto
     }
 }
 
-std::vector<std::string> removeUnnamed(const fs::path& folder, const std::vector<WorldFile>& before,
-                                       const World& world) {
-    std::set<std::string> named;
+std::vector<std::string> removeUnreferenced(const fs::path& folder, const std::vector<WorldFile>& before,
+                                            const World& world) {
+    std::set<std::string> referenced;
     for (const WorldFile& file : filesOf(world.colliders)) {
-        named.insert(file.file);
+        referenced.insert(file.file);
     }
     std::vector<std::string> removed;
     for (const WorldFile& old : before) {
         const fs::path path = folder / old.file;
         std::error_code error;
         const bool own = old.file.ends_with(kColliderExtension) && !fs::path(old.file).has_parent_path() &&
-                         !named.contains(old.file) && hashOfFile(path) == old.hash;
+                         !referenced.contains(old.file) && hashOfFile(path) == old.hash;
         if (own && fs::remove(path, error)) {
             removed.push_back(old.file);
         }
@@ -225,7 +225,7 @@ Result<ReplacedWorld> replaceWorld(const fs::path& folder, World& world,
     }
     RELIEF_TRY(writeText(path, worldText(world)));
     if (before) {
-        replaced.removed = removeUnnamed(folder, filesOf(before->colliders), world);
+        replaced.removed = removeUnreferenced(folder, filesOf(before->colliders), world);
     }
     return replaced;
 }

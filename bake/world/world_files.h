@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes the files of a world. The file that names the others is written last. Files that only the previous world names
-// are then removed.
+// Writes the file of a world after its containers exist, and removes the containers that only the previous world
+// references.
 #pragma once
 
 #include <filesystem>
@@ -22,10 +22,10 @@ struct ReplacedWorld {
     std::vector<std::string> warnings;  ///< about settings written by hand that were dropped; one line each
 };
 
-/// Writes kWorldFileName; its containers must exist. Removes containers that only the previous world names, if their
-/// contents have not changed. Preserves settings written by hand: responses by material name, and the restitution and
-/// friction of bodies. Bodies are matched by the name, box and pose of their node, or by fewer of these if the match is
-/// unique.
+/// Writes kWorldFileName; its containers must exist. Removes containers that only the previous world references, if
+/// their contents have not changed. Preserves settings written by hand: responses by material name, and the restitution
+/// and friction of bodies. Bodies are matched by the name, box and pose of their node, or by fewer of these if the match
+/// is unique.
 /// \param materials  names of the materials of all colliders.
 /// \param name       prefix for errors about the world.
 /// Errors: those of parseWorld (no reader would accept the world), kIo.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The place where a body of a world is typically wrong: its cause, and a slice through the union of all bodies there.
+// A typical misclassified point of a body: its cause, and a slice through the union of all bodies there.
 #pragma once
 
 #include <cstddef>
@@ -16,10 +16,10 @@
 namespace relief {
 
 enum class WorldCause : std::uint8_t {
-    kMoved,      ///< the world has the node at another pose
+    kMoved,      ///< the node has another pose in the world
     kPrecision,  ///< floatsLimit(): the mesh is too far from its origin
-    kTexel,      ///< the point is less than kTexelsOff texels from the surface
-    kMesh,       ///< it is farther away: intersecting faces, open edges, or a lost part
+    kTexel,      ///< the point is at most kTexelsOff texels from the surface
+    kMesh,       ///< the point is farther away: intersecting faces, open edges, or a lost part
 };
 template <>
 inline constexpr std::array<std::string_view, 4> kWordsOf<WorldCause>{"moved", "precision", "texel", "mesh"};
@@ -43,6 +43,6 @@ struct WorldPlaceQuery {
     double wrong = 0.0;  ///< percent of the points of the body
 };
 
-[[nodiscard]] WorldPlace worldPlace(const WorldPlaceQuery& question, bool picture);
+[[nodiscard]] WorldPlace worldPlace(const WorldPlaceQuery& query, bool picture);
 
 }  // namespace relief

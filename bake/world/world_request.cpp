@@ -9,7 +9,7 @@
 namespace relief {
 
 Result<void> checkWorldRequest(const BakeRequest& request) {
-    const std::array<std::pair<const char*, bool>, 8> of_one = {{
+    const std::array<std::pair<const char*, bool>, 8> single_mesh_options = {{
         {"--map", !request.map.empty()},
         {"--paper", request.paper},
         {"--resolution", request.resolution.has_value()},
@@ -19,7 +19,7 @@ Result<void> checkWorldRequest(const BakeRequest& request) {
         {"--animated", request.animated},
         {"--holes keep", request.holes == Holes::kKeep},
     }};
-    for (const auto& [option, given] : of_one) {
+    for (const auto& [option, given] : single_mesh_options) {
         if (given) {
             return fail(ErrorCode::kUsage,
                         std::string(option) + " applies to a single mesh, not to a level; remove it");

@@ -9,9 +9,9 @@
 namespace relief {
 namespace {
 
-/// A tenth of a share is reserved for the roots that tiles duplicate. With thirty roots along a side they take a
-/// fifteenth; with fewer roots, more.
-constexpr std::uint64_t kOneInShare = 10;
+/// A tenth of a share is reserved for the roots that tiles duplicate. They take a fifteenth of the share if a side has
+/// thirty roots, and more if it has fewer.
+constexpr std::uint64_t kReserveDivisor = 10;
 
 /// Returns the part of a box within the tile's own roots.
 Bounds partOf(const Bounds& box, const DepthMap& whole, const PatchTile& tile) {
@@ -63,8 +63,9 @@ std::uint32_t tilesMost(std::size_t meshes, std::size_t bodies) {
 }
 
 std::uint64_t bytesBeforeCut(std::uint64_t share, const PatchTileOptions& options) {
-    return share <= options.bytes || options.most == 1 ? share
-                                                       : std::max(options.bytes, share - share / kOneInShare);
+    return share <= options.bytes || options.most == 1
+               ? share
+               : std::max(options.bytes, share - share / kReserveDivisor);
 }
 
 }  // namespace relief

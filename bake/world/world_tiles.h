@@ -14,10 +14,10 @@ namespace relief {
 
 struct ColliderTile {
     std::string name;     ///< position among the tiles, such as 0-1-0; empty: the whole
-    Collider collider{};  ///< its bounds are part of the whole's
+    Collider collider{};  ///< its bounds are part of the whole collider's bounds
 };
 
-/// Cuts a collider. \return only the whole if it is small enough or not a tree of patches.
+/// Cuts a collider. \return only the whole collider if it is small enough, or is not a tree of patches.
 [[nodiscard]] std::vector<ColliderTile> cutCollider(Collider whole, const PatchTileOptions& options);
 
 /// Whether text is a valid name of a tile.

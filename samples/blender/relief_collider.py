@@ -81,7 +81,7 @@ def world_mesh(context, obj):
     world = vertices.reshape(-1, 3).astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
     triangles = triangles.reshape(-1, 3)
     if np.linalg.det(matrix[:3, :3]) < 0:
-        triangles = triangles[:, ::-1]  # keeps the faces of mirrored objects outwards
+        triangles = triangles[:, ::-1]  # keeps the faces of mirrored objects pointing outwards
     return world.astype(np.float32), triangles
 
 
@@ -129,7 +129,7 @@ def error_colors(distance, known, worst):
 
 
 def sheet_depth(collider):
-    """Half the thickness of the shells of open parts: the depth of their surface."""
+    """Half the thickness of the shells of open parts: the distance from a part to the surface of its shell."""
     found = re.search(r"(?:^| )--thickness ([0-9.e+-]+)", collider.options)
     return 0.5 * float(found.group(1)) if found else 0.0
 

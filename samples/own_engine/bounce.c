@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
     }
     height = body.bounds_max[1] - body.bounds_min[1];
     radius = 0.01F * height;
-    gravity = 5 * height; /* per second squared: the film of a body two metres high */
+    gravity = 5 * height; /* per second squared: about 9.8 m/s^2 for a body two metres high */
 
     for (i = 0; i < SIDE * SIDE; ++i) {
         const float across[2] = {(i % SIDE + 0.5F) / SIDE, (i / SIDE + 0.5F) / SIDE};

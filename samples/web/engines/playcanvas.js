@@ -63,7 +63,7 @@ export async function start() {
         collider,
         step: (seconds) => app.update(seconds),
         draw: () => app.render(),
-        /** Four floats for each particle: its place; negative before its birth. */
+        /** Four floats for each particle: its position, and a number that is negative before its birth. */
         read: async () => {
             const rows = await Promise.all(systems.map(({ emitter }) => {
                 const texture = emitter.swapTex ? emitter.particleTexOUT : emitter.particleTexIN;

@@ -85,7 +85,7 @@ export async function start() {
             material.uniforms.places.value = target().texture;
             renderer.render(picture, camera);
         },
-        /** Four floats for each particle: its place, 1. */
+        /** Four floats for each particle: its position, and 1. */
         read: async () => {
             const places = new Float32Array(4 * kParticles);
             await renderer.readRenderTargetPixelsAsync(target(), 0, 0, kWidth, kParticles / kWidth, places);

@@ -61,7 +61,7 @@ export async function start() {
             renderer.compute(move);
         },
         draw: () => renderer.render(picture, camera),
-        /** Four floats for each particle: its place, 1. */
+        /** Four floats for each particle: its position, and 1. */
         read: async () => new Float32Array(await renderer.getArrayBufferAsync(places.value)),
     };
 }

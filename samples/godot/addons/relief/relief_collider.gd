@@ -13,7 +13,7 @@ var texels: ImageTexture
 var rows: Array[Vector4] = [Vector4(), Vector4(), Vector4()]
 ## x: size of a root cell in object units; y, z, w: numbers of root cells.
 var size: Vector4
-## Place and steps of the tree in the texture, as in relief.gdshaderinc.
+## Position of the tree in the texture, its strides and levels, as in relief.gdshaderinc.
 var place: Vector4i
 
 var _data: PackedByteArray
@@ -29,7 +29,7 @@ func apply(material: ShaderMaterial) -> void:
 	material.set_shader_parameter("relief_place", place)
 
 
-## Reads a container. Returns "", or what is wrong with it; the collider is then unusable.
+## Reads a container. Returns an error, or ""; after an error, the collider is unusable.
 func parse(data: PackedByteArray) -> String:
 	_data = data
 	var error := _check_header()
@@ -74,7 +74,7 @@ func _value(table: int, index: int, bytes: int) -> int:
 	return _number(at, bytes) if at > 0 else 0
 
 
-# Returns finite numbers of a field. If it is absent, its place 0 fails the check.
+# Returns the numbers of a field, which must be finite. An absent field has position 0, which fails the check.
 func _floats(at: int, count: int) -> PackedFloat32Array:
 	_number(at + 4 * count - 4, 4)
 	var values := PackedFloat32Array() if _damaged else _data.slice(at, at + 4 * count).to_float32_array()
