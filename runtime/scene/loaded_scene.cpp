@@ -178,13 +178,14 @@ Result<void> checkOverlap(const LoadedScene& loaded) {
         const std::size_t tried = (i * count / kTried + i) % count;  // odd and even indices
         const glm::vec3 center =
             toWorld(loaded.scene.colliders[tried].pose, loaded.colliders[tried]->bounds.center());
-        std::size_t around = 0;
+        std::size_t overlapping = 0;
         for (std::size_t body = 0; body < count; ++body) {
-            around += contains(body, center) ? 1 : 0;
+            overlapping += contains(body, center) ? 1 : 0;
         }
-        if (around > kOverlapMax) {
-            return fail(ErrorCode::kLimit, std::to_string(around) + " bodies overlap at " + shortest(center) +
-                                               "; place at most " + std::to_string(kOverlapMax) +
+        if (overlapping > kOverlapMax) {
+            return fail(ErrorCode::kLimit, std::to_string(overlapping) + " bodies overlap at " +
+                                               shortest(center) + "; place at most " +
+                                               std::to_string(kOverlapMax) +
                                                " at one point, or bake them into one collider");
         }
     }
@@ -204,10 +205,10 @@ Result<LoadedScene> loadAll(Scene scene, const fs::path& input, const SceneOverr
     scene.render.first_frame = overrides.first_frame ? overrides.first_frame : scene.render.first_frame;
     scene.render.last_frame = overrides.last_frame ? overrides.last_frame : scene.render.last_frame;
     if (scene.render.first_frame.value_or(0) > scene.render.last_frame.value_or(kNoLast)) {
-        return fail(ErrorCode::kUsage,
-                    "the first frame, of step " + std::to_string(*scene.render.first_frame) +
-                        ", comes after the last, of step " + std::to_string(*scene.render.last_frame) +
-                        "; swap --first-frame and --last-frame");
+        return fail(ErrorCode::kUsage, "the first frame (step " + std::to_string(*scene.render.first_frame) +
+                                           ") comes after the last frame (step " +
+                                           std::to_string(*scene.render.last_frame) +
+                                           "); swap --first-frame and --last-frame");
     }
     for (SceneEmitter& emitter : scene.emitters) {
         emitter.seed = overrides.seed.value_or(emitter.seed);
@@ -218,16 +219,16 @@ Result<LoadedScene> loadAll(Scene scene, const fs::path& input, const SceneOverr
     const std::vector<MaterialResponse> given = scene.materials;
     MaterialResponses responses(given);
     RELIEF_TRY(openWorld(scene, loaded, overrides.limits, responses));
-    Colliders of_world;
+    Colliders world_files;
     for (std::size_t i = 0; i < loaded.world_colliders.size(); ++i) {
-        of_world[containerOf(scene, loaded.world.colliders[i])] = loaded.world_colliders[i];
+        world_files[containerOf(scene, loaded.world.colliders[i])] = loaded.world_colliders[i];
     }
-    // A table that names a file gets that file, even if the world has a coarse one for it.
+    // A table that names a file uses that file, even if the world uses a coarse container instead.
     AnimatedFiles meshes;
-    Colliders of_tables = scene.stream ? Colliders() : of_world;
+    Colliders table_files = scene.stream ? Colliders() : world_files;
     for (const SceneCollider& from : scene.colliders) {
         const bool named = loaded.colliders.size() < own && from.node.empty();
-        Colliders& known = named ? of_tables : of_world;
+        Colliders& known = named ? table_files : world_files;
         loaded.live.emplace_back();
         loaded.played.emplace_back();
         std::shared_ptr<const Collider> read;

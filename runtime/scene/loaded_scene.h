@@ -43,9 +43,9 @@ struct LoadedScene {
     ContainerLimits limits;  ///< for colliders that are read later
     /// Colliders of the scene, in its order; a file that is named several times is shared.
     std::vector<std::shared_ptr<const Collider>> colliders;
-    /// Per collider: the mesh of a deforming one, whose collider has maps without texels.
+    /// Per collider: its mesh if it deforms; its entry in `colliders` then has maps without texels.
     std::vector<std::optional<LiveMesh>> live;
-    /// Per collider: the clip of an animated one, whose collider has maps without texels, too.
+    /// Per collider: its clip if it is animated; its entry in `colliders` then has maps without texels.
     std::vector<std::optional<PlayedMesh>> played;
     Bounds bounds;                  ///< of all colliders at all times, in the space of the particles
     std::vector<Emitter> emitters;  ///< emitters of the scene before their first birth
@@ -62,8 +62,8 @@ struct LoadedScene {
 /// Maximum number of bodies that may overlap at a place; a particle is tested against each of them.
 inline constexpr std::size_t kOverlapMax = 1024;
 
-/// Checks that at most kOverlapMax bodies in their initial poses have bounds that contain the centre of a body. Tests
-/// 64 centres. A collider without insideBox() counts everywhere.
+/// Checks that no body's centre lies in the bounds of more than kOverlapMax bodies, in their initial poses. Tests the
+/// centres of 64 bodies. A body without insideBox() counts at every centre.
 /// Errors: kLimit, with the number and the place.
 [[nodiscard]] Result<void> checkOverlap(const LoadedScene& loaded);
 

@@ -104,7 +104,7 @@ std::optional<FieldFault> checkCells(const Scene& scene) {
     return std::nullopt;
 }
 
-/// Returns the number of colliders with a number of their own, excluding further tiles.
+/// Returns the number of colliders with their own index; further tiles of a mesh have none.
 std::size_t numbered(const Scene& scene) {
     return static_cast<std::size_t>(std::count_if(scene.colliders.begin(), scene.colliders.end(),
                                                   [](const SceneCollider& c) { return !c.tile_of; }));
@@ -307,7 +307,7 @@ Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
                                                       "; scale the mesh and bake it again");
         }
     }
-    // A collider without extent still gets a scene with a size that floats can resolve at its position.
+    // If the collider has no extent, the scene still has a size that floats can resolve at its position.
     const glm::vec3 center = bounds.center();
     const float away = std::max({std::abs(center.x), std::abs(center.y), std::abs(center.z)});
     const float scale = std::max({bounds.longestSide(), 1e-3F * away, 1e-6F});
@@ -315,7 +315,7 @@ Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
                        (static_cast<double>(scene.time.steps) + static_cast<double>(prewarmSteps(scene)));
     for (std::size_t i = 0; i < scene.types.size(); ++i) {
         SceneType& type = scene.types[i];
-        // A scene without a world already checked this when it was read.
+        // Without a world, the reader has already checked this.
         const std::uint32_t absent = type.collides_with & ~(bodiesOf(scene) | kCollidesWithGround);
         if (!scene.world.empty() && type.collides_with != kCollidesWithAll && absent != 0) {
             return fail(

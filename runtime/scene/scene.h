@@ -51,7 +51,7 @@ void fields(FieldVisitor& visit, SceneForces& forces);
 [[nodiscard]] std::optional<FieldFault> check(SceneForces& forces, const GivenFields& given);
 
 struct SceneCollision {
-    float restitution = 0.0F;  ///< as in ParticleType, like the next two
+    float restitution = 0.0F;  ///< this and the next two members: as in ParticleType
     float friction = 1.0F;
     float friction_threshold = 0.0F;
     std::optional<float> sweep;  ///< for ParticleSystem::setSweep(); nullopt: computed by SceneSweep
@@ -112,10 +112,10 @@ struct SceneRender {
     glm::vec3 color{0.97F, 0.98F, 1.0F};  ///< sRGB
     float opacity = 0.95F;
     glm::vec3 background{0.62F, 0.69F, 0.76F};  ///< sRGB
-    std::uint32_t steps_per_frame = 10;         ///< steps per frame
-    std::optional<std::uint32_t> first_frame;   ///< step of the first frame; nullopt: `steps_per_frame`
-    std::optional<std::uint32_t> last_frame;    ///< step of the last frame; nullopt: the end of the run
-    std::uint32_t sort_frames = 0;              ///< frames per depth sort, 2…200; 0: unsorted
+    std::uint32_t steps_per_frame = 10;
+    std::optional<std::uint32_t> first_frame;  ///< step of the first frame; nullopt: `steps_per_frame`
+    std::optional<std::uint32_t> last_frame;   ///< step of the last frame; nullopt: the end of the run
+    std::uint32_t sort_frames = 0;             ///< frames per depth sort, 2…200; 0: unsorted
     Sprite sprite = Sprite::kPoint;
     Blend blend = Blend::kAlpha;
     float soft_distance = 0.0F;   ///< object units
@@ -215,7 +215,7 @@ void fields(FieldVisitor& visit, Scene& scene);
 /// Returns the number of frames of the run.
 [[nodiscard]] std::uint32_t frameCount(const Scene& scene);
 
-/// Fills all optional values from the bounds of the collider: snow that falls on it, seen from the front.
+/// Fills all optional values from the bounds of the collider. By default, snow falls on the collider, seen from the front.
 /// Errors: kInvalidInput (with defaults, the camera is directly above or below its target).
 [[nodiscard]] Result<Scene> withDefaults(Scene scene, const Bounds& bounds);
 

@@ -25,9 +25,9 @@ struct SceneMeshes {
     std::span<const std::optional<PlayedMesh>> played;
 };
 
-/// Creates emitters, and reads their files of points and surfaces. Emitter i uses random stream i. A surface that
-/// followsShape() has the vertices of the collider's mesh at time 0, in their order; colliderSurface() finds the
-/// surface of a container without a mesh.
+/// Creates emitters, and reads their files of points and surfaces. Emitter i uses random stream i. If an emitter
+/// followsShape(), its surface has the vertices of the collider's mesh at time 0, in the same order; for a container
+/// without a mesh, it is colliderSurface().
 /// \param emitters  complete. \param meshes  of the colliders that `attach` refers to.
 /// Errors: those of loadPointList, loadNamedMesh and EmitterSurface::create; kInvalidInput (points with neither normals
 /// nor a direction; a group or material of a collider without a mesh; an unknown group or material, with a list of the

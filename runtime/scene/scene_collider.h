@@ -17,7 +17,7 @@
 
 namespace relief {
 
-/// A pose as in a table.
+/// A pose as written in a table; missing values are nullopt.
 struct ScenePose {
     std::optional<glm::vec3> position;
     std::optional<glm::vec3> axis;
@@ -39,7 +39,7 @@ inline constexpr double kClipSpeedMax = 1000.0;
 
 /// Fills missing values from `rest`. \return the complete pose.
 [[nodiscard]] Pose completePose(ScenePose& pose, const Pose& rest);
-/// Completes each key.
+/// Returns the complete pose of each key, and fills the key's missing values.
 [[nodiscard]] std::vector<PoseKey> completeKeys(std::vector<SceneKey>& keys, const Pose& rest);
 /// Checks that there are no keys or at least two, with ascending times.
 /// \param instead  what to use instead of a single key, for the message.
@@ -78,7 +78,7 @@ void fields(FieldVisitor& visit, SceneMaterialColor& material);
 
 struct SceneCollider {
     std::filesystem::path path;  ///< resolved against the scene's folder
-    std::string origin;  ///< position of that key, "scene.toml:3:8", for messages; empty without a scene file
+    std::string origin;  ///< position of its key, "scene.toml:3:8", for messages; empty without a scene file
     std::string node;    ///< node of a body of the world, which provides missing values; empty: none
     /// For another tile of the node's mesh: the index of the collider that names the node. The tile moves and collides
     /// like that collider.

@@ -68,12 +68,12 @@ std::optional<FieldFault> checkPlace(SceneEmitter& emitter, const GivenFields& g
     if (emitter.followsShape() && !given("attach")) {
         return FieldFault{
             "shape",
-            "= \"surface\" needs emitter.attach with the number of a collider, or emitter.mesh; add one"};
+            "= \"surface\" needs emitter.attach with the index of a collider, or emitter.mesh; add one"};
     }
     if (emitter.followsShape() && given("key")) {
         return FieldFault{"key",
-                          "cannot move the surface of a collider, which moves with it; remove it, or set "
-                          "emitter.mesh"};
+                          "cannot move a collider's surface, which follows the collider; remove the keys, or "
+                          "set emitter.mesh"};
     }
     for (const auto& [key, name] : {std::pair("group", &emitter.group), {"material", &emitter.material}}) {
         if (given(key) && name->empty()) {

@@ -49,26 +49,26 @@ struct SceneEmitter : EmitterSettings {
     bool has_aim = false;
     bool has_speed = false;             ///< speeds of `aim`
     std::filesystem::path points_file;  ///< resolved against the scene's folder; only for kPoints
-    std::string points_origin;          ///< position of that key, "scene.toml:3:8", for messages
+    std::string points_origin;          ///< position of its key, "scene.toml:3:8", for messages
     /// Resolved; only for kSurface; empty: the surface of the collider that `attach` names.
     std::filesystem::path mesh_file;
     std::string mesh_origin;
-    std::string group;     ///< group of that mesh; empty: all of it
-    std::string material;  ///< material of that mesh; empty: all of it
+    std::string group;     ///< group of the mesh that emits; empty: all
+    std::string material;  ///< material of the mesh that emits; empty: all
     std::optional<SceneTouching> touching;
     std::uint64_t seed = 1;
     std::string place;  ///< "file:line:column" of the table
 
-    std::optional<std::uint32_t> attach;  ///< number of the collider in whose space it is, from 0
+    std::optional<std::uint32_t> attach;  ///< index of the collider whose space it uses
     std::vector<SceneKey> given_keys;
-    std::vector<PoseKey> keys;  ///< complete, ascending times; empty: it does not move
-    float inherit = 0.0F;       ///< fraction of its own velocity that births inherit
+    std::vector<PoseKey> keys;  ///< complete, ascending times; empty: fixed
+    float inherit = 0.0F;       ///< fraction of the emitter's velocity that births inherit
     [[nodiscard]] bool moves() const { return attach.has_value() || !keys.empty(); }
     /// Whether it emits from the surface of its collider, and deforms with it.
     [[nodiscard]] bool followsShape() const { return shape == EmitterShape::kSurface && mesh_file.empty(); }
 };
 
-/// emitter.speed: a number, [least, most], or { mean, deviation }.
+/// emitter.speed: a number, [min, max], or { mean, deviation }.
 struct EmitterSpeed {
     EmitterAim& aim;
 };
@@ -81,7 +81,7 @@ struct NormalSpeed {
 };
 void fields(FieldVisitor& visit, NormalSpeed& speed);
 
-/// Creates `aim` if the visitor fills fields; check() removes it if no key was set.
+/// Creates `aim` if the visitor fills fields; check() removes `aim` if none of its keys is set.
 void fields(FieldVisitor& visit, SceneEmitter& e);
 [[nodiscard]] std::optional<FieldFault> check(SceneEmitter& emitter, const GivenFields& given);
 
@@ -105,13 +105,13 @@ void fields(FieldVisitor& visit, SceneSpawn& spawn);
 [[nodiscard]] Result<void> completeEmitters(std::span<SceneEmitter> emitters, const Bounds& bounds,
                                             float scale, double seconds, std::uint32_t capacity);
 
-/// Creates the spawners. Spawner i uses random stream i of its seed, after those of the emitters.
+/// Creates the spawners. Spawner i uses random stream kEmittersMax + i of its seed.
 /// \param materials  WorldTextures::materialNames(); other names never match.
 [[nodiscard]] std::vector<Spawner> makeSpawners(std::span<const SceneSpawn> spawns,
                                                 std::span<const std::string> materials);
 
 /// Returns the motion of each emitter.
-/// \param colliders  that `attach` refers to; only the pose of deforming ones is used.
+/// \param colliders  that `attach` refers to; for deforming colliders, only the pose is used.
 [[nodiscard]] std::vector<EmitterMotion> emitterMotions(std::span<const SceneEmitter> emitters,
                                                         std::span<const SceneCollider> colliders);
 

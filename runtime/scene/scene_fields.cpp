@@ -81,7 +81,7 @@ void fields(FieldVisitor& visit, ParticleLook& look) {
     visit("spin_spread", look.spin_spread,
           {"Range ± of each particle's random rotation speed", "radians/s", {0.0, kAngleMax}});
     visit("stretch", look.stretch,
-          {"Exposure time: stretches the sprite along its path of this duration; needs render.sprite = "
+          {"Exposure time: stretches the sprite along its path during this time; needs render.sprite = "
            "\"quad\"; excludes rotation, rotation_spread and spin_spread",
            "s", kTimeRange});
     visit("cell", FieldSpan{look.cell_first, look.cell_last},
@@ -135,7 +135,7 @@ void fields(FieldVisitor& visit, ScenePlay& play) {
     visit("loop", play.loop, {"Loop the clip"});
     visit("bounds_scale", play.bounds_scale,
           {"Scale of the clips' bounding box, to make room for poses set by a program", {}, {1.0, 100.0}});
-    visit("resolution", play.resolution, {"Texels of its maps along the longest side", {}, {16.0, 4096.0}});
+    visit("resolution", play.resolution, {"Texels along the longest side of the maps", {}, {16.0, 4096.0}});
 }
 
 void fields(FieldVisitor& visit, SceneMaterialColor& material) {
@@ -171,8 +171,8 @@ void fields(FieldVisitor& visit, SceneCollider& c) {
     visit("friction", FieldMaybe{c.friction, c.posed},
           leftOut({"Multiplies the particles' 1 − friction by 1 − this value", {}, {0.0, 1.0}}));
     visit("color", c.color,
-          leftOut({"Colour in pictures of a mesh without colours; pictures of maps use the first collider's "
-                   "for all",
+          leftOut({"Colour in pictures if the mesh has none; all maps are drawn in the first collider's "
+                   "colour",
                    "[r, g, b]",
                    {0.0, 1.0},
                    "clay"}));
@@ -204,12 +204,11 @@ void fields(FieldVisitor& visit, SceneEmitter& e) {
     EmitterAim none;
     EmitterAim& aim = e.aim ? *e.aim : visit.fills() ? e.aim.emplace() : none;
     const EmitterSpeed speed{aim};
-    visit(
-        "shape", e.shape,
-        {.help =
-             "Region of births: sphere is the volume, shell its surface, surface that of a collider or mesh",
-         .fallback = "\"point\" or \"points\" if that key is set, otherwise \"box\"",
-         .rules = {.selects = true}});
+    visit("shape", e.shape,
+          {.help = "Region of births; sphere: a solid ball, shell: its surface, surface: that of a collider "
+                   "or mesh",
+           .fallback = "\"point\" or \"points\" if that key is set, otherwise \"box\"",
+           .rules = {.selects = true}});
     visit("box_min", FieldMaybe{e.box_min, e.has_box},
           {"Lower corner",
            "[x, y, z]",
@@ -247,7 +246,7 @@ void fields(FieldVisitor& visit, SceneEmitter& e) {
                  .rules = {.only = "surface"}}));
     visit("material", e.material, leftOut({"Material that emits", {}, {}, "all", {.only = "surface"}}));
     visit("touching", e.touching,
-          leftOut({.help = "Births only where the surface touches another one",
+          leftOut({.help = "Births only where the surface touches another surface",
                    .fallback = "everywhere",
                    .rules = {.only = "surface"}}));
     visit("start", e.start, {"Time at which births begin", "s", kTimeRange});
@@ -347,7 +346,8 @@ void fields(FieldVisitor& visit, SceneCollision& c) {
         {.help =
              "Largest distance between two collision tests within a step; 0: tests only the end of the step",
          .range = kLengthRange,
-         .fallback = "half the thickness of the thinnest collider if steps are longer, otherwise 0"});
+         .fallback =
+             "half the thickness of the thinnest collider if that is thinner than a step, otherwise 0"});
 }
 
 void fields(FieldVisitor& visit, SceneStream& stream) {
@@ -422,15 +422,15 @@ void fields(FieldVisitor& visit, SceneRender& r) {
                    .range = {1.0, 4096.0},
                    .rules = {.needs = "atlas"}}));
     visit("mesh", FieldFile{r.mesh, r.mesh_origin},
-          leftOut({.help = "OBJ or PLY file to draw instead of the maps, which still cast the shadows: the "
-                           "collider's source mesh",
+          leftOut({.help = "The collider's source mesh, OBJ or PLY, to draw instead of the maps; the maps "
+                           "still cast the shadows",
                    .fallback = "none: the maps are drawn"}));
     visit("meshes", FieldFile{r.meshes, r.meshes_origin},
           leftOut({.help = "Folder of PLY and OBJ meshes to draw (see Meshes and weather)",
                    .fallback = "none: the maps are drawn",
                    .rules = {.instead_of = "mesh"}}));
     visit("fog_distance", r.fog_distance,
-          {.help = "Distance at which fog hides 63 %, in the background colour; 0: no fog",
+          {.help = "Distance at which fog, in the background colour, is 63 % opaque; 0: no fog",
            .range = kLengthRange,
            .rules = {.needs = "meshes"}});
     visit("units_per_meter", r.units_per_meter,
@@ -453,20 +453,17 @@ void fields(FieldVisitor& visit, SceneRender& r) {
 void fields(FieldVisitor& visit, SceneType& type) {
     visit("name", type.name, leftOut({"Unique name, for emitter.type and spawn", {}, {}, "none"}));
     fields(visit, static_cast<ParticleType&>(type));
-    visit(
-        "collides_with", CollidesList{type.collides_with},
-        {.help =
-             "Colliders that it collides with, by index from 0 (7: all from 7 on), and \"ground\", as in [0, "
-             "\"ground\"]",
-         .fallback = "everything"});
+    visit("collides_with", CollidesList{type.collides_with},
+          {.help = "Indices from 0 of the colliders to collide with (7 means 7 and above), and \"ground\", "
+                   "as in [0, \"ground\"]",
+           .fallback = "everything"});
     fields(visit, type.look);
 }
 
 void fields(FieldVisitor& visit, Scene& scene) {
     visit("world", FieldFile{scene.world, scene.world_origin},
-          leftOut(
-              {.help = "World (world.json) whose bodies particles collide with, in addition to the colliders",
-               .fallback = "none; a collider is then required"}));
+          leftOut({.help = "World (world.json) whose bodies are added to the colliders",
+                   .fallback = "none; a collider is then required"}));
     visit("collider", scene.colliders,
           {"Colliders", {}, {}, {}, {.most = WorldTextures::kBodiesMax, .single = true}});
     visit("material", scene.materials,

@@ -31,10 +31,10 @@ struct LiveMesh {
 /// An animated mesh, and the clip that a collider plays.
 struct PlayedMesh {
     std::shared_ptr<const AnimatedMesh> mesh;
-    std::optional<std::size_t> clip;  ///< of the mesh; nullopt: it has no clips and rests
+    std::optional<std::size_t> clip;  ///< nullopt: the mesh has no clips and rests
     bool cyclic = false;              ///< isCyclic()
     ScenePlay play;
-    glm::vec3 box_size{0.0F};  ///< sides of the box of its maps, object units
+    glm::vec3 box_size{0.0F};  ///< size of the box that the maps cover, object units
     Collider frames;           ///< bounds of all clips in object space, and three maps without texels
 
     /// Returns the pose at a time of the scene, seconds.
@@ -43,7 +43,7 @@ struct PlayedMesh {
     [[nodiscard]] double run(double time) const;
 };
 
-/// Applies the clip, start and speed of `from`. Errors: those of loadPlayedMesh(); nothing changes then.
+/// Applies the clip, start and speed of `from`. Errors: those of loadPlayedMesh(); `played` is then unchanged.
 [[nodiscard]] Result<void> changeClip(PlayedMesh& played, const SceneCollider& from);
 
 /// Finds the clip, and chooses maps that cover all clips of the mesh.

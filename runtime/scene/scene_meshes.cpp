@@ -118,7 +118,7 @@ PictureMesh floorMesh(const LoadedScene& loaded) {
     return mesh;
 }
 
-/// Returns the mesh with the colours of its materials; the rest has the colour of its collider.
+/// Returns the mesh with the colours of its materials; other triangles have the colour of the collider.
 Result<PictureMesh> animatedMesh(const PlayedMesh& played, const SceneCollider& collider) {
     PictureMesh mesh;
     mesh.positions = posed(*played.mesh, played.poseAt(0.0));
@@ -129,8 +129,8 @@ Result<PictureMesh> animatedMesh(const PlayedMesh& played, const SceneCollider& 
         mesh.colors.assign(mesh.positions.size(), vertexColor(collider.color.value_or(MeshStyle().clay)));
     }
     for (const SceneMaterialColor& material : collider.materials) {
-        const std::vector<glm::uvec3> its = RELIEF_TRY(materialTriangles(*played.mesh, material.name));
-        for (const glm::uvec3& triangle : its) {
+        const std::vector<glm::uvec3> triangles = RELIEF_TRY(materialTriangles(*played.mesh, material.name));
+        for (const glm::uvec3& triangle : triangles) {
             for (int i = 0; i < 3; ++i) {
                 mesh.colors[triangle[i]] = vertexColor(material.color);
             }
@@ -166,7 +166,7 @@ Result<DrawnMeshes> loadDrawnMeshes(const LoadedScene& loaded) {
     const std::vector<fs::path> files = RELIEF_TRY(fileOfEach(loaded));
     DrawnMeshes out;
     std::map<std::pair<fs::path, std::vector<float>>, std::uint32_t> known;  // by file and colour
-    // A mesh of a world that was cut into tiles is several colliders with the same pose.
+    // A world mesh that was cut into tiles appears as several colliders with the same pose.
     std::map<std::tuple<std::string, std::uint32_t>, std::vector<Pose>> drawn;
     for (std::size_t i = 0; i < scene.colliders.size(); ++i) {
         const SceneCollider& collider = scene.colliders[i];
@@ -233,9 +233,9 @@ MeshStyle meshStyle(const Scene& scene, double seconds) {
         std::find_if(keys.begin(), keys.end(), [&](const SceneWeather& key) { return key.time > seconds; });
     const SceneWeather& from = after == keys.begin() ? *after : *(after - 1);
     const SceneWeather& to = after == keys.end() ? keys.back() : *after;
-    const double share =
+    const double fraction =
         to.time > from.time ? std::clamp((seconds - from.time) / (to.time - from.time), 0.0, 1.0) : 0.0;
-    const auto between = [&](float a, float b) { return a + static_cast<float>(share) * (b - a); };
+    const auto between = [&](float a, float b) { return a + static_cast<float>(fraction) * (b - a); };
     style.sun = between(from.sun, to.sun);
     style.wet = between(from.wet, to.wet);
     style.snow = between(from.snow, to.snow);

@@ -17,10 +17,10 @@ namespace relief {
 /// The source of vertices: a file, the clip of the collider, or its waves.
 enum class MeshMotion : std::uint8_t { kNone, kPlayed, kLive };
 
-/// An instance of a mesh. A mesh of a world that was cut into several colliders is drawn once.
+/// An instance of a mesh. A world mesh that was cut into several colliders is drawn once.
 struct SceneMesh {
     std::uint32_t mesh = 0;    ///< index in DrawnMeshes::meshes
-    std::size_t collider = 0;  ///< collider of the scene, whose pose it has
+    std::size_t collider = 0;  ///< index of the scene's collider whose pose it uses
     MeshMotion motion = MeshMotion::kNone;
 };
 
@@ -45,7 +45,7 @@ struct DrawnMeshes {
 /// Reads the drawn files. Errors: those of drawnFiles() and loadPictureMesh().
 [[nodiscard]] Result<DrawnMeshes> loadDrawnMeshes(const LoadedScene& loaded);
 
-/// Returns the instances at a time in seconds. Animated ones leave footprints in snow.
+/// Returns the instances at a time in seconds. Animated instances leave footprints in snow.
 [[nodiscard]] std::vector<MeshPlace> meshPlaces(const LoadedScene& loaded, const DrawnMeshes& meshes,
                                                 double seconds);
 

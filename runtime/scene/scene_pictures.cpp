@@ -91,7 +91,7 @@ ColliderView colliderView(const LoadedScene& loaded, const WorldTextures& textur
     for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
         texel = std::min(texel, loaded.scene.colliders[i].pose.scale * finestTexel(*loaded.colliders[i]));
     }
-    // Coarse colliders have 1/16 of the bytes, so full ones have about 1/4 of the texel size.
+    // Coarse colliders have 1/16 of the bytes, so full colliders have about 1/4 of the texel size.
     return {&textures, loaded.bounds, loaded.scene.stream ? 0.25F * texel : texel};
 }
 

@@ -12,8 +12,8 @@ namespace {
 
 const Json kNumber = {{"type", "number"}};
 
-Json listOf(const Json& items, std::size_t least, std::size_t most) {
-    return {{"type", "array"}, {"items", items}, {"minItems", least}, {"maxItems", most}};
+Json listOf(const Json& items, std::size_t min_items, std::size_t max_items) {
+    return {{"type", "array"}, {"items", items}, {"minItems", min_items}, {"maxItems", max_items}};
 }
 
 CustomSchemas customSchemas() {
@@ -30,7 +30,7 @@ CustomSchemas customSchemas() {
           {"ground"}}}};
 }
 
-/// Returns JSON with a line for each member of values that are longer than a line.
+/// Returns JSON text. A value that is too long for one line has one line per member.
 std::string tableText(const Json& json, std::size_t indent = 0) {
     constexpr std::size_t kColumns = 200;
     if (!json.is_structured()) {

@@ -11,8 +11,8 @@ namespace relief {
 namespace {
 
 constexpr double kMegabyte = 1e6;
-/// Maximum number of remote requests in flight: the connections per server of a browser.
-constexpr std::size_t kFromAfar = 6;
+/// Maximum number of remote requests in flight: browsers allow six connections per server.
+constexpr std::size_t kRemoteRequestsMax = 6;
 
 /// Returns a ball around all birth positions, in the space of the emitter.
 PointOfInterest ballOf(const EmitterSettings& emitter) {
@@ -44,7 +44,7 @@ Result<std::unique_ptr<WorldStream>> makeStream(const LoadedScene& loaded,
     const Scene& scene = loaded.scene;
     StreamOptions options{.gpu_bytes = static_cast<std::uint64_t>(kMegabyte * double{scene.stream->memory})};
     if (source) {
-        options.under_way = kFromAfar;
+        options.under_way = kRemoteRequestsMax;
     } else {
         source = RELIEF_TRY(makeFileSource(loaded.world, scene.world.parent_path(), loaded.limits));
     }

@@ -23,9 +23,9 @@ namespace {
 
 constexpr int kGrid = 8;                   // sample points along each side of the box
 constexpr std::size_t kSamplesMin = 16;    // minimum number of samples for an estimate
-constexpr float kThicknessMin = 0x1p-14F;  // thicknesses tested, in longest sides
+constexpr float kThicknessMin = 0x1p-14F;  // tested thicknesses, as fractions of the longest side
 constexpr float kThicknessMax = 2.0F;
-constexpr float kThicknessFactor = 1.2F;        // factor between tested depths
+constexpr float kThicknessFactor = 1.2F;        // factor between tested thicknesses
 constexpr int kHalvings = 5;                    // bisections of the last interval
 constexpr std::uint64_t kBirthsSampled = 1000;  // sampled births per emitter
 
@@ -35,7 +35,7 @@ std::string number(double value) {
     return text;
 }
 
-/// Returns the thickness inwards from a point of the surface, at most 1/160 too small; nullopt next to an edge.
+/// Returns the thickness inwards from a point of the surface, underestimated by at most 1/160; nullopt next to an edge.
 std::optional<float> thicknessAt(const Collider& collider, const SurfaceSample& place, float longest) {
     const auto inside = [&](float depth) {
         return evaluate(collider, place.point - depth * place.normal).inside();
@@ -121,7 +121,7 @@ struct SceneSweep::Thin {
     float step = 0.0F;
 };
 
-/// Returns the warning; the thinnest collider determines the cure. \param sweeps  whether collision.sweep is a cure.
+/// Returns the warning, which suggests values for the thinnest collider. \param sweeps  whether to suggest collision.sweep.
 std::string SceneSweep::thinWarning(std::span<const Thin> all, bool sweeps) {
     const Thin& worst = *std::min_element(all.begin(), all.end(),
                                           [](const Thin& a, const Thin& b) { return a.thick < b.thick; });

@@ -17,7 +17,7 @@ namespace relief {
 
 /// Computes the sweep from the longest step and the fastest birth so far: half the thickness of the thinnest collider
 /// that such a step could pass through; 0 if there is no such collider. The sweep is longer if a step would otherwise
-/// need more pieces than a sweep can have. Ignores deforming colliders.
+/// need more than StepPass::kSweepPieces pieces. Ignores deforming colliders.
 class SceneSweep {
   public:
     SceneSweep() = default;
@@ -51,12 +51,12 @@ class SceneSweep {
     [[nodiscard]] static std::string thinWarning(std::span<const Thin> all, bool sweeps);
 
     Bounds bounds_;
-    std::vector<Birth> births_;  // the first ones of the emitters
+    std::vector<Birth> births_;  // the first births of the emitters
     std::vector<Body> bodies_;
-    std::vector<std::map<float, float>> groups_;  // per group: particle radius to the highest speed
+    std::vector<std::map<float, float>> groups_;  // per group: highest speed by particle radius
     float longest_ = 0.0F;                        // longest step, seconds
-    float half_ = 0.0F;    // half of the thinnest collider; 0: all are thicker than a step
-    float speed_ = 0.0F;   // highest speed at that collider
+    float half_ = 0.0F;    // half the thickness of the thinnest collider; 0: all are thicker than a step
+    float speed_ = 0.0F;   // highest speed at colliders thinner than a step
     bool fitted_ = false;  // half_ and speed_ are up to date
     bool warned_ = false;
 };

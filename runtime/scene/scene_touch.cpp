@@ -18,7 +18,7 @@ Bounds grown(const Bounds& box, float room) {
     return {box.min - room, box.max + room};
 }
 
-/// Returns the collider that names the node of a tile; otherwise the collider itself.
+/// Returns the collider that names the node of a tile; for other colliders, the collider itself.
 std::size_t wholeOf(const Scene& scene, std::size_t collider) {
     return scene.colliders[collider].tile_of.value_or(collider);
 }

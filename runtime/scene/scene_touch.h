@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Limits births to places where a surface touches another one: emitter.touching.
+// Limits births to places where one surface touches another: emitter.touching.
 #pragma once
 
 #include <cstddef>
@@ -16,13 +16,13 @@
 
 namespace relief {
 
-/// A BirthFilter. A place touches the nearest surface of all colliders, or the ground if that is nearer; the first of
-/// equally near ones. The emitter's own collider and deforming colliders are ignored. Runs on the CPU with the same
-/// containers on every machine; a streamed world uses its coarse ones.
+/// A BirthFilter. A birth can touch only the nearest surface: a collider, or the ground if it is nearer. Ties go to the
+/// first collider. Ignores the emitter's own collider and deforming colliders. Runs on the CPU with the same containers
+/// on every machine; streamed worlds use their coarse containers.
 class TouchFilter {
   public:
-    /// \param loaded   provides the poses at the time of each birth. It must outlive this; poses may only change by
-    /// keys.
+    /// \param loaded   provides the poses at the time of each birth; must outlive the filter. Poses may change only by
+    ///                 keys.
     /// \param emitter  of that scene, with `touching`.
     TouchFilter(const LoadedScene& loaded, const SceneEmitter& emitter);
 

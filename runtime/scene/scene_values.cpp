@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values of a scene with their own formats.
+// Scene values with custom formats.
 #include <algorithm>
 #include <array>
 #include <string>

@@ -48,7 +48,7 @@ Result<std::vector<std::size_t>> bodiesNamed(const Scene& scene, const World& wo
     return bodies;
 }
 
-/// Places a collider at a body. \param to  keeps its keys, and the parts of its pose that are set.
+/// Places a collider at a body. \param to  keeps its keys, and the values of its pose that are set.
 void place(SceneCollider& to, const WorldBody& body, const Scene& scene, const World& world) {
     to.path = containerOf(scene, world.colliders[body.collider]);
     to.origin = scene.world_origin;

@@ -116,7 +116,7 @@ EMSCRIPTEN_KEEPALIVE int relief_collider_texels(const relief_collider* collider,
     });
 }
 
-/// Writes the raw texels of a map of patches: two 32-bit words each, low and high.
+/// Writes the raw texels of a patch map: two 32-bit words each, low and high.
 EMSCRIPTEN_KEEPALIVE int relief_collider_tree(const relief_collider* collider, int map, std::uint32_t* out) {
     return answer(__func__, -1, [&](const Call& call) -> Result<int> {
         const Collider& of = *RELIEF_TRY(call.object(collider, "collider"));
@@ -132,7 +132,7 @@ EMSCRIPTEN_KEEPALIVE int relief_collider_tree(const relief_collider* collider, i
 /// \param path     path of the file in the emscripten file system, ending in .toml; otherwise the name of the object in
 ///                 messages.
 /// \param shaded   1: the collider shades particles.
-/// \param fetches  1: the page passes the colliders of a streamed world by relief_player_give().
+/// \param fetches  1: the page fetches the colliders of a streamed world and passes them to relief_player_give().
 EMSCRIPTEN_KEEPALIVE Player* relief_player_create(const char* text, const char* path, int shaded,
                                                   int fetches) {
     return inPass<Player*>(__func__, nullptr,
@@ -143,7 +143,7 @@ EMSCRIPTEN_KEEPALIVE void relief_player_free(Player* player) {
     delete player;
 }
 
-/// Records the new hits of each step, from the next one on, for relief_player_next_hits(). Returns 0, or -1 on failure.
+/// Records the new hits of each step, starting with the next, for relief_player_next_hits(). Returns 0, or -1 on failure.
 /// \param min_speed  minimum approach speed of recorded hits.
 EMSCRIPTEN_KEEPALIVE int relief_player_list_hits(Player* player, float min_speed) {
     return inPass(__func__, -1, [&]() -> Result<int> {
@@ -238,7 +238,7 @@ EMSCRIPTEN_KEEPALIVE int relief_player_refuse(Player* player, int collider, cons
     });
 }
 
-/// Uploads all wanted colliders that have arrived. Returns the number of pending fetches, or -1 on failure.
+/// Uploads all requested colliders that have arrived. Returns the number of pending fetches, or -1 on failure.
 EMSCRIPTEN_KEEPALIVE int relief_player_load(Player* player) {
     return inPass(__func__, -1, [&]() -> Result<int> {
         RELIEF_TRY(player->simulation->load());

@@ -27,7 +27,7 @@ function recordOf(gl) {
     return known;
 }
 
-/** Makes a context current and returns its number of losses. Throws if the context cannot hold particles. */
+/** Makes a context current and returns its number of losses. Throws if the context does not support particles. */
 export function use(gl) {
     instance();
     const known = recordOf(gl);
@@ -46,10 +46,10 @@ export function use(gl) {
     return known.losses;
 }
 
-/** Like use(), but also throws if the context was lost since it had `losses` losses. */
-export function useUnlessLost(gl, losses, cure) {
+/** Like use(), but also throws if the number of losses is no longer `losses`. fix: advice for the message. */
+export function useUnlessLost(gl, losses, fix) {
     if (use(gl) !== losses) {
-        throw new ReliefError(`the WebGL context was lost meanwhile; ${cure}`);
+        throw new ReliefError(`the WebGL context was lost meanwhile; ${fix}`);
     }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fetches files for relief.js: colliders, and the containers that a world names. Independent of the WebAssembly.
+// Fetches files for relief.js: colliders, and the containers that a world names. Independent of the WebAssembly module.
 
 export class ReliefError extends Error {
     constructor(message) {
@@ -24,7 +24,7 @@ export async function bytesOf(source, signal) {
         return new Uint8Array(await new Response(source).arrayBuffer());
     }
     if (typeof source !== "string" && ![URL, Request, Response].some((kind) => source instanceof kind)) {
-        throw new ReliefError("load() takes a URL, a Response, a Blob, an ArrayBuffer or a Uint8Array");
+        throw new ReliefError("load() needs a URL, a Response, a Blob, an ArrayBuffer or a Uint8Array");
     }
     const response = await responseOf(source, signal);
     const name = response.url || source;
@@ -66,7 +66,7 @@ export async function worldFiles(source, coarse) {
 export class Fetches {
     #load;
     #stop = new AbortController();
-    #coming = new Set();
+    #running = new Set();
 
     /** @param load  load(file, signal) returns the bytes of a file. */
     constructor(load) {
@@ -75,12 +75,12 @@ export class Fetches {
 
     /** Starts a fetch, which ends with done(bytes, null) or done(null, reason); neither is called after stop(). */
     start(file, done) {
-        const fetched = this.#bring(file, this.#stop.signal, done);
-        this.#coming.add(fetched);
-        fetched.then(() => this.#coming.delete(fetched));
+        const fetched = this.#run(file, this.#stop.signal, done);
+        this.#running.add(fetched);
+        fetched.then(() => this.#running.delete(fetched));
     }
 
-    async #bring(file, signal, done) {
+    async #run(file, signal, done) {
         let bytes = null;
         let reason = null;
         try {
@@ -98,7 +98,7 @@ export class Fetches {
 
     /** Resolves when any fetch has ended. */
     next() {
-        return Promise.race(this.#coming);
+        return Promise.race(this.#running);
     }
 
     stop() {

@@ -4,7 +4,7 @@
 
     package.py SOURCE PACKAGE VERSION
 
-README.md: links to the scene keys point to SCENE.md, which is included; other links out of it become plain text.
+README.md: links to the scene keys point to SCENE.md, which is included; links to files outside the package become plain text.
 package.json: gets the version.
 relief.d.ts: gets the scene types, generated from the JSON Schema of scenes.
 """
@@ -20,7 +20,7 @@ TYPES = re.compile(r"^// Scene, with the keys of scene\.toml: package\.py .*\n",
 def typescript(schema, name, interfaces):
     """Returns the TypeScript type of a JSON Schema. Adds objects to `interfaces`, under `name`.
 
-    A $ref is the items of a list, which are described by the table before it: under the same name."""
+    A $ref in the items of a list refers to the table before it, which has the same name."""
     if "$ref" in schema:
         return name
     if "oneOf" in schema:

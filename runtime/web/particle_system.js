@@ -125,7 +125,7 @@ export class ParticleSystem {
         }
     }
 
-    /** Throws if the world lacks coarse containers, like one from loadWorld(). */
+    /** Throws if the world lacks coarse containers, as a world from loadWorld() does. */
     #checkCoarse({ colliders, files }) {
         const missing = colliders.find(({ coarse }) => coarse && !(coarse.file in files));
         if (missing) {
@@ -195,7 +195,7 @@ export class ParticleSystem {
         }
     }
 
-    /** Passes on the hits that have arrived. The callback may dispose of the system. */
+    /** Passes new hits to the callback, which may dispose of the system. */
     #passHits() {
         const head = new Float64Array(4);
         while (this.#handle && this.#onHits && call("relief_player_next_hits", this.#handle, head)) {
@@ -206,7 +206,7 @@ export class ParticleSystem {
         }
     }
 
-    /** Passes on warnings about colliders that failed to load. */
+    /** Passes warnings about colliders that failed to load to the callback. */
     #passWarnings() {
         for (const line of JSON.parse(textAt(call("relief_player_warnings", this.#handle)))) {
             this.#onWarning(line);

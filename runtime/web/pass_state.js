@@ -2,7 +2,7 @@
 // PassState for browsers: wraps the WebGL2 context for the WebAssembly and restores the state of the page after each
 // pass.
 //
-// Some state (bindings, switches) can be queried at once. Other state needs a round trip to the GPU process of the
+// Some state (bindings, switches) can be queried immediately. Other state needs a round trip to the GPU process of the
 // browser, which takes as long as a whole step. kPieces lists the slow state: it is queried only when a pass first sets
 // it. From then on its value is known, because passes set it only through this object.
 const kPack = ["PACK_ALIGNMENT", "PACK_ROW_LENGTH", "PACK_SKIP_ROWS", "PACK_SKIP_PIXELS"];
@@ -60,7 +60,7 @@ export function withPassState(gl) {
         }
         write(piece, values);
     };
-    // Values that a pass requires; set (and queried) only if they matter.
+    // Sets a value that a pass requires, unless the pass has already set that state.
     const need = (piece, values) => known[piece] ?? set(piece, values);
     const needPack = () => need("pack", [1, 0, 0, 0]);
     const needDepth = (matters) => matters && need("depthMask", [true]);
@@ -161,7 +161,7 @@ export function withPassState(gl) {
 
     own.restorePassState = () => {
         const { kept, undo } = levels.pop();
-        // Before the bindings, because binding a uniform block also binds a buffer.
+        // Restored before the bindings, because binding a uniform block also binds a buffer.
         Object.entries(kept).forEach(([piece, values]) => write(piece, known[piece] = values));
         undo.forEach((put) => put());
     };

@@ -79,7 +79,7 @@ void add(To& to, const std::string& key, const Json& value) {
     } else if (value.is_number()) {
         put(value.get<double>());
     } else if (!kTable) {
-        put(std::string("null"));  // no key accepts it, so the error message names the place
+        put(std::string("null"));  // keys reject this text, and the error message names its position
     }
 }
 
@@ -97,14 +97,14 @@ Result<Scene> readScene(std::string_view text, const std::filesystem::path& path
     return scene;
 }
 
-/// Returns whether neither plays a clip, or both play one with maps of the same size.
+/// Returns whether neither collider plays a clip, or both play clips with maps of the same size.
 bool sameMaps(const SceneCollider& a, const SceneCollider& b) {
     return a.play.has_value() == b.play.has_value() &&
            (!a.play ||
             (a.play->resolution == b.play->resolution && a.play->bounds_scale == b.play->bounds_scale));
 }
 
-/// Applies the wanted poses and clips; fails if anything else of a collider changes.
+/// Applies the wanted poses and clips; fails if any other value of a collider changes.
 Result<void> applyPoses(std::vector<SceneCollider>& now, const std::vector<SceneCollider>& wanted) {
     for (std::size_t i = 0; i < now.size(); ++i) {
         SceneCollider& body = now[i];

@@ -5,7 +5,7 @@
 // x, y, z of the first point, then of the second. Functions throw ReliefError on failure. Call dispose() on colliders,
 // worlds, systems and GpuColliders to free their memory.
 
-/** The error type of this package. The message is one line that names the fault and, in most cases, the cure. */
+/** The error type of this package. The message is one line that names the error and, in most cases, the fix. */
 export class ReliefError extends Error {
     constructor(message: string);
 }
@@ -124,7 +124,7 @@ export class Collider {
      */
     texels(map: number): Float32Array;
     /**
-     * Returns the tree of a map of patches: two words per texel, low and high. See "Patches" in the format
+     * Returns the tree of a patch map: two words per texel, low and high. See "Patches" in the format
      * specification.
      */
     tree(map: number): Uint32Array;
@@ -159,8 +159,8 @@ export class World {
     /**
      * @param files  world.json and the containers, keyed by their names in world.json; kept by reference. Await init()
      * first.
-     * @param stream  for a streamed world; `files` then holds the coarse containers, and the full ones of colliders
-     * without
+     * @param stream  for a streamed world; `files` then contains the coarse container of each collider that has one,
+     * and the full containers of the others
      */
     constructor(files: Record<string, Collider | Uint8Array | string>, stream?: WorldSource);
     readonly files: Record<string, Collider | Uint8Array | string>;
@@ -181,7 +181,7 @@ export class World {
     dispose(): void;
 }
 
-/** A collider as textures, for your own shaders in that context. Create a new one after the context was lost. */
+/** A collider as textures, for your own shaders in its context. Create a new one after the context was lost. */
 export class GpuCollider {
     constructor(gl: WebGL2RenderingContext, collider: Collider);
     readonly collider: Collider;
@@ -302,7 +302,7 @@ export interface SystemInfo {
      */
     stream: { requested: number; loaded: number; failed: number; gpu_bytes: number } | null;
     /**
-     * The colliders of the scene; `matrix`: object space to world space, column-major. `file` of a deforming one is its
+     * The colliders of the scene; `matrix`: object space to world space, column-major. For a deforming collider, `file` is its
      * mesh.
      */
     bodies: { file: string; node: string; deforms: boolean; moves: boolean; matrix: number[] }[];
@@ -335,7 +335,7 @@ export class ParticleSystem {
     /**
      * Draws the meshes of the scene's `render.meshes` (from the option `files`) with their colours and
      * `render.weather`, like the pictures of relief-sim. Call it before draw(). Overwrites the colour and depth of the
-     * target, and draws the sky as background. Footprints are added since the last call. Characters are drawn in the
+     * target, and draws the sky as background. Adds the footprints made since the last call. Characters are drawn in the
      * poses of their clips.
      */
     drawMeshes(options: DrawOptions): void;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Browser implementations of functions that other files define on desktops: capabilities of a WebGL2 context, state
-// around a pass, read-back, zstd by the decoder of the page, and loading files of a world without a thread. The
+// around a pass, read-back, zstd with the page's decoder, and loading files of a world without a thread. The
 // functions of OpenGL ES 3.1 are stubs that are never called, because hasCompute() returns false.
 #include <cstdlib>
 #include <deque>
@@ -91,7 +91,7 @@ Result<std::vector<std::byte>> decompress(std::span<const std::byte> stored, std
 
 namespace {
 
-/// Reads files in memory when their colliders are taken.
+/// Reads containers from the in-memory file system when take() is called.
 class MemorySource : public ColliderSource {
   public:
     MemorySource(World world, std::filesystem::path folder, const ContainerLimits& limits)
@@ -124,7 +124,7 @@ Result<std::unique_ptr<ColliderSource>> makeFileSource(World world, std::filesys
     return std::make_unique<MemorySource>(std::move(world), std::move(folder), limits);
 }
 
-// Browsers have their own GPU watchdog, so no Watchdog exists.
+// Browsers have their own GPU watchdog, so Watchdog does nothing.
 void Watchdog::feed(const std::string&) {}
 void Watchdog::rest() {}
 

@@ -36,7 +36,7 @@ export function instance() {
     return wasm;
 }
 
-/** Reads a string of the WebAssembly memory, without the folder of scene files. */
+/** Reads a string from WebAssembly memory, and removes the folder of scene files from it. */
 export const textAt = (at) => wasm.UTF8ToString(at).replaceAll(/\/scene\d+\//g, "");
 
 function lastError() {

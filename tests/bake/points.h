@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random points in a box, equal on every compiler.
+// Random points in a box, the same for every compiler.
 #pragma once
 
 #include <vector>
@@ -14,8 +14,8 @@ namespace relief::test {
     MersenneRandom random(7);
     std::vector<glm::vec3> points;
     for (int i = 0; i < count; ++i) {
-        const glm::dvec3 share{random.uniform(), random.uniform(), random.uniform()};
-        points.emplace_back(glm::dvec3(bounds.center()) + 1.2 * glm::dvec3(bounds.size()) * (share - 0.5));
+        const glm::dvec3 fraction{random.uniform(), random.uniform(), random.uniform()};
+        points.emplace_back(glm::dvec3(bounds.center()) + 1.2 * glm::dvec3(bounds.size()) * (fraction - 0.5));
     }
     return points;
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Expensive meshes: slivers, layered walls, and parts far apart. Each bake must end within tight limits of memory and time, with
-a result or with one line that names the file and only options that were given. For containers, see tests/cli/appetite.sh."""
+a result or a one-line error, which names the file and only options that were given. For containers, see tests/cli/appetite.sh."""
 
 import math
 

@@ -50,9 +50,9 @@ class Cases:
                 yield self.case, pathlib.Path(folder)
 
     def run(self, *command, seconds=60, memory=4 << 30, **keywords):
-        """Runs a tool of BIN, named command[0]. The case fails on a hang, a signal, an undocumented exit code, use of more than
-        `memory` bytes, or an error without a message of one to three lines. Returns the subprocess.CompletedProcess, or None after
-        a hang."""
+        """Runs a tool of BIN, named command[0]. Fails the case on a hang, a signal, an undocumented exit code, or an error
+        without a message. Limits the address space to `memory` bytes. Returns the subprocess.CompletedProcess, or None after a
+        hang."""
         command = [str(self.bin / command[0]), *map(str, command[1:])]
 
         def limit():

@@ -28,7 +28,7 @@ PR_SET_CHILD_SUBREAPER = 36
 
 
 def glb(text, rest):
-    """The chunks of a binary glTF: the JSON text, and everything after it."""
+    """Returns a binary glTF with this JSON text; `rest` follows the JSON chunk."""
     text += b' ' * (-len(text) % 4)
     return struct.pack('<4sIIII', b'glTF', 2, 20 + len(text) + len(rest), len(text), 0x4E4F534A) + text + rest
 
@@ -115,7 +115,7 @@ def nest(data, r):
 
 
 def mutate_json(text, r):
-    """A changed document with valid syntax."""
+    """Changes values of the document; the syntax stays valid."""
     document = json.loads(text)
     for _ in range(r.choice([1, 1, 2, 4])):
         places = []  # pairs of a container and a key
@@ -183,7 +183,7 @@ def write_mutant(folder, number, r):
 
 
 def orphans():
-    """Kills processes that outlive a bake."""
+    """Kills processes that outlived a bake; returns their ids."""
     children = [int(pid) for pid in pathlib.Path(f'/proc/self/task/{os.getpid()}/children').read_text().split()]
     for pid in children:
         os.kill(pid, signal.SIGKILL)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Random scenes within the ranges of runtime/scene/README.md, including the ends. Finally all numbers of all particles are finite,
-or one line names a place in the scene or the type of a lost particle."""
+"""Random scenes within the ranges of runtime/scene/README.md, including the ends. After each run, all values of all particles are
+finite, or a one-line error names a place in the scene or the type of a lost particle."""
 
 import collections
 import math
@@ -15,7 +15,8 @@ import ply  # noqa: E402
 
 BUNNY = '/usr/share/glmark2/models/bunny.obj'
 
-# Key, minimum, maximum: a number, or with * a vector of three. A minimum of 0+ excludes 0.
+# Key, minimum, maximum. * marks a vector of three numbers, ! a required key. A minimum of 0+ excludes 0; 'of' precedes a list
+# of choices.
 TABLES = {
     'forces': [('*gravity', -1e6, 1e6), ('*wind', -1e6, 1e6), ('drag', 0, 1e6)],
     'attractor': [('*position!', -1e9, 1e9), ('strength!', -1e6, 1e6), ('radius!', '0+', 1e9), ('reach', '0+', 1e9),
@@ -32,7 +33,7 @@ EMITTER = [('*velocity', -1e6, 1e6), ('*velocity_spread', 0, 1e6), ('lifetime', 
 
 
 def number(r, least, most):
-    """A usual value, one of any magnitude, or an end of the range."""
+    """Returns a typical value, a value of any magnitude, or an end of the range."""
     if least == 'of':
         return r.choice(most)
     low = 0.0 if least == '0+' else least
@@ -53,12 +54,13 @@ def text(value):
     return value if isinstance(value, str) else repr(value)
 
 
-def lines(r, keys, share):
+def lines(r, keys, probability):
+    """Returns lines for the required keys, and for each other key with this probability."""
     result = []
     for key, least, most in keys:
-        must = key.endswith('!')
+        required = key.endswith('!')
         vector = key.startswith('*')
-        if must or r.random() < share:
+        if required or r.random() < probability:
             value = [number(r, least, most) for _ in range(3)] if vector else number(r, least, most)
             value = '[%s]' % ', '.join(map(text, value)) if vector else text(value)
             result.append('%s = %s' % (key.strip('*!'), value))

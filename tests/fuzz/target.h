@@ -9,13 +9,13 @@
 #include <cstdlib>
 #include <string_view>
 
-/// Runs one arbitrary input and returns 0. Broken promises abort the process.
+/// Runs one arbitrary input and returns 0. A violated guarantee aborts the process.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
-/// Aborts if a promise is broken, also in release builds.
-inline void mustHold(bool holds, const char* promise) {
+/// Aborts if a guarantee is violated, also in release builds.
+inline void mustHold(bool holds, const char* guarantee) {
     if (!holds) {
-        std::fprintf(stderr, "broken promise: %s\n", promise);
+        std::fprintf(stderr, "violated guarantee: %s\n", guarantee);
         std::abort();
     }
 }

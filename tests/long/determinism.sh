@@ -5,7 +5,7 @@
 #
 #   (nothing)   204 bakes: ten meshes, the paper's maps and patches; threads, locale, time zone, folder, umask,
 #               GCC -O2, GCC -O0 and Clang, glibc without FMA and AVX2, and two other processors by QEMU
-#   --quick     two meshes in six cells, with only the executables in RELIEF_BIN
+#   --quick     12 bakes of two meshes, with only the executable in RELIEF_BIN
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
@@ -86,7 +86,7 @@ cell() {
     printf '%s|%s|%s|%s\n' "$(basename "$mesh")" "$kind" "$name" "$hash" >>"$work/rows"
 }
 
-# under KIND MESH: the cells that need only one executable.
+# threads KIND MESH, elsewhere KIND MESH: cells that need only one executable.
 threads() {
     local n
     for n in 1 2 3 8; do
@@ -155,7 +155,7 @@ for (mesh, kind), digests in table.items():
     text = '; '.join(digest if len(digests) == 1 else f"{digest} ({', '.join(names)})" for digest, names in digests.items())
     lines.append(f'| {mesh} | {kind} | {sum(map(len, digests.values()))} | {text} |')
 two = sum(len(digests) > 1 for digests in table.values())
-summary = f'{len(rows)} bakes of {len(table)} mesh and map choices in {len(cells)} surroundings: {two} with two hashes.'
+summary = f'{len(rows)} bakes of {len(table)} mesh and map choices in {len(cells)} environments: {two} with more than one hash.'
 print('\n'.join(lines + ['', summary]))
 P
 [ "$failed" = 0 ] || exit 7

@@ -427,7 +427,7 @@ job_slurm() {
     RELIEF=$bin/relief tests/long/slurm.sh "$work"
 }
 
-# in_bare COMMAND: runs COMMAND in $work/bare as root. Its mounts and processes end with it.
+# in_bare COMMAND: runs COMMAND in $work/bare as root. Mounts and processes end with COMMAND.
 in_bare() {
     # shellcheck disable=SC2016
     unshare --mount --pid --fork bash -c '
@@ -436,7 +436,7 @@ in_bare() {
         "$work/bare" "$1"
 }
 
-# make_bare PACKAGES: a minimal Debian 12 with PACKAGES in $work/bare.
+# make_bare PACKAGES: creates a minimal Debian 12 with PACKAGES in $work/bare.
 make_bare() {
     [ "$(id -u)" = 0 ] || {
         say "needs root to create a system; use sudo"

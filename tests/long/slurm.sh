@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Runs samples/slurm on a one-machine cluster: slurm.sh FOLDER, with the executable in RELIEF. Bakes models and a
-# level with a requeued task, a killed task, and broken meshes. A second run bakes the rest, a third nothing, and a fourth the
-# level, after a container was deleted. Needs root.
+# Runs samples/slurm on a one-machine cluster: slurm.sh FOLDER, with the executable in RELIEF. The first run bakes
+# models and a level, with a requeued task, a killed task and broken meshes. The second run bakes the rest, the third bakes
+# nothing, and the fourth bakes the level again, after a container was deleted. Needs root.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 scripts/setup.sh slurm-wlm munge sweethome3d-furniture unzip
@@ -67,7 +67,7 @@ report() { python3 -c "import json; d = json.load(open('$out/reports/report.json
 counts="[d['baked'], d['failed'], d['unfinished_tasks']]"
 submit
 sleep 20
-# A task on a node that dies, which Slurm restarts, and a task that is killed permanently.
+# Simulates a failed node, whose task Slurm restarts, and a task that is killed permanently.
 scontrol requeue "$((job - 1))_1" || true
 sleep 2
 pkill -KILL -f "shard 2/$tasks" || true

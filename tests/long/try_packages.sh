@@ -35,7 +35,6 @@ tools() {
         [ -s $file ] || die "$file was not written"
     done
     relief bake --recipe colliders.toml -j 2 >said 2>&1 || die "the second run of the recipe fails: $(tail -5 said)"
-    # The manual pages, also through man if it is installed.
     [ -s /usr/share/man/man1/relief-bake.1.gz ] || die "the manual page of relief bake is missing"
 }
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// A collider for other engines, without WebAssembly: reads a container, answers queries on the CPU, and has the collision
-// function as text for shaders. Lengths are in object units, distances positive outside.
+// A collider for other engines, without WebAssembly: reads a container, evaluates it on the CPU, and exports the collision
+// function as shader source. Lengths are in object units; distances are positive outside.
 
 /** Three numbers that a function writes: an array, or a Float32Array. */
 export type WritableVec3 = [number, number, number] | number[] | Float32Array;
 export type Vec3 = readonly [number, number, number] | readonly number[] | Float32Array;
 
 /**
- * A collider with one map of patches, the default of `relief bake`; an animated one in its rest pose, without materials.
- * Its buffers are for upload; do not change them.
+ * A collider with a single patch map, the default of `relief bake`. An animated collider is in its rest pose. Materials
+ * are ignored. The buffers are for upload; do not change them.
  */
 export interface Collider {
     /** The uniform block ReliefCollider in the layout std140: 80 bytes. `floats` and `integers` are views of it. */
@@ -23,7 +23,7 @@ export interface Collider {
     readonly words: Uint32Array;
     /** Texels: always 2048. */
     readonly width: number;
-    /** Texels: 1 to 8192. WebGPU supports 8192, WebGL2 gl.getParameter(gl.MAX_TEXTURE_SIZE). */
+    /** Texels: 1 to 8192. WebGPU guarantees 8192; WebGL2 supports gl.getParameter(gl.MAX_TEXTURE_SIZE). */
     readonly height: number;
     /** The box of the mesh. */
     readonly bounds: { readonly min: readonly number[]; readonly max: readonly number[] };
@@ -42,7 +42,7 @@ export interface OpenOptions {
 
 /**
  * Reads a `.relief` container. The result owns its memory.
- * @throws Error with one line if the bytes are damaged, or of another version, or are not one map of patches
+ * @throws Error with a one-line message if the bytes are damaged, have another version, or are not a single patch map
  */
 export function openCollider(bytes: ArrayBuffer | ArrayBufferView, options?: OpenOptions): Collider;
 
@@ -55,9 +55,9 @@ export function distance(collider: Collider, point: Vec3, normal?: WritableVec3)
 export interface CollideOptions {
     /** Radius of the particle, at least 0 (default: 0). */
     radius?: number;
-    /** Factor of the velocity along the normal, 0 to 1 (default: 0). */
+    /** Fraction of the normal velocity that is kept, 0 to 1 (default: 0). */
     restitution?: number;
-    /** Loss of the velocity along the surface, 0 to 1 (default: 0). With restitution 0: 0 slides, 1 sticks. */
+    /** Fraction of the tangential velocity that is lost, 0 to 1 (default: 0). With restitution 0: 0 slides, 1 sticks. */
     friction?: number;
     /** Is set to the normal of the surface that was hit, or to 0. */
     normal?: WritableVec3;
@@ -67,7 +67,7 @@ export interface CollideOptions {
  * Moves a particle that overlaps the collider to its surface, and reflects its velocity: reliefCollide() on the CPU.
  * @param position  after the step; changed if the particle hits
  * @param velocity  likewise
- * @returns the distance less the radius: negative if the particle hit
+ * @returns the distance minus the radius: negative if the particle hit
  */
 export function collide(collider: Collider, position: WritableVec3, velocity: WritableVec3, options?: CollideOptions): number;
 

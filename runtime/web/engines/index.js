@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The entry relief-particles/collider: a collider for other engines, without WebAssembly. index.d.ts documents it.
-// The npm package is one file of these modules with the texts of the shaders.
+// The npm package bundles these modules and the shader sources into one file.
 export { openCollider } from "./open.js";
 export { collide, distance } from "./patches.js";
 export { default as glsl } from "../../../shaders/engines/relief.glsl";

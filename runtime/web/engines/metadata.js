@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a table of FlatBuffers by the schema formats/collider.fbs, with the checks of the verifier of the C++ library.
+// Reads a FlatBuffers table with the schema formats/collider.fbs. Performs the checks of the C++ library's verifier.
 import { check } from "./bytes.js";
 
 const kTablesMax = 1_000_000;

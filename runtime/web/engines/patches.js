@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Trees of patches on the CPU: formats/patch_tree.cpp in JavaScript. Math.fround() after each operation gives the floats
-// of that file; formats/README.md specifies the arithmetic.
+// Trees of patches on the CPU: formats/patch_tree.cpp in JavaScript. Math.fround() after each operation makes results
+// bit-identical to that file; formats/README.md specifies the arithmetic.
 const f = Math.fround;
 const kLevelsMax = 15;
 const kTexelsMax = 1 << 24;
 const kSides = [2, 3, 5, 0]; // heights along a side of a patch; 0 for a pair
-const kBelowOne = 1 - 2 ** -24; // times a whole number: the last float below it
+const kBelowOne = 1 - 2 ** -24; // f(kBelowOne * n) is the largest float below the integer n
 const kFarOutside = f(1e30);
 const kNearest = 1 / 1024; // minimum distance between the surface and cells without a patch, in cells
 
@@ -86,7 +86,7 @@ export function validateTree(words) {
 const dot = (ax, ay, az, bx, by, bz) => f(f(ax * bx) + f(f(ay * by) + f(az * bz)));
 const lengthOf = (x, y, z) => f(Math.sqrt(f(f(f(x * x) + f(y * y)) + f(z * z))));
 
-// The vote of the latest call, in map space: calls need no memory.
+// The latest vote, in map space; reused, so that calls do not allocate memory.
 const vote = { distance: 0, x: 0, y: 0, z: 0 };
 
 function setVote(distance, x, y, z) {
@@ -163,7 +163,7 @@ function flatNormal(s, t) {
     return [x, y, z];
 }
 
-/** Likewise for the coarse index of a split cell; exact, and not of unit length. */
+/** Returns the decoded normal of the coarse index of a split cell; exact, but not of unit length. */
 function coarseNormal(s, t) {
     const [x, y] = [s - 63, t - 63];
     const z = 63 - Math.abs(x) - Math.abs(y);
@@ -202,8 +202,8 @@ function votePatches(words, { roots, levels }, px, py, pz) {
             votePatch(words, first, x, y, z);
             const { distance, x: nx, y: ny, z: nz } = vote;
             votePatch(words, first + 1, x, y, z);
-            const takesOther = (low & 16) !== 0 ? vote.distance > distance : vote.distance < distance;
-            if (!takesOther) {
+            const secondDecides = (low & 16) !== 0 ? vote.distance > distance : vote.distance < distance;
+            if (!secondDecides) {
                 setVote(distance, nx, ny, nz);
             }
         } else {
@@ -226,22 +226,22 @@ function votePatches(words, { roots, levels }, px, py, pz) {
 const row = (constants, at, [x, y, z]) =>
     f(f(constants[at] * x) + f(f(constants[at + 1] * y) + f(f(constants[at + 2] * z) + constants[at + 3])));
 
-/** As distance(), but extrapolates the surface up to `reach` beyond the root cells. */
+/** Like distance(), but extrapolates the surface up to `reach` beyond the root cells. */
 function near(collider, point, reach, normal) {
     const constants = collider.floats;
     const root = constants[12];
     const p = [f(point[0]), f(point[1]), f(point[2])];
     const q = [row(constants, 0, p), row(constants, 4, p), row(constants, 8, p)];
-    const held = q.map((x, i) => Math.min(Math.max(x, 0), f(kBelowOne * constants[13 + i])));
-    const within = held.every((x, i) => x === q[i]); // false for NaN
-    const to = q.map((x, i) => f(f(root * root) * f(x - held[i])));
+    const clamped = q.map((x, i) => Math.min(Math.max(x, 0), f(kBelowOne * constants[13 + i])));
+    const within = clamped.every((x, i) => x === q[i]); // false for NaN
+    const to = q.map((x, i) => f(f(root * root) * f(x - clamped[i])));
     const way = within ? [0, 0, 0]
         : [0, 1, 2].map((k) => f(f(constants[k] * to[0]) + f(f(constants[4 + k] * to[1]) + f(constants[8 + k] * to[2]))));
     if (!within && !(reach > 0 && dot(...way, ...way) < f(reach * reach))) {
         normal?.fill(0, 0, 3);
         return kFarOutside;
     }
-    votePatches(collider.words, treeSize(collider.words), ...held);
+    votePatches(collider.words, treeSize(collider.words), ...clamped);
     const left = f(vote.distance * root);
     if (left === -Infinity) { // an overflow is not inside
         normal?.fill(0, 0, 3);

@@ -35,7 +35,7 @@ function exactFrame(bytes, size) {
     return stated === size && at + (descriptor & 4) === bytes.length;
 }
 
-/** Decompresses bytes by the caller's function. what: the subject of messages. */
+/** Decompresses bytes with the caller's function. what: the subject of messages. */
 export function unpack(packed, size, decompress, what) {
     check(decompress, `${what} is compressed with zstd; pass { decompress }, or bake again with --compress 0`);
     check(exactFrame(packed, size), `${what} is not exactly one zstd frame with a content size of ${size} bytes`);

@@ -13,7 +13,7 @@ page, player, wasm, output = (pathlib.Path(one) for one in sys.argv[1:])
 text = page.read_text(encoding="utf-8")
 mark = '<script type="module">'
 if text.count(mark) != 1:
-    sys.exit(f"{page} must hold '{mark}' once")
+    sys.exit(f"{page} must contain '{mark}' once")
 packed = base64.b64encode(gzip.compress(wasm.read_bytes(), 9, mtime=0)).decode()
 text = text.replace(mark, f'<script type="text/plain" id="relief-wasm">{packed}</script>\n'
                           f'{mark}\n{player.read_text(encoding="utf-8")}</script>\n{mark}')

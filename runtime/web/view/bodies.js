@@ -3,7 +3,7 @@
 import { bindTexture, drawScreen, kScreenVertex, program } from "./gl.js";
 import { inverse, length, mix, shortNumber, sub, transform } from "./math.js";
 
-// Colours for percentages of wrong points. Their limits, 1 and 5, are those of the grades of the verdict.
+// Colours for percentages of wrong points. Their limits, 1 and 5, match the grades of the verdict.
 const kGood = [0.42, 0.62, 0.45];
 const kFair = [0.93, 0.66, 0.20];
 const kPoor = [0.85, 0.18, 0.13];

@@ -53,7 +53,7 @@ export class Body {
         return this.#programs[kind];
     }
 
-    /** Draws the surface of the maps. values: uniforms shared by all bodies. model: its place. */
+    /** Draws the surface of the maps. values: uniforms shared by all bodies. model: object space to world space. */
     draw(values, model = this.model) {
         const { gl, box, drawn } = this;
         const { maps, finest_texel: texel } = this.collider.info;

@@ -68,7 +68,7 @@ export const kSurfaceFragment = `${kColorsGlsl}${kShade}${kRayGlsl}
 uniform mat4 u_camera;
 uniform vec3 u_box_min;
 uniform vec3 u_box_max;
-uniform float u_deep;   // a deeper vote is not of a nearby surface: the box of a map ends here with a flat side
+uniform float u_deep;   // maximum depth of a nearby surface; deeper votes occur where a flat side of a map's box cuts the body
 uniform int u_map;      // map whose texels are coloured; -1: none, -2: all maps, each in its own colour
 // Returns the colour of map i at p; for patches, it depends on the cell size.
 vec3 colorOf(int i, vec3 p) {
@@ -93,7 +93,7 @@ void main() {
     float until = min(min(leaves.x, leaves.y), leaves.z);
     vec3 side = enters.x == to_box ? vec3(sign(d.x), 0.0, 0.0) : enters.y == to_box ? vec3(0.0, sign(d.y), 0.0)
         : vec3(0.0, 0.0, sign(d.z));
-    vec3 n = -(mat3(u_model) * side);  // of a body that starts at the box
+    vec3 n = -(mat3(u_model) * side);  // normal if the body starts at the box
     float before = dot(u_cut.xyz, u_eye) - u_cut.w;
     float rate = dot(u_cut.xyz, mat3(u_model) * d);
     float behind = 0.0;
@@ -127,12 +127,12 @@ void main() {
         discard;
     }
     float inwards = within ? -u_tiny : min(0.5 * (hit.ends - hit.t), 20.0 * u_tiny);
-    vec3 within_it;
+    vec3 probe;
     ReliefField field;
     bool known = false;
     for (int k = 0; k < 2 && !known; ++k) {  // deeper, in case maps end just before the surface of another map
-        within_it = origin + (hit.t + inwards) * d;
-        field = reliefSolid(within_it);
+        probe = origin + (hit.t + inwards) * d;
+        field = reliefSolid(probe);
         known = field.map >= 0 && abs(field.distance) < u_deep && (k == 0 || field.distance < 0.0);
         inwards = (within ? -0.2 : 0.2) * u_deep;
     }
@@ -155,9 +155,9 @@ void main() {
     n = normalize(n);
     vec3 base = u_base;
     if (u_map == -2) {
-        base = field.map < 0 ? base : colorOf(field.map, within_it);
+        base = field.map < 0 ? base : colorOf(field.map, probe);
     } else if (u_map >= 0) {
-        base = field.map == u_map ? colorOf(u_map, within_it) : mix(base, vec3(dot(base, vec3(0.333))), 0.7) * 0.75;
+        base = field.map == u_map ? colorOf(u_map, probe) : mix(base, vec3(dot(base, vec3(0.333))), 0.7) * 0.75;
     }
     o_color = vec4(shade(base, n), 1.0);
     // The cut surface is drawn behind the picture of the slice.

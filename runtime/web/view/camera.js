@@ -4,7 +4,7 @@ import { add, boxOf, clamp, cross, length, lookAt, multiply, normalize, perspect
 
 const kFov = 36 * Math.PI / 180;
 const kSpeed = 0.12; // flight speed, in box radii per second
-const kHurry = 5; // speed factor with Shift
+const kShiftFactor = 5; // speed factor while Shift is held
 const kArm = 0.005; // orbit distance while flying, in box radii
 
 export class Camera {
@@ -127,19 +127,19 @@ const kFlights = { KeyD: [1, 0, 0], KeyA: [-1, 0, 0], KeyE: [0, 1, 0], KeyQ: [0,
 /** Flight keys, by their physical position on the keyboard. */
 export class FlightKeys {
     #held = new Set();
-    #hurry = false;
+    #fast = false;
 
     constructor(camera) {
         this.camera = camera;
         addEventListener("keydown", (event) => {
-            this.#hurry = event.shiftKey;
+            this.#fast = event.shiftKey;
             if (this.on && kFlights[event.code] && !event.ctrlKey && !event.metaKey && !event.altKey) {
                 this.#held.add(event.code);
                 camera.changed();
             }
         });
         addEventListener("keyup", (event) => {
-            this.#hurry = event.shiftKey;
+            this.#fast = event.shiftKey;
             this.#held.delete(event.code);
         });
         addEventListener("blur", () => this.#held.clear());
@@ -149,7 +149,7 @@ export class FlightKeys {
     advance(seconds) {
         if (this.#held.size > 0) {
             const way = [...this.#held].reduce((sum, code) => add(sum, kFlights[code]), [0, 0, 0]);
-            this.camera.fly(scale(way, this.#hurry ? kHurry : 1), seconds);
+            this.camera.fly(scale(way, this.#fast ? kShiftFactor : 1), seconds);
         }
     }
 }

@@ -71,7 +71,7 @@ function mark(cells, { from, side, n }, collider, index) {
     }
 }
 
-/** Like mark(), for a map of patches: marks cells that no patch and no inside leaf overlaps. */
+/** Like mark(), for a patch map: marks cells that no patch and no inside leaf overlaps. */
 function markPatches(cells, { from, side, n }, collider, index) {
     const { object_to_map: rows, object_per_map: [size] } = collider.info.maps[index];
     const axes = rows.map((row) => scale(row.slice(0, 3), size * size)); // axes of map space in object space
@@ -98,8 +98,7 @@ function markPatches(cells, { from, side, n }, collider, index) {
 /**
  * @param bounds  the drawn box
  * @returns { n, from, side, clear }: number of cells along each axis, corner of the first cell, side length, and the
- * cells
- *          with x fastest
+ *          cells with x fastest
  */
 export function cellsOf(collider, { min, max }) {
     const size = max.map((v, k) => v - min[k]);

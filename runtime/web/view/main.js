@@ -26,7 +26,7 @@ function showMessage(message) {
 class App {
     constructor() {
         this.look = { show: "surface", split: 0.5, map: -1, heat: 0, depth: 0, slice: null, floor: null, box: null };
-        this.data = null; // from page_data.js
+        this.data = null; // result of readPageData()
         this.pin = null; // marked position
         this.placed = false; // whether the bodies of a scene are placed
         this.followed = null; // the last camera of the scene
@@ -229,9 +229,9 @@ class App {
         const playing = this.particles.system && !this.particles.paused;
         const moving = playing || !still;
         this.quality.frame(now, moving);
-        const share = moving && !sharp ? this.quality.pixels : 1;
+        const fraction = moving && !sharp ? this.quality.pixels : 1;
         const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((side) =>
-            Math.max(1, Math.round(side * share * Math.min(devicePixelRatio || 1, 2.5))));
+            Math.max(1, Math.round(side * fraction * Math.min(devicePixelRatio || 1, 2.5))));
         if (canvas.width !== width || canvas.height !== height) {
             Object.assign(canvas, { width, height });
             this.view.dirty = true;
@@ -249,12 +249,12 @@ class App {
         }
         const matrices = this.camera.matrices(width, height);
         this.view.drawBodies(matrices, width, height, { ...this.look, theme: dark.matches ? "dark" : "light" },
-                             still && share === 1 && !(playing && this.look.show === "picture"));
+                             still && fraction === 1 && !(playing && this.look.show === "picture"));
         this.view.copyBodies(width, height);
         this.particles.draw(matrices, width, height);
         this.#placePin(matrices.camera);
-        this.panel.tick(now, share);
-        if (moving || share < 1) {
+        this.panel.tick(now, fraction);
+        if (moving || fraction < 1) {
             this.#wait();
         }
     }

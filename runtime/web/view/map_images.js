@@ -19,7 +19,7 @@ function leafColors(index, levels) {
     return context.getImageData(0, 0, kShades, levels + 1).data;
 }
 
-/** Draws the cells of a map of patches, seen along its −z axis. */
+/** Draws the cells of a patch map, seen along its −z axis. */
 function drawPatches(canvas, collider, index) {
     const tree = treeOf(collider, index);
     const { roots, levels } = tree;

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-# relief_view_page(OUTPUT): makes the page of `relief view`, without data: OUTPUT.html, or OUTPUT.cpp, which embeds it (runtime/page/page.h).
+# relief_view_page(OUTPUT): writes the page of `relief view`, without data: as .html, or as .cpp that embeds it
+# (runtime/page/page.h).
 #
-# A page that is opened from disk may import no file. So all modules become one script: their imports and the word `export` go, and
-# names at the top of a module are the names of all.
+# A page opened from disk cannot import files, so all modules become one script. Imports and the word `export` are removed,
+# so top-level names must be unique across modules.
 if(NOT CMAKE_SCRIPT_MODE_FILE)
     function(relief_view_page output)
         set(folder ${CMAKE_CURRENT_FUNCTION_LIST_DIR})
@@ -16,7 +17,7 @@ if(NOT CMAKE_SCRIPT_MODE_FILE)
     return()
 endif()
 
-# Each after those that it needs while it is read.
+# Each module follows the modules that its top-level code uses.
 set(modules math colors gl quality page_data page_collider patches cells ray_shader body_shaders body view camera map_images particles bodies
             panel world_panel main)
 set(folder ${CMAKE_CURRENT_LIST_DIR})

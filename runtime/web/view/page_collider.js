@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The collider of a page without a scene: its uniform block, textures and GLSL (runtime/layout/gpu_image.h), and facts.
-// Has the members of Collider and GpuCollider of relief-particles that the page uses.
+// Implements the members of relief-particles' Collider and GpuCollider that the page uses.
 import { damaged, fromBase64 } from "./page_data.js";
 
 const kMapBytes = 144; // per map in the uniform block, after a header of 16 bytes
@@ -48,7 +48,7 @@ export class PageCollider {
         return new DataView(this.block.buffer).getInt32(16 + kMapBytes * map + kFirstTexel, true);
     }
 
-    /** As Collider.texels() in relief.d.ts. */
+    /** Like Collider.texels() in relief.d.ts. */
     texels(map) {
         const { width, height, faces, format, encoding } = this.info.maps[map];
         const first = this.#first(map);
@@ -77,7 +77,7 @@ export class PageCollider {
         return out;
     }
 
-    /** As Collider.tree() in relief.d.ts. */
+    /** Like Collider.tree() in relief.d.ts. */
     tree(map) {
         const first = 4 * this.#first(map);
         return new Uint32Array(this.textures[2].texels.slice(first, first + this.info.maps[map].bytes / 2).buffer);

@@ -185,7 +185,7 @@ export class Panel {
         // A sheet lies in the middle of its shell: subtract half of the recorded thickness, if any.
         look.depth = 0.5 * Number(/(?:^| )--thickness (?:auto=)?([0-9.e+-]+)/.exec(body.collider.info.provenance.options)?.[1] ?? 0);
         $("sheets-note").textContent = look.depth === 0 ? "" : `Sheets have a thickness of ${this.#length(2 * look.depth)}; ` +
-            "white: the mesh is in the middle of its shell.";
+            "white means that the mesh is in the middle of its shell.";
         this.#legend("heat", range);
         this.app.changed();
     }
@@ -223,10 +223,10 @@ export class Panel {
         this.app.changed(false);
     }
 
-    /** Updates the particle count and the quality note. share: fraction of the resolution per side. */
-    tick(now, share) {
-        $("quality").hidden = share === 1;
-        $("quality").textContent = `Reduced resolution: ${Math.round(100 * share)} % per side`;
+    /** Updates the particle count and the quality note. fraction: of the resolution per side. */
+    tick(now, fraction) {
+        $("quality").hidden = fraction === 1;
+        $("quality").textContent = `Reduced resolution: ${Math.round(100 * fraction)} % per side`;
         const { system } = this.app.particles;
         if (now - this.#lastTick > 250 && system) {
             this.#lastTick = now;

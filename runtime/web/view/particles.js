@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The particles of a page that plays a scene: one ParticleSystem.
-const kStepsAFrame = 3; // maximum; a slow page runs the simulation slower than real time
+const kStepsPerFrameMax = 3; // slow pages run the simulation slower than real time
 
 export class Particles {
     #owed = 0;
@@ -34,8 +34,8 @@ export class Particles {
         if (!this.system || this.paused) {
             return;
         }
-        this.#owed = Math.min(this.#owed + seconds, kStepsAFrame * this.dt);
-        for (let i = 0; this.#owed >= 0.98 * this.dt && i < kStepsAFrame; ++i) {
+        this.#owed = Math.min(this.#owed + seconds, kStepsPerFrameMax * this.dt);
+        for (let i = 0; this.#owed >= 0.98 * this.dt && i < kStepsPerFrameMax; ++i) {
             this.step();
             this.#owed = Math.max(this.#owed - this.dt, 0);
         }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tree of a map of patches; formats/patch_tree.h describes it.
+// The tree of a patch map; formats/patch_tree.h describes it.
 
 const kKinds = ["outside", "inside", "split", "patch"];
 

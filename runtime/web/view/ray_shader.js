@@ -201,7 +201,7 @@ Stretch aheadCube(int i, vec3 o, vec3 d, float t, float far) {
         votes_then.x = reliefOctahedralPlane(normal, depth, reliefFromMap(i, o + t1 * d), ray_object);
         return partAt(bothBelow(t, t1, votes, votes_then), false, t, t1, -1);
     }
-    // A sphere: its interior is inside, or outside if the map keeps the farthest surface.
+    // A sphere: its interior is inside if the map keeps the farthest surface, otherwise outside.
     float half_way = -reliefDot(o, d) / reliefDot(d, d);
     vec3 nearest = o + half_way * d;
     float left = depth * depth - reliefDot(nearest, nearest);
@@ -212,8 +212,8 @@ Stretch aheadCube(int i, vec3 o, vec3 d, float t, float far) {
 }
 
 #if defined(RELIEF_HAS_PATCHES)
-// Returns the coefficients f of the depth above the bilinear surface of a square: f.x r^2 + f.y r + f.z, with r the
-// distance from x along the ray. x, dx: place in the square, and its change with r; z, dz: depth above code 0, and its
+// Returns the coefficients f of the height above the bilinear surface of a square: f.x r^2 + f.y r + f.z, with r the
+// distance from x along the ray. x, dx: place in the square, and its change with r; z, dz: height above code 0, and its
 // change with r; codes: of the corners; unit: height of one code step.
 vec3 overSquare(vec2 x, vec2 dx, float z, float dz, vec4 codes, float unit) {
     vec2 by = codes.yz - codes.x;
@@ -243,7 +243,7 @@ Stretch aheadInPatch(int first, uvec2 record, vec3 q, vec3 way, float tiny, floa
     float unit = reliefPatchStep(record);
     int above = (record.x & 16u) != 0u ? -1 : 1;
     float here = 0.5 * tiny;
-    // No intersections above or below all heights.
+    // There are no intersections above or below all heights.
     float inverse = 1.0 / (across.z + (abs(across.z) < 1e-20 ? 1e-20 : 0.0));
     vec2 range = (vec2(-1.0, 256.0) * unit - from.z) * inverse;
     range = vec2(min(range.x, range.y), max(range.x, range.y));
@@ -275,8 +275,8 @@ Stretch aheadInPatch(int first, uvec2 record, vec3 q, vec3 way, float tiny, floa
     return Stretch(over ? above : -above, here < last ? here : ends, here < last ? -1 : border);
 }
 
-// Returns the stretch in the patch or the pair of a leaf. In a pair, one patch can decide the side of a point. The loop
-// keeps a single call, because compilers inline each call.
+// Returns the stretch in the patch or the pair of a leaf. In a pair, one side decides: a point is on it if either patch
+// votes for it. The loop has a single call, because compilers inline each call.
 Stretch aheadInLeaf(int first, uvec2 record, vec3 q, vec3 way, float tiny, float ends, int border) {
     bool pair = (record.x & 15u) == 15u;
     int at = first + int(record.y & 0xffffffu);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A level of 300 bodies of two balls, turned and scaled, and its exported files.
+// A level of 300 rotated and scaled bodies of two ball colliders, and its exported files.
 #pragma once
 
 #include <algorithm>
@@ -49,7 +49,7 @@ inline std::vector<glm::vec3> pointsAmongBalls(std::size_t count) {
     return points;
 }
 
-/// Returns the distance of the deepest body that contains p, or kFarOutside.
+/// Returns the signed distance of the body that contains p most deeply, or kFarOutside if none contains p.
 inline float depthIn(const LoadedWorld& level, const glm::vec3& p) {
     float deepest = kFarOutside;
     for (const WorldBody& body : level.world.bodies) {
@@ -60,7 +60,7 @@ inline float depthIn(const LoadedWorld& level, const glm::vec3& p) {
     return deepest;
 }
 
-/// Returns the distance of the nearest ball, negative inside; balls are round here, not faceted.
+/// Returns the exact distance of the nearest ball, negative inside; ignores that the balls are faceted.
 inline float gapToBalls(const LoadedWorld& level, const glm::vec3& p) {
     float gap = kFarOutside;
     for (const WorldBody& body : level.world.bodies) {

@@ -48,7 +48,7 @@ struct GltfParts {
 /// Replaces every `from`, which must occur.
 [[nodiscard]] std::string replaced(std::string text, const std::string& from, const std::string& to);
 
-/// Imports a file with this name and contents, the only one in its folder, in this process or by a worker.
+/// Imports the only file of a folder, with this name and contents: in this process, or in a worker.
 [[nodiscard]] Result<TriangleMesh> importText(const std::string& name, std::string_view contents,
                                               const ImportOptions& options = {});
 [[nodiscard]] Result<TriangleMesh> importTextInWorker(const std::string& name, std::string_view contents,
@@ -75,9 +75,9 @@ struct Wrong {
     std::string words;
     ErrorCode code = ErrorCode::kInvalidInput;
 };
-/// Files with this name, which their messages must contain.
+/// Expects each file to be rejected; its name is `name`, which the message must contain.
 void expectWrong(const std::string& name, const std::vector<Wrong>& cases);
-/// Each lie changes a mesh into one that a compromised worker could send. All must be rejected.
+/// Applies each lie to a copy of the honest mesh, as a compromised worker could. All results must be rejected.
 /// \param accepts  returns whether the reader accepts a mesh
 void expectInvalidRejected(const TriangleMesh& honest,
                            const std::vector<std::function<void(TriangleMesh&)>>& lies,

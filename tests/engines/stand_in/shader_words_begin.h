@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lets the C++ of shader_types.h compile a shader text, until shader_words_end.h.
+// Macros that make a shader text valid C++ with shader_types.h. Include shader_words_end.h after the text.
 #ifdef __clang__
 #pragma clang diagnostic push
 #pragma clang diagnostic ignored "-Wkeyword-macro"

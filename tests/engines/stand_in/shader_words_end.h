@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ends shader_words_begin.h, and removes the macros of the text.
+// Removes the macros of shader_words_begin.h and of the text.
 #undef float
 #undef float2
 #undef float3

@@ -23,7 +23,7 @@ inline World threeBodies() {
     return world;
 }
 
-/// Adds another tile of a body, in the same place, as body `at`.
+/// Adds another tile of body `of`, with the same pose, as body `at`.
 inline void addTile(World& world, std::size_t of, const char* file, std::size_t at) {
     WorldBody tile = world.bodies[of];
     world.colliders.push_back(world.colliders[tile.collider]);

@@ -40,7 +40,7 @@ inline void expectError(const std::string& part) {
     EXPECT_NE(std::string(relief_error()).find(part), std::string::npos) << relief_error();
 }
 
-/// Working objects: a collider, textures, particles, a renderer and a world; and memory for all inputs and outputs.
+/// Valid objects: a collider, textures, particles, a renderer and a world; and memory for all inputs and outputs.
 class Stage {
   public:
     Stage() {
@@ -95,10 +95,10 @@ class Stage {
         world_textures = world_textures != nullptr ? world_textures : relief_textures_create_world(world);
         animation = animation != nullptr ? animation : relief_animation_create(collider);
         if (animated_textures == nullptr) {
-            relief_world* alone = relief_world_create();
-            EXPECT_EQ(relief_world_add(alone, animation, poses, 64, nullptr), 0) << relief_error();
-            animated_textures = relief_textures_create_world(alone);
-            relief_world_free(alone);
+            relief_world* single = relief_world_create();
+            EXPECT_EQ(relief_world_add(single, animation, poses, 64, nullptr), 0) << relief_error();
+            animated_textures = relief_textures_create_world(single);
+            relief_world_free(single);
         }
         emitter =
             emitter != nullptr ? emitter : relief_emitter_create_on(collider, nullptr, &emitter_options);
@@ -194,8 +194,8 @@ class Stage {
             return pointer(T{});
         }
     }
-    /// The address of the invalid item in the structures of this name that good() returns; null if no function reads
-    /// them.
+    /// The address of the item to invalidate in the structures of this type that good() returns; null if no function
+    /// reads them.
     std::byte* structure(const std::string& name) {
         void* found = name == "relief_particles_options"  ? static_cast<void*>(&options)
                       : name == "relief_birth"            ? &births[kWrong]
@@ -276,7 +276,7 @@ class Stage {
         EXPECT_TRUE(writeFile(world_path_, std::as_bytes(std::span(text))));
     }
 
-    /// The object to pass for an argument of type T. A new type in the header does not compile without an entry here.
+    /// The object to pass for an argument of type T. A new type in the header fails to compile until it is added here.
     template <class T>
     T pointer(T /*type*/) {
         using Thing = std::remove_const_t<std::remove_pointer_t<T>>;

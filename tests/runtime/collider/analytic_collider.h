@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colliders made from closed-form shapes, so that runtime tests need neither a mesh nor a baker, and have the truth at
+// Colliders made from closed-form shapes. Runtime tests then need neither a mesh nor a baker, and the truth is exact at
 // every point. tests/formats/analytic_shapes.h makes the texels.
 #pragma once
 

@@ -39,7 +39,7 @@ inline bool agrees(const FieldSample& a, const FieldSample& b) {
             glm::length(a.normal - b.normal) <= kNormal);
 }
 
-/// The possible votes of a GPU's patch map within rounding errors; none if the map is of another kind.
+/// The possible votes, within rounding errors, of the patch map that decided on the GPU; none if that map has no patches.
 inline std::vector<rounding::RoundedVote> possibleVotes(const Collider& collider, const glm::vec3& p,
                                                         const FieldSample& gpu) {
     if (gpu.map < 0 || isSoftwareRenderer()) {
@@ -60,7 +60,8 @@ inline FieldSample evaluateMap(const Collider& collider, const glm::vec3& p, int
     return own;
 }
 
-/// True if two maps vote equally at p, up to rounding, and the GPU chose the other one, with that map's sample.
+/// True if two maps vote equally at p, up to rounding, and the GPU returned the sample of the map that the CPU did not
+/// choose.
 inline bool tied(const Collider& collider, const glm::vec3& p, const FieldSample& gpu,
                  const rounding::RoundedVote* vote) {
     const FieldSample cpu = evaluate(collider, p);
@@ -98,7 +99,7 @@ inline Agreement compareAt(const Collider& collider, const glm::vec3& p, const F
     const bool own_vote = gpu.map >= 0 && agrees(gpu, evaluateMap(collider, p, gpu.map));
     for (int k = 0; k < 27; ++k) {
         const FieldSample near = evaluate(collider, p + step * neighbour(k));
-        // The GPU's map also decides at the neighbour, or the distance changes with the point as well.
+        // The GPU's map decides at the neighbour, and the sample matches that map at p or at the neighbour.
         if (near.map == gpu.map &&
             (rounded || own_vote ||
              (std::abs(near.distance - gpu.distance) <= 4.0F * step + kRelative * 2.0F &&
@@ -110,7 +111,7 @@ inline Agreement compareAt(const Collider& collider, const glm::vec3& p, const F
 }
 
 inline void expectAgreement(const Collider& collider, std::span<const glm::vec3> points, float texel,
-                            double border_share_max) {
+                            double border_fraction_max) {
     FieldQuery query = required(FieldQuery::create(collider));
     const std::vector<FieldSample> samples = required(query.evaluate(points));
     ASSERT_EQ(samples.size(), points.size());
@@ -138,7 +139,7 @@ inline void expectAgreement(const Collider& collider, std::span<const glm::vec3>
     }
     EXPECT_EQ(none, 0U);
     EXPECT_GT(votes, points.size() / 8) << "too few points get votes: the test proves nothing";
-    EXPECT_LE(static_cast<double>(at_border), border_share_max * static_cast<double>(points.size()));
+    EXPECT_LE(static_cast<double>(at_border), border_fraction_max * static_cast<double>(points.size()));
     testing::Test::RecordProperty("at_border", static_cast<int>(at_border));
 }
 

@@ -19,8 +19,8 @@
 
 namespace relief {
 
-/// With RELIEF_QUERY_INSIDE it uses reliefSolid, and with RELIEF_QUERY_PROBE reliefProbe, which evaluates this map
-/// first; the distance is then −1 inside and 1 outside.
+/// With RELIEF_QUERY_INSIDE it uses reliefSolid; with RELIEF_QUERY_PROBE it uses reliefProbe, which evaluates map
+/// RELIEF_QUERY_PROBE first. The distance is then −1 inside and 1 outside.
 inline constexpr const char* kFieldQuery = R"(
 uniform highp sampler2D u_points;  // xyz: object space
 layout(location = 0) out vec4 o_normal_distance;

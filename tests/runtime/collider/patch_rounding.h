@@ -41,7 +41,7 @@ inline Rounded operator*(const Rounded& a, const Rounded& b) {
     return rounded(a.value * b.value,
                    std::abs(a.value) * b.error + std::abs(b.value) * a.error + a.error * b.error);
 }
-/// By a power of two or −1, which is exact.
+/// Multiplies by a power of two or −1, which is exact.
 inline Rounded scaled(double factor, const Rounded& a) {
     return {factor * a.value, std::abs(factor) * a.error};
 }
@@ -126,8 +126,8 @@ inline RoundedVote patchVote(PatchTexels texels, const PatchRecord& record, cons
     return vote;
 }
 
-/// The possible votes at p within rounding errors, in object units, if p is in a leaf with patches; the CPU's is first.
-/// Empty if no possible leaf has patches.
+/// The possible votes at p within rounding errors, in object units; the CPU's vote is first. Empty if no possible leaf
+/// of p has patches.
 inline std::vector<RoundedVote> patchVotes(const DepthMap& map, const glm::vec3& p) {
     const auto transformed = [&](const glm::vec4& r) {
         const auto term = [](float factor, float coordinate) {

@@ -17,8 +17,8 @@
 
 namespace relief {
 
-/// Sets everything that a pass sets, or that could break one, to another value: a careless pass draws nothing or
-/// garbage.
+/// Sets all state that a pass changes or depends on to unusual values, so that a pass that relies on defaults draws
+/// nothing or garbage.
 class CallerState {
   public:
     CallerState() {

@@ -13,8 +13,8 @@
 
 namespace relief {
 
-/// For GlProgram::drawScreen().
-/// \param file  in shaders/, followed by `text`, a main().
+/// Makes a program for GlProgram::drawScreen().
+/// \param file  in shaders/. \param text  appended to the file; contains main().
 inline Result<GlProgram> makeQueryProgram(std::string_view file, std::string_view text,
                                           const std::string& defines = {}) {
     const std::string head = std::string(isGles() ? "#version 300 es\n" : "#version 330 core\n") + defines +

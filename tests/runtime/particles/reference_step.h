@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The step of shaders/particles/step.glsl on the CPU: float32, the same operations in the same order, with the field
-// from formats/. Written from the rule (paper, section 3.3.2), as the truth for the GPU.
+// from formats/. An independent implementation of the rule (paper, section 3.3.2), and the truth for the GPU.
 #pragma once
 
 #include <cmath>
@@ -135,7 +135,7 @@ inline ReferenceState referenceStep(const ReferenceSettings& settings, const glm
 
     ReferenceState out;
     out.position = p_star;
-    // Which body is deeper, and the side of the floor.
+    // Ambiguous: which body is deepest, and the side of the floor.
     int rivals = 0;
     const ReferenceSolid ahead = solidAt(settings, p_star, &rivals);
     out.ambiguous = ahead.distance < 0.0F && rivals > 1;

@@ -33,7 +33,8 @@ class StepGlTest : public GlTestOf<StepCase> {
     }
 };
 
-// step_path_gl_test.cpp, which shows the same bits as fragments, and depth_sort_gl_test.cpp test compute in OpenGL ES.
+// Two other files test compute in OpenGL ES: step_path_gl_test.cpp, which expects the bits of the fragment path, and
+// depth_sort_gl_test.cpp.
 #define RELIEF_INSTANTIATE_STEP_TESTS(suite)                                                  \
     INSTANTIATE_TEST_SUITE_P(Paths, suite,                                                    \
                              testing::Values(StepCase{GlApi::kGl33Core, StepPath::kFragment}, \

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A substitute for <embree4/rtcore.h> on systems without Embree 4. It implements the names and signatures of the Embree
-// 4 manual that differ from version 3 with Embree 3, so that -DRELIEF_EMBREE=4 compiles and bakes
+// A substitute for <embree4/rtcore.h> on systems without Embree 4. It uses Embree 3 to implement the names and
+// signatures of the Embree 4 manual that differ from version 3, so that -DRELIEF_EMBREE=4 compiles and bakes
 // (tests/cli/embree4.sh, scripts/nightly.sh embree4).
 #pragma once
 
@@ -49,11 +49,11 @@ RTC_FORCEINLINE void rtcInitOccludedArguments(RTCOccludedArguments* arguments) {
     *arguments = {RTC_RAY_QUERY_FLAG_INCOHERENT, RTC_FEATURE_FLAG_ALL, nullptr, nullptr, nullptr};
 }
 
-/// As in Embree 4, the filter of the arguments runs only if the flags enable it, and the context has none.
+/// As in Embree 4, the filter of the arguments runs only if the flags enable it, and the context has no filter.
 template <class Arguments>
 RTCRayQueryContext* embree3Context(const Arguments& arguments) {
-    const bool asked = (arguments.flags & RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER) != 0;
-    arguments.context->filter = asked ? arguments.filter : nullptr;
+    const bool enabled = (arguments.flags & RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER) != 0;
+    arguments.context->filter = enabled ? arguments.filter : nullptr;
     arguments.context->flags = (arguments.flags & RTC_RAY_QUERY_FLAG_COHERENT) != 0
                                    ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
                                    : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
