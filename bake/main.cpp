@@ -6,7 +6,7 @@
 #include "runtime/command_line/command_line.h"
 
 int main(int argc, char** argv) {
-    relief::ChildProcesses::endWithRecipe();
+    relief::ChildProcesses::endWithParent();
     relief::prepareHeap(relief::kBakeHeapBytes);
     return relief::runProgram(
         "relief", [&] { return relief::runRelief(argc, argv); },

@@ -258,7 +258,7 @@ Result<ContainerInfo> readContainerInfo(std::span<const std::byte> bytes, const 
 
 Result<Collider> loadCollider(const std::filesystem::path& path, const ContainerLimits& limits) {
     const std::vector<std::byte> bytes = RELIEF_TRY(readFile(path, containerSizeMax(limits)));
-    RELIEF_TRY(refuseMesh(path, bytes));
+    RELIEF_TRY(rejectMesh(path, bytes));
     return withPrefix(quotedPath(path), readContainer(bytes, limits));
 }
 
@@ -268,7 +268,7 @@ Result<void> saveCollider(const std::filesystem::path& path, const Collider& col
         path, RELIEF_TRY(withPrefix("cannot write " + quotedPath(path), writeContainer(collider, options))));
 }
 
-Result<void> refuseMeshName(const std::filesystem::path& path) {
+Result<void> rejectMeshName(const std::filesystem::path& path) {
     const std::string extension = lowerCase(path.extension().native());
     if (extension == ".json") {
         return fail(
@@ -285,8 +285,8 @@ Result<void> refuseMeshName(const std::filesystem::path& path) {
                                               quotedPath(path) + " -o " + quotedPath(baked));
 }
 
-Result<void> refuseMesh(const std::filesystem::path& path, std::span<const std::byte> bytes) {
-    return !bytes.empty() && bytes.front() == kFirstByte ? Result<void>() : refuseMeshName(path);
+Result<void> rejectMesh(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+    return !bytes.empty() && bytes.front() == kFirstByte ? Result<void>() : rejectMeshName(path);
 }
 
 }  // namespace relief

@@ -54,9 +54,9 @@ struct ContainerInfo {
 
 /// Fails with kInvalidInput if the file name has the extension of a mesh or a world. The message starts with the path:
 /// "'a.obj' is a mesh, not a collider; bake it first: relief bake …".
-[[nodiscard]] Result<void> refuseMeshName(const std::filesystem::path& path);
+[[nodiscard]] Result<void> rejectMeshName(const std::filesystem::path& path);
 
 /// Likewise, but accepts any name if the contents start with the container signature.
-[[nodiscard]] Result<void> refuseMesh(const std::filesystem::path& path, std::span<const std::byte> bytes);
+[[nodiscard]] Result<void> rejectMesh(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
 }  // namespace relief

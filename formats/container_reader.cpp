@@ -149,7 +149,7 @@ bool isLimit(IssueCode code) {
 
 }  // namespace
 
-std::string cureOf(IssueCode code, std::uint16_t major) {
+std::string fixFor(IssueCode code, std::uint16_t major) {
     switch (code) {
         case IssueCode::kTooShort:
             return "; it is truncated, or not a .relief container";
@@ -375,8 +375,8 @@ void ContainerReader::checkMaps() {
     }
     // A size that differs from the header's has been reported already.
     if (all_placed && header.file_size == bytes_.size() && end < bytes_.size()) {
-        add(IssueCode::kBytesBehind, std::to_string(bytes_.size() - end) + " bytes follow the last payload",
-            end);
+        add(IssueCode::kBytesAfterPayload,
+            std::to_string(bytes_.size() - end) + " bytes follow the last payload", end);
     }
 }
 
@@ -455,7 +455,7 @@ std::optional<Error> ContainerReader::refusal() const {
     }
     const Error error{errorCodeOf(issues),
                       first->message + (first->offset ? ", at byte " + std::to_string(*first->offset) : "") +
-                          cureOf(first->code, header.major)};
+                          fixFor(first->code, header.major)};
     return first->map < 0 ? error : inMap(static_cast<std::size_t>(first->map), error);
 }
 

@@ -121,7 +121,7 @@ class ContainerReader {
 
 /// Returns the fix to append to an issue's message; "" if the message already includes it.
 /// \param major  format version of the file.
-[[nodiscard]] std::string cureOf(IssueCode code, std::uint16_t major);
+[[nodiscard]] std::string fixFor(IssueCode code, std::uint16_t major);
 
 /// Returns kUnsupported for another major version, kLimit if the only errors are limits, else kInvalidInput.
 [[nodiscard]] ErrorCode errorCodeOf(std::span<const Issue> issues);

@@ -49,7 +49,7 @@ enum class IssueCode : std::uint16_t {
     kPayloadPlace = 1403,
     kPayloadEnd = 1404,
     kPadding = 1405,
-    kBytesBehind = 1406,
+    kBytesAfterPayload = 1406,
     kPayloadChecksum = 1407,
     kPayloadUnpack = 1408,
     kTexels = 1501,

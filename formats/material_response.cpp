@@ -23,14 +23,14 @@ std::optional<std::size_t> repeatedName(std::span<const MaterialResponse> respon
     return std::nullopt;
 }
 
-void MaterialResponses::see(const Materials& materials) {
+void MaterialResponses::recordNames(const Materials& materials) {
     for (const Material& one : materials.list) {
         names_.insert(one.name);
     }
 }
 
 void MaterialResponses::apply(Materials& materials) {
-    see(materials);
+    recordNames(materials);
     for (Material& one : materials.list) {
         for (const MaterialResponse& response : responses_) {
             if (response.name == one.name) {
@@ -64,11 +64,11 @@ void fields(FieldVisitor& visit, MaterialResponse& response) {
           {.help = "Name of a material of the colliders, as in relief info", .rules = kRequired});
     visit("restitution", response.restitution,
           leftOut({.help = "Multiplies the restitution of particles and colliders",
-                   .range = kShareRange,
+                   .range = kFractionRange,
                    .fallback = "the container's value: the mesh's, or 1"}));
     visit("friction", response.friction,
           leftOut({.help = "1 − friction multiplies 1 − friction of particles and colliders",
-                   .range = kShareRange,
+                   .range = kFractionRange,
                    .fallback = "the container's value: the mesh's, or 0"}));
     visit("lifetime_loss", response.lifetime_loss,
           leftOut({.help = "Lifetime lost in each step in contact, in addition to the particle type's",

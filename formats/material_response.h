@@ -39,7 +39,7 @@ class MaterialResponses {
 
     void apply(Materials& materials);
     /// Records names without applying responses.
-    void see(const Materials& materials);
+    void recordNames(const Materials& materials);
     /// Returns nullopt if a recorded material has this name. Otherwise returns "is not the name of a material; there are
     /// 'oak' and 'stone'", with the names recorded so far.
     [[nodiscard]] std::optional<std::string> faultOf(const std::string& name) const;

@@ -85,7 +85,7 @@ def one_round(tools):
                "bake of patches / least bake": seconds(tools.bake("patches", PATCHES)) / least}
     for path in ("fragment", "compute"):
         # Few blocks, because there are many rounds, and few particles for software renderers.
-        report, rows = tools.step("patches", "--path", path, "--particles", "1048576" if LARGE else "16384", "--blocks", "3")
+        report, rows = tools.step("patches", "--shaders", path, "--particles", "1048576" if LARGE else "16384", "--blocks", "3")
         for name, row in rows.items():
             if "over" in row:
                 figures[f"{path}: {name} / {row['over']['of']}".replace("no_collider", "no collider")] = row["over"]["median"]

@@ -136,7 +136,7 @@ AccuracyEntry measureVolume(const MeshQuery& query, const TruthSamples& samples,
                             BrickAtlas* atlas) {
     BestVolume best(samples, atlas);
     // Four standard deviations include all but 6 in 100,000 of the points near the surface.
-    const double reach = 4.0 * samples.options.sigma_share * samples.longest_side;
+    const double reach = 4.0 * samples.options.sigma_fraction * samples.longest_side;
     for (const LatticeFit fit : {LatticeFit::kCentered, LatticeFit::kCorner, LatticeFit::kStretched}) {
         const Stopwatch watch;
         const DistanceGrid grid =
@@ -277,7 +277,7 @@ Result<void> measureBudget(const PreparedMesh& imported, const Arguments& argume
     mesh_report["mesh_hash"] = imported->content_hash;
     mesh_report["budget"] = budget;
     mesh_report["triangles"] = imported->triangles.size();
-    mesh_report["shape"] = jsonOf(madeShapes(shaped.report));
+    mesh_report["shape"] = jsonOf(shapesIfAny(shaped.report));
     const SheetTruth sheet_truth = RELIEF_TRY(SheetTruth::build(imported, shaped));
     const std::vector<TruthPoint> sheets = sheet_truth.sample(query, options);
     const Truth truth{query, samples, sheets};

@@ -56,7 +56,7 @@ Result<void> forEachFile(const std::vector<std::string>& files,
         }
         reportError(done.error());
         if (failures++ == 0) {
-            first = {done.error().code, ", first " + shownInput(file) + "; see the errors above"};
+            first = {done.error().code, ", first " + inputText(file) + "; see the errors above"};
         }
     }
     if (failures == 0) {
@@ -76,11 +76,11 @@ void logWarnings(const std::vector<std::string>& warnings) {
     }
 }
 
-std::string shownInput(const std::string& file) {
+std::string inputText(const std::string& file) {
     return file == "-" ? "standard input" : quotedPath(file);
 }
 
-bool namesWorld(const std::string& file) {
+bool isWorldFile(const std::string& file) {
     return lowerCase(std::filesystem::path(file).extension().string()) == ".json";
 }
 
@@ -123,8 +123,8 @@ Result<void> runRelief(int argc, char** argv) {
 
 Result<ColliderFile> readColliderFile(const std::string& file, const ContainerLimits& limits) {
     std::vector<std::byte> bytes = RELIEF_TRY(readFile(file, containerSizeMax(limits)));
-    RELIEF_TRY(refuseMesh(file, bytes));
-    Collider collider = RELIEF_TRY(withPrefix(shownInput(file), readContainer(bytes, limits)));
+    RELIEF_TRY(rejectMesh(file, bytes));
+    Collider collider = RELIEF_TRY(withPrefix(inputText(file), readContainer(bytes, limits)));
     return ColliderFile{std::move(bytes), std::move(collider)};
 }
 

@@ -45,12 +45,12 @@ void setAction(CLI::App& verb, Action& action, Action run);
 void logWarnings(const std::vector<std::string>& warnings);
 
 /// For messages: "standard input" for "-", otherwise the quoted path.
-[[nodiscard]] std::string shownInput(const std::string& file);
+[[nodiscard]] std::string inputText(const std::string& file);
 /// For reports: "standard input" for "-", otherwise the file's name without its folder.
 [[nodiscard]] std::string inputName(const std::string& file);
 
 /// Returns whether a file is a world, by its extension .json.
-[[nodiscard]] bool namesWorld(const std::string& file);
+[[nodiscard]] bool isWorldFile(const std::string& file);
 
 // Each function adds a verb, which sets `action` if the parsed command line contains it.
 void addBake(CLI::App& app, Action& action);

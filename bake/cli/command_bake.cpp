@@ -26,7 +26,7 @@ BakeWatcher watcherOf(Progress& progress, FileGuard& files) {
     BakeWatcher watcher;
     watcher.begin = [&progress](const char* stage) { progress.begin(stage); };
     watcher.progress = [&progress](double share) { progress.set(share); };
-    watcher.tried = [&progress](const BudgetTry& made) {
+    watcher.tried = [&progress](const BudgetTrial& made) {
         progress.print([&made] {
             spdlog::info("{}: {:.3g} % of the points near the surface are on the wrong side",
                          bytesText(made.budget), made.wrong_percent);

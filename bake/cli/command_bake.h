@@ -67,7 +67,7 @@ void addRecipeOptions(CLI::App& verb, BakeRecipeOptions& options);
 /// Errors: those of bakeWorld and of the first collider that failed; kUsage, kIo.
 [[nodiscard]] Result<void> runWorldCommand(const BakeCommand& command, FileGuard& files);
 
-/// Errors: those of settingsOf, HeightMap::open and bakeGroundOf; kUsage, kIo.
+/// Errors: those of settingsOf, HeightMap::open and bakeHeightMap; kUsage, kIo.
 [[nodiscard]] Result<void> runGroundCommand(const BakeCommand& command, FileGuard& files);
 
 }  // namespace relief

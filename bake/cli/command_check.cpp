@@ -38,7 +38,7 @@ Result<void> checkAnimation(const std::vector<std::byte>& bytes, const Container
 /// Errors: kIo, kLimit; kInvalidInput or Inspection::errorCode() if the file is damaged.
 Result<void> checkFile(const std::string& file, bool json, const ContainerLimits& limits) {
     const std::vector<std::byte> bytes = RELIEF_TRY(readFile(file, containerSizeMax(limits)));
-    const std::string quoted = shownInput(file);
+    const std::string quoted = inputText(file);
     const Inspection inspection = RELIEF_TRY(withPrefix(quoted, inspectContainer(bytes, limits)));
     if (!inspection.damaged()) {
         RELIEF_TRY(withPrefix(quoted, checkAnimation(bytes, limits)));
@@ -49,12 +49,12 @@ Result<void> checkFile(const std::string& file, bool json, const ContainerLimits
     if (!printed || !inspection.damaged()) {
         return printed;
     }
-    RELIEF_TRY(refuseMesh(file, bytes));
+    RELIEF_TRY(rejectMesh(file, bytes));
     for (const Issue& issue : inspection.issues) {
         if (issue.severity() != Severity::kWarning) {
             const std::string map = issue.map >= 0 ? "map " + std::to_string(issue.map) + ": " : "";
             return fail(inspection.errorCode(), quoted + " is not usable: " + issue.id() + ", " + map +
-                                                    issue.message + cureOf(issue.code, inspection.major));
+                                                    issue.message + fixFor(issue.code, inspection.major));
         }
     }
     return {};
@@ -102,10 +102,10 @@ std::string checkText(const MeshCheckReport& report) {
 }
 
 Result<void> runCheck(const CheckCommand& command, const std::string& file, FileGuard& files) {
-    if (!command.heights.empty() || namesHeightMap(command.request.mesh)) {
+    if (!command.heights.empty() || isHeightMapFile(command.request.mesh)) {
         return runGroundCheck(command, file);
     }
-    if (namesWorld(file)) {
+    if (isWorldFile(file)) {
         return runWorldCheck(command, file, files);
     }
     if (command.within) {

@@ -29,7 +29,7 @@ struct CheckCommand {
 
 /// Returns whether `relief check` reads the file of --mesh as a height map, even without --heights: standard input, or a
 /// file whose extension belongs to no mesh format.
-[[nodiscard]] bool namesHeightMap(const std::string& file);
+[[nodiscard]] bool isHeightMapFile(const std::string& file);
 
 /// \param file  the container or the world
 /// Errors: those of readColliderFile, loadWorld, recordedHeights and checkGround; kUsage; kUnsupported if neither the

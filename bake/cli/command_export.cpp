@@ -94,7 +94,7 @@ Result<void> checkTogether(const ExportCommand& command) {
     if (command.output.empty() && command.engine.empty() && !grids) {
         return fail(ErrorCode::kUsage, "no output; add -o DIR, --engine NAME DIR, --vdb FILE or --mesh FILE");
     }
-    if (namesWorld(command.file) && (!command.output.empty() || grids)) {
+    if (isWorldFile(command.file) && (!command.output.empty() || grids)) {
         return fail(ErrorCode::kUsage,
                     quotedPath(command.file) + " is a level; only --engine exports levels");
     }
@@ -114,7 +114,8 @@ Result<std::optional<Engine>> engineOf(const ExportCommand& command) {
     }
     const auto* const found = std::ranges::find(kEngineNames, command.engine.front());
     if (found == kEngineNames.end()) {
-        return fail(ErrorCode::kUsage, "--engine " + butMustBeOneOf(command.engine.front(), kEngineNames));
+        return fail(ErrorCode::kUsage,
+                    "--engine " + expectedOneOfMessage(command.engine.front(), kEngineNames));
     }
     return static_cast<Engine>(found - kEngineNames.begin());
 }
@@ -126,12 +127,12 @@ Result<void> exportForEngine(const Source& source, Engine engine, const ExportCo
     const std::filesystem::path input = command.file;
     // Every world is named world.json, so its folder gives the name.
     std::string name =
-        namesWorld(command.file)
+        isWorldFile(command.file)
             ? std::filesystem::absolute(input).lexically_normal().parent_path().filename().string()
             : input.stem().string();
     name = cleanUtf8(name).empty() || command.file == "-" ? "collider" : cleanUtf8(name);
     const std::vector<EngineFile> exported =
-        RELIEF_TRY(withPrefix(shownInput(command.file), engineFiles(source, name, engine)));
+        RELIEF_TRY(withPrefix(inputText(command.file), engineFiles(source, name, engine)));
     const std::filesystem::path folder = command.engine.back();
     RELIEF_TRY(prepareFolder(folder, exported, "--engine", files));
     for (const EngineFile& file : exported) {
@@ -154,12 +155,12 @@ Result<void> exportGrids(const Collider& collider, const ExportCommand& command)
     if (!options.level_set && !options.surface) {
         return {};
     }
-    const FieldGrids grids = RELIEF_TRY(withPrefix(shownInput(command.file), encodeGrids(collider, options)));
+    const FieldGrids grids = RELIEF_TRY(withPrefix(inputText(command.file), encodeGrids(collider, options)));
     if (grids.missing >= kMissingShown) {
         spdlog::warn(
             "{}: about {:.2g} % of the surface is missing, where parts are thinner than a voxel of {:.3g}; "
             "raise --voxels above {}",
-            shownInput(command.file), 100.0 * grids.missing, grids.voxel, options.voxels);
+            inputText(command.file), 100.0 * grids.missing, grids.voxel, options.voxels);
     }
     if (options.level_set) {
         RELIEF_TRY(writeFile(command.vdb, grids.level_set));
@@ -179,14 +180,14 @@ Result<void> runExport(const ExportCommand& command, FileGuard& files) {
         RELIEF_TRY(checkVdb());
     }
     const std::optional<Engine> engine = RELIEF_TRY(engineOf(command));
-    if (namesWorld(command.file)) {
+    if (isWorldFile(command.file)) {
         return exportForEngine(RELIEF_TRY(loadWorld(command.file, command.limits)), *engine, command, files);
     }
     const Collider collider = RELIEF_TRY(loadCollider(command.file, command.limits));
     if (command.resolution && !collider.hasPatches()) {
         return fail(
             ErrorCode::kUsage,
-            shownInput(command.file) + " has no patches, and its maps have fixed sizes; remove --resolution");
+            inputText(command.file) + " has no patches, and its maps have fixed sizes; remove --resolution");
     }
     const std::vector<NamedImage> images = imagesOf(collider, command.resolution.value_or(kResolution));
     if (!command.output.empty()) {

@@ -28,7 +28,7 @@ Result<void> preflightGround(const BakeCommand& command, FileGuard& files) {
 
 /// The field of a world, or of a collider as the only body of a world.
 Result<WorldField> fieldOf(const std::string& file, const ContainerLimits& limits) {
-    if (namesWorld(file)) {
+    if (isWorldFile(file)) {
         return WorldField(RELIEF_TRY(loadWorld(file, limits)));
     }
     LoadedWorld single;
@@ -67,13 +67,13 @@ Result<HeightsSpec> recorded(const WorldField& field, const std::string& name, c
     if (heights || isHeightMapExtension(extension)) {
         return heights;
     }
-    return fail(ErrorCode::kUnsupported, shownInput(mesh) + ": no mesh format has the extension '" +
+    return fail(ErrorCode::kUnsupported, inputText(mesh) + ": no mesh format has the extension '" +
                                              cleanUtf8(extension) + "', and " + heights.error().message);
 }
 
 }  // namespace
 
-bool namesHeightMap(const std::string& file) {
+bool isHeightMapFile(const std::string& file) {
     const std::string extension = std::filesystem::path(file).extension().string();
     const bool mesh = !extension.empty() && meshFormat(extension.substr(1)) != nullptr;
     std::error_code error;
@@ -122,7 +122,7 @@ Result<void> runGroundCommand(const BakeCommand& command, FileGuard& files) {
     RELIEF_TRY(preflightGround(command, files));
     Progress progress({quotedPath(command.request.mesh), !command.common.quiet, command.request.timeout});
     progress.begin("baking the ground");
-    const GroundResult result = RELIEF_TRY(bakeGroundOf(
+    const GroundResult result = RELIEF_TRY(bakeHeightMap(
         command.request, {{}, folder, command.outputs.compress, [&](double share) { progress.set(share); }}));
     progress.finish();
     if (folder.empty()) {

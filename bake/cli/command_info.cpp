@@ -87,17 +87,17 @@ Result<void> runInfo(const InfoCommand& command, const std::string& file) {
     if (several && !command.json) {
         RELIEF_TRY(printOut((file == command.files.front() ? "" : "\n") + inputName(file) + ":\n"));
     }
-    if (namesWorld(file)) {
+    if (isWorldFile(file)) {
         const WorldInfo info = RELIEF_TRY(readWorldInfo(file, command.limits));
         return printOut(command.json ? jsonTextOf(info) : worldInfoText(info));
     }
     // Validates the whole file, including payloads.
     const ColliderFile shown = RELIEF_TRY(readColliderFile(file, command.limits));
     const ContainerInfo info =
-        RELIEF_TRY(withPrefix(shownInput(file), readContainerInfo(shown.bytes, command.limits)));
+        RELIEF_TRY(withPrefix(inputText(file), readContainerInfo(shown.bytes, command.limits)));
     std::optional<AnimatedMesh> mesh;
     if (!shown.collider.animation.empty()) {
-        mesh = RELIEF_TRY(withPrefix(shownInput(file), readAnimatedMesh(shown.collider.animation)));
+        mesh = RELIEF_TRY(withPrefix(inputText(file), readAnimatedMesh(shown.collider.animation)));
     }
     const AnimatedMesh* const animated = mesh ? &*mesh : nullptr;
     const ColliderJson report{shown.collider, info, animated, several ? inputName(file) : ""};

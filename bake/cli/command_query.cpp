@@ -73,7 +73,7 @@ Result<void> runQuery(const QueryCommand& command, FileGuard& files) {
     RELIEF_TRY(files.reads(command.file));
     RELIEF_TRY(files.reads(command.points));
     RELIEF_TRY(files.writes(command.output, "-o"));
-    const bool world = namesWorld(command.file);
+    const bool world = isWorldFile(command.file);
     const Collider collider = world ? Collider() : RELIEF_TRY(loadCollider(command.file, command.limits));
     const std::vector<std::byte> text = RELIEF_TRY(readFile(command.points));
     const std::vector<glm::vec3> points =

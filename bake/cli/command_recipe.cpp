@@ -240,7 +240,7 @@ bool readsOneFile(const RecipeJob& job) {
 std::vector<InputFile> filesOf(const auto* from, const fs::path& folder) {
     std::vector<InputFile> files;
     for (std::size_t i = 0; from != nullptr && i < from->dependencies.size(); ++i) {
-        files.push_back({nameInRecipe(from->dependencies[i], folder), from->dependency_hashes[i]});
+        files.push_back({pathFromRecipe(from->dependencies[i], folder), from->dependency_hashes[i]});
     }
     return files;
 }

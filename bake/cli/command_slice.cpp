@@ -56,7 +56,7 @@ void warnOutside(const SliceCommand& command, const Collider& collider) {
         spdlog::warn(
             "{}: --at {} is outside the collider's bounds, {} = {} to {}{}; use a number between them, or "
             "center",
-            shownInput(command.file), shortest(*at), axisName(axis), shortest(low), shortest(high),
+            inputText(command.file), shortest(*at), axisName(axis), shortest(low), shortest(high),
             collider.unit.empty() ? "" : " " + collider.unit);
     }
 }

@@ -52,9 +52,8 @@ Result<std::string> checkPage(Page page, const MeshCheck& check, std::optional<f
 Result<std::string> colliderPage(const ViewCommand& command, FileGuard& files) {
     const std::string container = RELIEF_TRY(readForPage(files, command.file));
     const std::span<const std::byte> bytes = std::as_bytes(std::span(container));
-    RELIEF_TRY(refuseMesh(command.file, bytes));
-    Collider collider =
-        RELIEF_TRY(withPrefix(shownInput(command.file), readContainer(bytes, command.limits)));
+    RELIEF_TRY(rejectMesh(command.file, bytes));
+    Collider collider = RELIEF_TRY(withPrefix(inputText(command.file), readContainer(bytes, command.limits)));
     Page page{.name = inputName(command.file), .bytes = container.size(), .collider = &collider};
     if (command.check.mesh.empty()) {
         return page.make(viewPage());
@@ -75,7 +74,7 @@ Result<std::string> worldPage(const std::string& name, const World& world, const
     Page page{
         .name = inputName(name), .check = check, .scene = "world = " + jsonOf(file.filename()).dump() + "\n"};
     const auto embed = [&](const fs::path& path) -> Result<void> {
-        page.files[nameBeside(path, file)] = RELIEF_TRY(readForPage(files, path));
+        page.files[relativeName(path, file)] = RELIEF_TRY(readForPage(files, path));
         return {};
     };
     RELIEF_TRY(embed(file));
@@ -85,7 +84,7 @@ Result<std::string> worldPage(const std::string& name, const World& world, const
             RELIEF_TRY(files.reads(file.parent_path() / collider.coarse->file));
         }
     }
-    page.shows = nameBeside(file.parent_path() / world.colliders[world.bodies.front().collider].file, file);
+    page.shows = relativeName(file.parent_path() / world.colliders[world.bodies.front().collider].file, file);
     return page.make(player);
 }
 
@@ -127,7 +126,7 @@ Result<std::string> outputOf(const ViewCommand& command) {
 
 /// Writes the page; equal inputs give identical bytes. Validates files like `relief check`.
 Result<void> runView(const ViewCommand& command, FileGuard& files) {
-    const bool world = namesWorld(command.file);
+    const bool world = isWorldFile(command.file);
     if (lowerCase(fs::path(command.file).extension().native()) == ".toml") {
         return fail(ErrorCode::kUsage,
                     quotedPath(command.file) + " is a scene; make its page with relief-sim " +
@@ -161,7 +160,7 @@ Result<std::string> preflightPage(const std::string& file, const std::string& me
     RELIEF_TRY(files.reads(mesh));
     RELIEF_TRY(files.writes("-", "the report"));
     RELIEF_TRY(files.writes(html, "--page"));
-    return namesWorld(file) ? playerPage(files) : "";
+    return isWorldFile(file) ? playerPage(files) : "";
 }
 
 Result<std::string> makeWorldPage(const std::string& file, const WorldCheckJson& check,

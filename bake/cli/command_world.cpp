@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 void showMessages(const WorldBakeResult& result) {
     logWarnings(result.warnings);
-    std::vector<OwnWarnings> all;
+    std::vector<OwnerWarnings> all;
     for (const WorldColliderResult& collider : result.colliders) {
         all.push_back({collider.mesh, collider.mesh, collider.warnings});
     }
@@ -75,7 +75,7 @@ Result<void> preflightWorld(const BakeCommand& command, FileGuard& files) {
         RELIEF_TRY(files.writes("-", "--json"));
     }
     RELIEF_TRY(files.writes(folder / kWorldFileName, "--world", folder));
-    RELIEF_TRY(ownWorldFolder(folder, "--world", files));
+    RELIEF_TRY(reserveWorldFolder(folder, "--world", files));
     RELIEF_TRY(files.writes(outputs.depfile, "--depfile", folder));
     return files.makes(folder, "--world");  // created only if all checks pass
 }

@@ -21,7 +21,7 @@ struct EngineBody {
 static_assert(sizeof(EngineBody) == 112);
 
 /// Bodies in a row of their texture.
-inline constexpr std::size_t kBodiesInRow = 256;
+inline constexpr std::size_t kBodiesPerRow = 256;
 
 /// Returns a grid over the boxes of the bodies. Each box is widened by half a cell, so that balls find all bodies near
 /// them. The grid consists of 32-bit words:

@@ -178,7 +178,7 @@ Result<std::vector<EngineFile>> engineFiles(const LoadedWorld& loaded, std::stri
     std::vector<EngineFile> files;
     files.push_back({std::string(name) + ".texels", std::move(texels)});
     files.push_back({std::string(name) + ".bodies", bytesOf(bodies)});
-    fillRow(files.back().bytes, kBodiesInRow * sizeof(EngineBody));
+    fillRow(files.back().bytes, kBodiesPerRow * sizeof(EngineBody));
     files.push_back({std::string(name) + ".cells", bytesOf(bodyCells(bodies))});
     fillRow(files.back().bytes, kEngineTextureWidth * sizeof(std::uint32_t));
     files.push_back({"RELIEF.md", bytesOf(engineText("bake/engines/README.md"))});

@@ -135,7 +135,7 @@ class GroundBaker {
         RELIEF_TRY(checkPlace());
         const Result<void> done = options_.folder.empty() ? bakeWhole() : bakeTiles();
         if (!done && done.error().code == ErrorCode::kLimit) {
-            const LikelierFormat format = map_.likelierFormat();
+            const BetterFormat format = map_.betterFormat();
             if (format.found() || format.doubtful) {
                 return fail(ErrorCode::kLimit,
                             done.error().message + "; " +
@@ -338,7 +338,7 @@ class GroundBaker {
         }
     }
 
-    [[nodiscard]] std::string cureBy(const LikelierFormat& format) const {
+    [[nodiscard]] std::string cureBy(const BetterFormat& format) const {
         return "its samples look like those of another format; try --heights " + toString(format) +
                (map_.hasLow() && format.type ? ", without low and high" : "") +
                (format.eight_bits ? ", unless they are 8 bits times 256" : "");
@@ -347,12 +347,12 @@ class GroundBaker {
     /// Returns the settings that probably do not match the file; empty if there are none.
     /// \param most  whether most of its squares are steep.
     [[nodiscard]] std::string causeOfSteep(bool most) const {
-        std::optional<LoneSample> lone = map_.lone();
+        std::optional<OutlierSample> lone = map_.lone();
         if (lone && lone->gap <= kSteepest * heights().spacing) {
             lone.reset();
         }
-        const LikelierFormat format = map_.likelierFormat();
-        if (lone && format != LikelierFormat{.type = SampleType::kInt16}) {
+        const BetterFormat format = map_.betterFormat();
+        if (lone && format != BetterFormat{.type = SampleType::kInt16}) {
             const std::string far =
                 std::string(" far ") + (lone->lowest ? "below" : "above") + " all others; if ";
             return std::string("its ") + (lone->lowest ? "lowest" : "highest") +
@@ -399,11 +399,11 @@ double GroundResult::errorMax() const {
     return most;
 }
 
-Result<GroundResult> bakeGroundOf(HeightMap& map, const GroundOptions& options) {
+Result<GroundResult> bakeHeightMap(HeightMap& map, const GroundOptions& options) {
     return GroundBaker(map, options).run();
 }
 
-Result<GroundResult> bakeGroundOf(const BakeRequest& request, GroundOptions options) {
+Result<GroundResult> bakeHeightMap(const BakeRequest& request, GroundOptions options) {
     static_cast<void>(RELIEF_TRY(settingsOf(request)));
     options.heights = RELIEF_TRY(parseHeightsSpec(request.heights));
     std::optional<tbb::global_control> control;
@@ -411,7 +411,7 @@ Result<GroundResult> bakeGroundOf(const BakeRequest& request, GroundOptions opti
         control.emplace(tbb::global_control::max_allowed_parallelism, *request.threads);
     }
     HeightMap map = RELIEF_TRY(HeightMap::open(request.mesh, options.heights, request.import_limits));
-    GroundResult result = RELIEF_TRY(bakeGroundOf(map, options));
+    GroundResult result = RELIEF_TRY(bakeHeightMap(map, options));
     result.inputs.push_back({request.mesh, map.hash()});
     return result;
 }

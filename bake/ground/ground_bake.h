@@ -67,11 +67,11 @@ struct GroundOptions {
 /// \param map  positioned before its first row.
 /// Errors, prefixed with the file: kInvalidInput (a damaged image; no square has ground), kLimit (the tree or world is
 /// too large); kIo.
-[[nodiscard]] Result<GroundResult> bakeGroundOf(HeightMap& map, const GroundOptions& options);
+[[nodiscard]] Result<GroundResult> bakeHeightMap(HeightMap& map, const GroundOptions& options);
 
 /// Bakes the height map of a request, with the request's number of threads.
 /// \param options  `heights` comes from the request.
 /// Errors: also those of settingsOf and HeightMap::open.
-[[nodiscard]] Result<GroundResult> bakeGroundOf(const BakeRequest& request, GroundOptions options);
+[[nodiscard]] Result<GroundResult> bakeHeightMap(const BakeRequest& request, GroundOptions options);
 
 }  // namespace relief

@@ -59,7 +59,7 @@ struct GroundAccuracy {
     GroundNear near;
     std::optional<GroundNear> seams;  ///< within a leaf of a seam between tiles; nullopt: no seams
     std::uint64_t uniform_points = 0;
-    WrongShare uniform;                   ///< including holes and the sides
+    WrongPercent uniform;                 ///< including holes and the sides
     std::vector<GroundWorstPlace> worst;  ///< ten places at least four leaves apart, worst first
     std::vector<std::string> warnings;    ///< one line each
     double seconds = 0.0;

@@ -39,7 +39,7 @@ class GroundStrata {
 /// Points near the surface. Distances are along y, in metres, from the height map's surface to the collider's.
 struct GroundNear {
     std::uint64_t points = 0;
-    WrongShare wrong;
+    WrongPercent wrong;
     double mean = 0.0;  ///< positive upwards
     double mean_abs = 0.0;
     double p99 = 0.0;  ///< 99 % of the points have a smaller absolute distance

@@ -106,8 +106,8 @@ Result<HeightMap> HeightMap::open(const std::filesystem::path& path, const Heigh
         map.unit_ = (*spec.high - *spec.low) / map.rows_->most();
     }
     map.has_hole_ = map.spec_.hole.has_value();
-    constexpr double kMost = std::numeric_limits<float>::max();
-    map.hole_ = static_cast<float>(std::clamp(map.spec_.hole.value_or(0.0), -kMost, kMost));
+    constexpr double kMaxValue = std::numeric_limits<float>::max();
+    map.hole_ = static_cast<float>(std::clamp(map.spec_.hole.value_or(0.0), -kMaxValue, kMaxValue));
     return map;
 }
 
@@ -119,30 +119,30 @@ void SampleRange::insertInside(Least& least, float sample) {
     }
 }
 
-std::optional<LoneSample> SampleRange::lone() const {
+std::optional<OutlierSample> SampleRange::lone() const {
     const double range = -double{high_[0]} - double{low_[0]};
     for (const Least* side : {&low_, &high_}) {
         for (std::size_t last = 0; last < kGroupMax; ++last) {
             const double gap = double{(*side)[last + 1]} - double{(*side)[last]};
             if (2.0 * gap > range && std::isfinite((*side)[2 * last + 2])) {
                 const float sign = side == &low_ ? 1.0F : -1.0F;
-                return LoneSample{sign * (*side)[0], sign * (*side)[last], side == &low_, gap};
+                return OutlierSample{sign * (*side)[0], sign * (*side)[last], side == &low_, gap};
             }
         }
     }
     return std::nullopt;
 }
 
-std::optional<LoneSample> HeightMap::lone() const {
-    std::optional<LoneSample> lone = range_.lone();
+std::optional<OutlierSample> HeightMap::lone() const {
+    std::optional<OutlierSample> lone = range_.lone();
     if (lone) {
         lone->gap *= unit_;
     }
     return lone;
 }
 
-LikelierFormat HeightMap::likelierFormat() const {
-    return isRaw() ? likelierRawFormat(bytes_, spec_) : LikelierFormat();
+BetterFormat HeightMap::betterFormat() const {
+    return isRaw() ? findBetterRawFormat(bytes_, spec_) : BetterFormat();
 }
 
 Result<std::unique_ptr<SampleRows>> HeightMap::openRows() const {
@@ -171,7 +171,7 @@ Result<void> HeightMap::next(std::span<float> out) {
         range_.add(sample);
         sample = static_cast<float>(low_ + unit_ * double{sample});
         if (!(std::abs(double{sample}) <= kHeightMax)) {
-            const LikelierFormat format = likelierFormat();
+            const BetterFormat format = betterFormat();
             return invalidInput(shown_ + ": it has a height of " + shortest(sample) + ", beyond 1e9; " +
                                 (format.found() ? "give --heights " + toString(format)
                                  : std::isfinite(sample)

@@ -30,7 +30,7 @@ inline constexpr std::uint64_t kHeightSamplesMax = std::uint64_t{1} << 28;
                                                               const HeightsSpec& spec);
 
 /// Settings that fit raw samples better than the given ones.
-struct LikelierFormat {
+struct BetterFormat {
     std::optional<SampleType> type = {};  ///< nullopt: as given
     std::optional<ByteOrder> order = {};  ///< nullopt: as given
     bool eight_bits = false;              ///< the given settings may also be correct: 8-bit samples times 256
@@ -39,17 +39,17 @@ struct LikelierFormat {
     bool doubtful = false;
 
     [[nodiscard]] bool found() const { return type || order; }
-    friend bool operator==(const LikelierFormat&, const LikelierFormat&) = default;
+    friend bool operator==(const BetterFormat&, const BetterFormat&) = default;
 };
 /// "type=int16,order=big"; empty if no better setting was found.
-[[nodiscard]] std::string toString(const LikelierFormat& format);
+[[nodiscard]] std::string toString(const BetterFormat& format);
 
 /// Searches for better settings. Compares the differences between neighbours in at most 64 rows, and the values of all
 /// bytes.
-[[nodiscard]] LikelierFormat likelierRawFormat(std::span<const std::byte> bytes, const HeightsSpec& spec);
+[[nodiscard]] BetterFormat findBetterRawFormat(std::span<const std::byte> bytes, const HeightsSpec& spec);
 
 /// Up to three extreme values, lowest or highest, far from all others: the gap is more than half the range.
-struct LoneSample {
+struct OutlierSample {
     float sample = 0.0F;  ///< the extreme, as stored in the file
     float last = 0.0F;    ///< the value next to the gap; equals `sample` if there is only one
     bool lowest = false;
@@ -63,7 +63,7 @@ class SampleRange {
         insert(high_, -sample);
     }
     /// Returns the lone values, with the gap in sample units; nullopt unless there are more other values than lone ones.
-    [[nodiscard]] std::optional<LoneSample> lone() const;
+    [[nodiscard]] std::optional<OutlierSample> lone() const;
 
   private:
     static constexpr std::size_t kGroupMax = 3;
@@ -104,9 +104,9 @@ class HeightMap {
     /// The settings, including those that a raw file's extension implies.
     [[nodiscard]] const HeightsSpec& spec() const { return spec_; }
     /// The lone samples of the rows read so far, excluding holes.
-    [[nodiscard]] std::optional<LoneSample> lone() const;
+    [[nodiscard]] std::optional<OutlierSample> lone() const;
     /// Always empty for images.
-    [[nodiscard]] LikelierFormat likelierFormat() const;
+    [[nodiscard]] BetterFormat betterFormat() const;
     /// Whether the file does not state the format of its samples.
     [[nodiscard]] bool isRaw() const { return !image_; }
     /// Whether samples map to heights from `low` to `high`.

@@ -76,7 +76,7 @@ std::string readPairs(std::string_view text, HeightsSpec& spec) {
 
 }  // namespace
 
-bool readForm(std::string_view word, HeightsOffset& offset) {
+bool parseThickness(std::string_view word, HeightsOffset& offset) {
     const std::vector<std::string_view> parts = split(word, '/');
     if (parts.size() != 3) {
         return false;
@@ -91,7 +91,7 @@ bool readForm(std::string_view word, HeightsOffset& offset) {
     return true;
 }
 
-std::string formText(const HeightsOffset& offset) {
+std::string thicknessText(const HeightsOffset& offset) {
     return numberWord(offset.at.x) + "/" + numberWord(offset.at.y) + "/" + numberWord(offset.at.z);
 }
 

@@ -29,8 +29,8 @@ struct HeightsOffset {
     glm::dvec3 at{0.0};
     friend bool operator==(const HeightsOffset&, const HeightsOffset&) = default;
 };
-[[nodiscard]] bool readForm(std::string_view word, HeightsOffset& offset);
-[[nodiscard]] std::string formText(const HeightsOffset& offset);
+[[nodiscard]] bool parseThickness(std::string_view word, HeightsOffset& offset);
+[[nodiscard]] std::string thicknessText(const HeightsOffset& offset);
 
 /// The type of raw samples. Signed integers and floats are metres.
 enum class SampleType : std::uint8_t { kUint16, kInt16, kFloat32 };

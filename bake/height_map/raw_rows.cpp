@@ -237,13 +237,13 @@ Result<std::unique_ptr<SampleRows>> openRawRows(std::span<const std::byte> bytes
     return std::make_unique<RawRows>(bytes, columns, format);
 }
 
-std::string toString(const LikelierFormat& format) {
+std::string toString(const BetterFormat& format) {
     const std::string type = format.type ? "type=" + std::string(wordOf(*format.type)) : std::string();
     const std::string order = format.order ? "order=" + std::string(wordOf(*format.order)) : std::string();
     return type + (type.empty() || order.empty() ? "" : ",") + order;
 }
 
-LikelierFormat likelierRawFormat(std::span<const std::byte> bytes, const HeightsSpec& spec) {
+BetterFormat findBetterRawFormat(std::span<const std::byte> bytes, const HeightsSpec& spec) {
     const RawFormat own = formatOf(spec);
     const auto ofTwoBytes = [&](ByteOrder order) {
         RawFormat format{own.bytes() == 2 ? own.type : SampleType::kUint16, order};
@@ -282,7 +282,7 @@ LikelierFormat likelierRawFormat(std::span<const std::byte> bytes, const Heights
         }
     }
     const RawFormat& found = formats.at(best);
-    LikelierFormat likelier;
+    BetterFormat likelier;
     if (found.type != own.type) {
         likelier.type = found.type;
     }

@@ -379,7 +379,7 @@ class AnimatedReader {
 
     Result<void> countParts() {
         const MeshParts counts = meshes_.counts(RELIEF_TRY(document_.objects("meshes")).size());
-        if (const std::optional<std::string> refusal = partsRefusal(counts)) {
+        if (const std::optional<std::string> refusal = partsError(counts)) {
             return invalidInput(*refusal);
         }
         if (mesh_.triangles.empty()) {
@@ -390,7 +390,7 @@ class AnimatedReader {
             mesh_.triangle_materials.clear();
         }
         out_.unused_vertices = counts.unused;
-        warnOfParts(counts, out_.warnings);
+        warnAboutParts(counts, out_.warnings);
         left_out_.warn(out_.warnings);
         if (odd_sums_ > 0) {
             out_.warnings.push_back(
@@ -408,7 +408,7 @@ class AnimatedReader {
     GltfMeshes meshes_;
     AnimatedMesh mesh_;
     Transform frame_;
-    LeftOutObjects left_out_;
+    SkippedObjects left_out_;
     std::vector<GltfNode> from_;
     std::vector<std::optional<std::uint32_t>> nodes_;  // by node index in the file: index in mesh_
     std::map<std::uint64_t, Skin> skins_;

@@ -195,7 +195,8 @@ void hideBelow(const std::vector<std::uint32_t>& all, std::vector<GltfNode>& nod
 
 /// Marks the nodes that extensions hide, with their descendants. Lower levels of detail are usually not part of a
 /// scene.
-Result<void> hideNodes(const std::vector<std::uint32_t>& all, HiddenAs hidden, std::vector<GltfNode>& nodes) {
+Result<void> hideNodes(const std::vector<std::uint32_t>& all, HiddenMode hidden,
+                       std::vector<GltfNode>& nodes) {
     for (GltfNode& node : nodes) {
         const auto visibility = RELIEF_TRY(extensionOf(node.place, "KHR_node_visibility"));
         if (visibility && !RELIEF_TRY(visibility->get<bool>("visible", true))) {
@@ -222,7 +223,7 @@ Result<void> hideNodes(const std::vector<std::uint32_t>& all, HiddenAs hidden, s
             }
         }
     }
-    RELIEF_TRY(hidden == HiddenAs::kKeep ? Result<void>() : checkLevels(nodes, lower_levels));
+    RELIEF_TRY(hidden == HiddenMode::kKeep ? Result<void>() : checkLevels(nodes, lower_levels));
     hideBelow(all, nodes);
     return {};
 }
@@ -260,7 +261,7 @@ Result<void> checkGltf(const GltfValue& document, std::vector<std::string>& warn
     return checkExtensions(document);
 }
 
-Result<std::vector<GltfNode>> readGltfNodes(const GltfValue& document, HiddenAs hidden) {
+Result<std::vector<GltfNode>> readGltfNodes(const GltfValue& document, HiddenMode hidden) {
     std::vector<GltfNode> nodes;
     for (const GltfValue& place : RELIEF_TRY(document.objects("nodes"))) {
         GltfNode& node = nodes.emplace_back(GltfNode{place});
@@ -339,8 +340,8 @@ std::optional<Transform> affineOf(const float* m) {
                      {m[12], m[13], m[14]}};
 }
 
-Result<std::optional<NodeResponse>> gltfResponse(const GltfValue& document, const GltfNode& node,
-                                                 std::vector<std::string>& warnings) {
+Result<std::optional<SurfaceResponse>> readSurfaceResponse(const GltfValue& document, const GltfNode& node,
+                                                           std::vector<std::string>& warnings) {
     constexpr const char* kPhysics = "KHR_physics_rigid_bodies";
     const auto physics = RELIEF_TRY(extensionOf(node.place, kPhysics));
     const auto collider = physics ? RELIEF_TRY(physics->object("collider")) : std::nullopt;
@@ -356,7 +357,7 @@ Result<std::optional<NodeResponse>> gltfResponse(const GltfValue& document, cons
                                std::to_string(all.size()));
     }
     const GltfValue& material = all[*index];
-    NodeResponse response;
+    SurfaceResponse response;
     response.name = RELIEF_TRY(material.get<std::string>("name", ""));
     // Defaults of the extension's schema.
     response.restitution = RELIEF_TRY(material.get<float>("restitution", 0.0F));

@@ -47,9 +47,9 @@ struct GltfNode {
 /// to 1.
 /// \param warnings  receives at most one line about combine modes.
 /// Errors: kInvalidInput.
-[[nodiscard]] Result<std::optional<NodeResponse>> gltfResponse(const GltfValue& document,
-                                                               const GltfNode& node,
-                                                               std::vector<std::string>& warnings);
+[[nodiscard]] Result<std::optional<SurfaceResponse>> readSurfaceResponse(const GltfValue& document,
+                                                                         const GltfNode& node,
+                                                                         std::vector<std::string>& warnings);
 
 /// Checks version and extensions. \param warnings  receives unsupported optional extensions. Errors: kInvalidInput,
 /// kUnsupported.
@@ -57,7 +57,7 @@ struct GltfNode {
 
 /// Reads all nodes, in file order. Errors: kInvalidInput, also if the nodes do not form trees, or if a node is a
 /// lower level of detail of itself and such levels are skipped.
-[[nodiscard]] Result<std::vector<GltfNode>> readGltfNodes(const GltfValue& document, HiddenAs hidden);
+[[nodiscard]] Result<std::vector<GltfNode>> readGltfNodes(const GltfValue& document, HiddenMode hidden);
 
 /// Returns the root nodes of the default scene, or of the first one. Errors: kInvalidInput.
 [[nodiscard]] Result<std::vector<std::uint32_t>> gltfRoots(const GltfValue& document,

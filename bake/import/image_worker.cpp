@@ -42,7 +42,7 @@ class WorkerRows : public SampleRows {
         }
         // On failure, the worker buffers fewer rows.
         static_cast<void>(::fcntl(end.get(), F_SETPIPE_SZ, kPipeBytes));
-        RELIEF_TRY(worker_.start("image", kImportImage, {std::string(kImportNamesFollow)},
+        RELIEF_TRY(worker_.start("image", kImportImage, {std::string(kImportNamesMarker)},
                                  {image, -1, end.get(), end.get()}));
         end.reset();
         std::array<std::byte, 1> begun{};

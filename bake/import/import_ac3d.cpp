@@ -299,7 +299,7 @@ class Ac3dReader {
 
     void addPart(std::uint64_t material, PolygonMesh polygons, SceneNode& node) {
         polygons.positions = positions_;
-        ScenePart part = cutPolygons(polygons);
+        ScenePart part = triangulatePolygons(polygons);
         if (part.triangles.empty()) {
             return;
         }

@@ -20,7 +20,7 @@
 
 #include "bake/import/import_readers.h"
 #include "bake/import/import_scene.h"
-#include "bake/import/source_marks.h"
+#include "bake/import/source_properties.h"
 #include "formats/base/text.h"
 
 namespace relief {
@@ -233,7 +233,7 @@ bool addMeshes(const aiScene& source, ImportScene& scene) {
                                  &MeshParts::vertices, &MeshParts::unused, &MeshParts::loose}) {
             scene.counts.*count += counts.*count;
         }
-        ScenePart part = cutPolygons(*polygons);
+        ScenePart part = triangulatePolygons(*polygons);
         if (counts.lines + counts.points > 0) {
             unshare(part);
         }
@@ -454,7 +454,7 @@ Result<ImportScene> readWithAssimp(AssimpFrame format, const ImportJob& job, Imp
     Assimp::Importer importer;
     keepReadersOf(job.extension, importer);
     const std::optional<std::vector<std::byte>> marked =
-        format == AssimpFrame::kFbx ? markedFbx(job.bytes) : std::nullopt;
+        format == AssimpFrame::kFbx ? patchedFbx(job.bytes) : std::nullopt;
     importer.SetIOHandler(new ReadOnlyFiles(files, marked ? *marked : files.meshBytes()));
     // Otherwise assimp creates a placeholder mesh for files that contain only bones.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);

@@ -57,7 +57,7 @@ class GltfReader {
             node.names = {node.shown};
             node.transform = nodes_[index].at.transform;
             node.children = nodes_[index].children;
-            node.response = RELIEF_TRY(gltfResponse(document_, nodes_[index], scene_.warnings));
+            node.response = RELIEF_TRY(readSurfaceResponse(document_, nodes_[index], scene_.warnings));
         }
         scene_.roots = RELIEF_TRY(gltfRoots(document_, nodes_));
         RELIEF_TRY(readShown());
@@ -153,7 +153,7 @@ class GltfReader {
         return skin;
     }
 
-    HiddenAs hidden_;
+    HiddenMode hidden_;
     const GltfValue& document_;
     GltfBuffers buffers_;
     ImportScene scene_;

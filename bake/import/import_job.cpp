@@ -60,7 +60,7 @@ std::optional<double> metresPer(std::string_view unit) {
                : std::optional(kMetres.at(static_cast<std::size_t>(found - kLengthUnits.begin())));
 }
 
-glm::dmat3 turnUpwards(UpAxis up) {
+glm::dmat3 rotationToUp(UpAxis up) {
     // Columns: the images of x, y and z.
     static const glm::dmat3 kTurns[] = {
         {{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}}, {{0, -1, 0}, {1, 0, 0}, {0, 0, 1}},
@@ -87,7 +87,7 @@ FrameChange changeOf(const SourceFrame& source, std::string_view unit, std::opti
                                                          : UpAxis::kPlusZ;
     };
     if (up || source.up) {
-        change.turn = turnUpwards(now(up ? *up : *source.up));
+        change.turn = rotationToUp(now(up ? *up : *source.up));
     }
     if (up && source.up && *up != *source.up) {
         change.warnings.push_back("--up " + std::string(wordOf(*up)) + " overrides the file's up axis, " +

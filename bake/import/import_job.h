@@ -30,7 +30,7 @@ inline constexpr std::array<std::string_view, 8> kLengthUnits{"m", "cm", "mm", "
 
 /// Returns the rotation that maps `up` to +Y, exactly (its entries are 0, 1 and −1): a quarter turn about z for ±x, a
 /// quarter turn about x for ±z, and a half turn about x for −y.
-[[nodiscard]] glm::dmat3 turnUpwards(UpAxis up);
+[[nodiscard]] glm::dmat3 rotationToUp(UpAxis up);
 
 struct SourceFrame {
     std::optional<double> metres;  ///< per unit of the file
@@ -62,9 +62,9 @@ struct FrameChange {
                                    std::optional<UpAxis> up);
 
 /// Treatment of geometry that the file hides: hidden objects and lower levels of detail.
-enum class HiddenAs : std::uint8_t { kSkip, kKeep };
+enum class HiddenMode : std::uint8_t { kSkip, kKeep };
 template <>
-inline constexpr std::array<std::string_view, 2> kWordsOf<HiddenAs>{"skip", "keep"};
+inline constexpr std::array<std::string_view, 2> kWordsOf<HiddenMode>{"skip", "keep"};
 
 struct ImportOptions {
     /// Length unit of the source, one of kLengthUnits; the mesh is converted to metres. "": the file's unit. If the
@@ -73,10 +73,10 @@ struct ImportOptions {
     /// Up axis of the source; the mesh is rotated so that it becomes +Y. nullopt: the file's axis. If the file has
     /// none, axes are unchanged.
     std::optional<UpAxis> up;
-    HiddenAs hidden = HiddenAs::kSkip;
+    HiddenMode hidden = HiddenMode::kSkip;
     /// Names that mark triangles (TriangleMesh::marks): of nodes, including their descendants, of meshes, of materials,
-    /// and of OBJ groups and objects. Clean UTF-8 (cleanUtf8); at most kAskedNamesMax names of at most
-    /// kAskedNameBytesMax bytes. Names in the file are cleaned and truncated in the same way. If a name matches no
+    /// and of OBJ groups and objects. Clean UTF-8 (cleanUtf8); at most kSelectedNamesMax names of at most
+    /// kSelectedNameBytesMax bytes. Names in the file are cleaned and truncated in the same way. If a name matches no
     /// triangle, the import fails (kUsage) and lists the existing names.
     std::vector<std::string> names{};
     bool materials = true;  ///< in a level, meshes that differ only in materials stay separate

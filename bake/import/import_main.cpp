@@ -123,7 +123,7 @@ int work(std::span<char*> arguments) {
     }
     ImportOptions options;
     std::size_t next = 6;
-    for (; arguments[next] != kImportNamesFollow; next += 2) {
+    for (; arguments[next] != kImportNamesMarker; next += 2) {
         if (next + 2 >= arguments.size() || !setField(options, arguments[next], arguments[next + 1])) {
             return kImportExitArguments;
         }

@@ -184,17 +184,17 @@ Result<TriangleMesh> readImportMessage(std::span<const std::byte> bytes, std::ui
         warning = cleanUtf8(warning, kErrorBytesMax);
     }
     for (SurfaceName& name : raw.surface_names) {
-        name.node = cleanUtf8(name.node, kAskedNameBytesMax);
-        name.material = cleanUtf8(name.material, kAskedNameBytesMax);
+        name.node = cleanUtf8(name.node, kSelectedNameBytesMax);
+        name.material = cleanUtf8(name.material, kSelectedNameBytesMax);
         if (!isFraction(name.restitution) || !isFraction(name.friction)) {
             return noMessage();
         }
     }
     for (LevelMesh& mesh : raw.level_meshes) {
-        mesh.name = cleanUtf8(mesh.name, kAskedNameBytesMax);
+        mesh.name = cleanUtf8(mesh.name, kSelectedNameBytesMax);
     }
     for (LevelBody& body : raw.level_bodies) {
-        body.node = cleanUtf8(body.node, kAskedNameBytesMax);
+        body.node = cleanUtf8(body.node, kSelectedNameBytesMax);
     }
     return raw;
 }

@@ -115,7 +115,7 @@ Result<void> ImportProcess::start(const std::string& path, std::string_view kind
     return failed == 0 ? Result<void>() : notStarted(failed);
 }
 
-tl::unexpected<Error> ImportProcess::timeIsUp() const {
+tl::unexpected<Error> ImportProcess::timeoutError() const {
     return fail(ErrorCode::kLimit, "the importer did not finish within " + std::to_string(limits_.seconds) +
                                        " s; " + smaller_ + " or raise --import-timeout");
 }
@@ -130,7 +130,7 @@ Result<void> ImportProcess::await(int pipe, short events) {
         found = ::poll(&ready, 1, static_cast<int>(std::clamp<std::int64_t>(left, 0, 1'000'000)));
     }
     left_ -= Clock::now() - begin;
-    return found > 0 ? Result<void>() : timeIsUp();
+    return found > 0 ? Result<void>() : timeoutError();
 }
 
 Result<void> ImportProcess::finish(bool begun) {
@@ -173,7 +173,7 @@ tl::unexpected<Error> ImportProcess::unreadable(const std::string& what) const {
 tl::unexpected<Error> ImportProcess::ended(int number) const {
     switch (number) {
         case SIGXCPU:
-            return timeIsUp();
+            return timeoutError();
         case SIGKILL:
         case SIGTERM:
         case SIGINT:

@@ -50,7 +50,7 @@ class ImportProcess {
     [[nodiscard]] static tl::unexpected<Error> notStarted(int number);
 
   private:
-    [[nodiscard]] tl::unexpected<Error> timeIsUp() const;
+    [[nodiscard]] tl::unexpected<Error> timeoutError() const;
     [[nodiscard]] tl::unexpected<Error> ended(int number) const;
     [[nodiscard]] tl::unexpected<Error> unreadable(const std::string& what) const;
 

@@ -30,7 +30,7 @@
 
 namespace relief {
 
-inline constexpr std::string_view kImportNamesFollow = "names";  ///< ends the list of fields
+inline constexpr std::string_view kImportNamesMarker = "names";  ///< ends the list of fields
 
 inline constexpr std::string_view kImportImage = "image";
 

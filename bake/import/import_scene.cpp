@@ -102,13 +102,13 @@ void warnOnce(std::vector<std::string>& warnings, const std::string& warning) {
 }
 
 std::string firstName(const std::string& name, std::uint64_t count) {
-    return name.empty()
-               ? std::string()
-               : std::string(count == 1 ? " ('" : " (first '") + cleanUtf8(name, kAskedNameBytesMax) + "')";
+    return name.empty() ? std::string()
+                        : std::string(count == 1 ? " ('" : " (first '") +
+                              cleanUtf8(name, kSelectedNameBytesMax) + "')";
 }
 
-bool LeftOutObjects::leaveOut(Shown shown, const std::string& name, HiddenAs hidden) {
-    if (shown == Shown::kYes || hidden == HiddenAs::kKeep) {
+bool SkippedObjects::leaveOut(Shown shown, const std::string& name, HiddenMode hidden) {
+    if (shown == Shown::kYes || hidden == HiddenMode::kKeep) {
         return false;
     }
     const std::size_t kind = shown == Shown::kHidden ? 0 : 1;
@@ -119,7 +119,7 @@ bool LeftOutObjects::leaveOut(Shown shown, const std::string& name, HiddenAs hid
     return true;
 }
 
-void LeftOutObjects::warn(std::vector<std::string>& warnings) const {
+void SkippedObjects::warn(std::vector<std::string>& warnings) const {
     constexpr std::array<std::array<const char*, 2>, 2> kWords = {
         {{"hidden object", "hidden objects"}, {"lower level of detail", "lower levels of detail"}}};
     for (std::size_t kind = 0; kind < 2; ++kind) {

@@ -51,11 +51,11 @@ struct ScenePart {
 std::vector<std::uint32_t> compact(const std::vector<glm::vec3>& positions, ScenePart& part);
 
 /// The surface response of a node (formats/materials.h).
-struct NodeResponse {
+struct SurfaceResponse {
     std::string name;  ///< material name for parts without one
     float restitution = 1.0F;
     float friction = 0.0F;
-    friend auto operator<=>(const NodeResponse&, const NodeResponse&) = default;
+    friend auto operator<=>(const SurfaceResponse&, const SurfaceResponse&) = default;
 };
 
 enum class Shown : std::uint8_t {
@@ -71,7 +71,7 @@ struct SceneNode {
     bool posed = false;                ///< its parts are in scene space, regardless of transforms
     std::vector<std::string> names{};  ///< for --as; they select the node and all its descendants
     std::string shown{};               ///< SurfaceName::node; the next two members are for SurfaceName, too
-    std::optional<NodeResponse> response{};
+    std::optional<SurfaceResponse> response{};
     std::optional<std::uint32_t> index{};  ///< nullopt: each placement counts as a separate node
     std::vector<std::uint32_t> parts{};
     std::vector<std::uint32_t> children{};
@@ -96,13 +96,13 @@ struct ImportScene {
                                        ImportScene& scene);
 
 /// Triangulates the polygons into one part without names.
-[[nodiscard]] ScenePart cutPolygons(const PolygonMesh& polygons);
+[[nodiscard]] ScenePart triangulatePolygons(const PolygonMesh& polygons);
 
 /// Returns the error for a file with vertices or lines, but without polygons; nullopt for other files.
-[[nodiscard]] std::optional<std::string> partsRefusal(const MeshParts& parts);
+[[nodiscard]] std::optional<std::string> partsError(const MeshParts& parts);
 /// Warns about skipped lines, points, free forms and meshes, and about many loose vertices; one line each, without the
 /// file name.
-void warnOfParts(const MeshParts& parts, std::vector<std::string>& warnings);
+void warnAboutParts(const MeshParts& parts, std::vector<std::string>& warnings);
 
 /// Merges all shown parts of the scene into one mesh, with marks for the job's names and with warnings of skipped parts.
 /// Converts to metres and +Y up if the frame or the job specifies unit and axis. Counts all triangles before
@@ -127,10 +127,10 @@ inline constexpr const char* kAnimatedVisibility =
 [[nodiscard]] std::string firstName(const std::string& name, std::uint64_t count);
 
 /// Counts hidden objects and lower levels of detail that an import skips.
-class LeftOutObjects {
+class SkippedObjects {
   public:
     /// Counts the object if it is skipped. \param name  as stored in the file. \return whether it is skipped.
-    bool leaveOut(Shown shown, const std::string& name, HiddenAs hidden);
+    bool leaveOut(Shown shown, const std::string& name, HiddenMode hidden);
     void warn(std::vector<std::string>& warnings) const;
     [[nodiscard]] bool any() const { return counts_ != std::array<std::uint64_t, 2>{}; }
 
@@ -139,7 +139,7 @@ class LeftOutObjects {
     std::array<std::string, 2> first_names_{};  // by the same index
 };
 
-/// Returns the error "no triangles…". \param left_out  any() of LeftOutObjects.
+/// Returns the error "no triangles…". \param left_out  any() of SkippedObjects.
 [[nodiscard]] tl::unexpected<Error> noTriangles(bool left_out);
 
 /// Returns the error "it has more than N triangles…" (kLimit).

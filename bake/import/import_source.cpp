@@ -54,30 +54,30 @@ Result<ImportSource> ImportSource::open(const fs::path& path) {
     return ImportSource(path, extension.substr(1), std::move(bytes));
 }
 
-tl::unexpected<Error> ImportSource::badAnswer(const char* what) const {
+tl::unexpected<Error> ImportSource::invalidResult(const char* what) const {
     return fail(ErrorCode::kInvalidInput,
                 quotedPath(path_) + ": the importer returned " + what + "; export the mesh again");
 }
 
 Result<TriangleMesh> ImportSource::finish(TriangleMesh raw, std::size_t names) const {
     if (!raw.level_meshes.empty() || !raw.level_bodies.empty()) {
-        return badAnswer("a level that was not requested");
+        return invalidResult("a level that was not requested");
     }
     if (!raw.animation.empty()) {
-        return badAnswer("an animation that was not requested");
+        return invalidResult("an animation that was not requested");
     }
     return finishMesh(RELIEF_TRY(named(std::move(raw), names)));
 }
 
 Result<Level> ImportSource::finishLevel(TriangleMesh raw, std::size_t names, bool materials) const {
     if (!raw.animation.empty()) {
-        return badAnswer("an animation that was not requested");
+        return invalidResult("an animation that was not requested");
     }
     Result<TriangleMesh> all = named(std::move(raw), names);
     if (!all) {
         return forward(all);
     }
-    Result<Level> level = cutLevel(std::move(*all), materials);
+    Result<Level> level = splitLevel(std::move(*all), materials);
     return level ? std::move(level)
                  : fail(level.error().code, quotedPath(path_) + ": " + level.error().message);
 }
@@ -86,11 +86,11 @@ Result<AnimatedImport> ImportSource::finishAnimated(TriangleMesh raw, ImportKind
     const bool clips = kind == ImportKind::kClips;
     Result<AnimatedMesh> mesh = clips ? readAnimatedClips(raw.animation) : readAnimatedMesh(raw.animation);
     if (!mesh) {
-        return badAnswer("bytes that are not an animated mesh");
+        return invalidResult("bytes that are not an animated mesh");
     }
     if (!raw.level_meshes.empty() || !raw.level_bodies.empty() || !raw.positions.empty() ||
         !raw.triangles.empty() || !raw.surface_names.empty()) {
-        return badAnswer("more than an animated mesh");
+        return invalidResult("more than an animated mesh");
     }
     raw.animation.clear();
     raw = RELIEF_TRY(named(std::move(raw), 0));
@@ -104,11 +104,11 @@ Result<AnimatedImport> ImportSource::finishAnimated(TriangleMesh raw, ImportKind
 
 Result<TriangleMesh> ImportSource::named(TriangleMesh raw, std::size_t names) const {
     if (!(raw.unit.empty() || raw.unit == "m") || raw.dependencies.size() != raw.dependency_hashes.size()) {
-        return badAnswer("an invalid unit or list of files");
+        return invalidResult("an invalid unit or list of files");
     }
     if (raw.marks.size() != (names > 0 ? raw.triangles.size() : 0) ||
         std::ranges::any_of(raw.marks, [&](std::uint8_t mark) { return mark > names; })) {
-        return badAnswer("names that were not requested");
+        return invalidResult("names that were not requested");
     }
     const std::string name = cleanUtf8(path_.filename().string(), kMeshNameMax);
     std::vector<std::pair<std::string, std::string>> files;  // path, hash
@@ -119,7 +119,7 @@ Result<TriangleMesh> ImportSource::named(TriangleMesh raw, std::size_t names) co
                              std::find(relative.begin(), relative.end(), "..") == relative.end() &&
                              file.find('\0') == std::string::npos;
         if (!beneath || !isHash(raw.dependency_hashes[i])) {
-            return badAnswer("a file that is not below the mesh's folder, or has no hash");
+            return invalidResult("a file that is not below the mesh's folder, or has no hash");
         }
         files.emplace_back((path_.parent_path() / relative).string(), raw.dependency_hashes[i]);
     }

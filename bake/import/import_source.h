@@ -41,7 +41,7 @@ class ImportSource {
     [[nodiscard]] Result<AnimatedImport> finishAnimated(TriangleMesh raw, ImportKind kind) const;
 
   private:
-    [[nodiscard]] tl::unexpected<Error> badAnswer(const char* what) const;
+    [[nodiscard]] tl::unexpected<Error> invalidResult(const char* what) const;
     [[nodiscard]] Result<TriangleMesh> named(TriangleMesh raw, std::size_t names) const;
 
     ImportSource(std::filesystem::path path, std::string extension, std::vector<std::byte> bytes);

@@ -88,7 +88,7 @@ class MeshWorker {
             words.push_back(option.name);
             words.push_back(option.words.front());
         }
-        words.emplace_back(kImportNamesFollow);
+        words.emplace_back(kImportNamesMarker);
         words.insert(words.end(), options_.names.begin(), options_.names.end());
         return words;
     }

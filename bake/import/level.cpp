@@ -140,7 +140,7 @@ std::uint32_t LevelMeshes::add(TriangleMesh mesh, bool materials) {
     return found->second;
 }
 
-Result<Level> cutLevel(TriangleMesh all, bool materials) {
+Result<Level> splitLevel(TriangleMesh all, bool materials) {
     if (!fits(all)) {
         return invalidInput("the importer returned an inconsistent level; export it again");
     }

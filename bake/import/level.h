@@ -73,6 +73,6 @@ class LevelMeshes {
 /// \param all        with name and hash; its lists of meshes and bodies are untrusted.
 /// \param materials  as in LevelMeshes::add().
 /// Errors, without the file path: kInvalidInput (inconsistent lists, or no mesh left).
-[[nodiscard]] Result<Level> cutLevel(TriangleMesh all, bool materials = true);
+[[nodiscard]] Result<Level> splitLevel(TriangleMesh all, bool materials = true);
 
 }  // namespace relief

@@ -153,8 +153,8 @@ int startOnDeepStack(Import& import) {
 }  // namespace
 
 Result<TriangleMesh> importRaw(const ImportJob& job) {
-    if (job.options.names.size() > kAskedNamesMax) {
-        return fail(ErrorCode::kLimit, job.shown + ": more than " + std::to_string(kAskedNamesMax) +
+    if (job.options.names.size() > kSelectedNamesMax) {
+        return fail(ErrorCode::kLimit, job.shown + ": more than " + std::to_string(kSelectedNamesMax) +
                                            " names are requested at once; use fewer");
     }
     ImportJob without_mark = job;

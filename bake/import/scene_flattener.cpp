@@ -32,7 +32,7 @@ bool isPlaced(const glm::dvec3& offset, double scale) {
 class NameMarks {
   public:
     explicit NameMarks(const ImportJob& job) : job_(job) {
-        for (std::size_t i = 0; i < std::min(job.options.names.size(), kAskedNamesMax); ++i) {
+        for (std::size_t i = 0; i < std::min(job.options.names.size(), kSelectedNamesMax); ++i) {
             marks_[job.options.names[i]] = static_cast<std::uint8_t>(i + 1);
         }
     }
@@ -45,7 +45,7 @@ class NameMarks {
     std::uint8_t record(const std::vector<std::string>& names) {
         std::uint8_t mark = 0;
         for (std::size_t i = 0; any() && i < names.size(); ++i) {
-            const std::string name = cleanUtf8(names[i], kAskedNameBytesMax);
+            const std::string name = cleanUtf8(names[i], kSelectedNameBytesMax);
             // The file's own name, which some readers give to the root, is not listed.
             if (!name.empty() && name != job_.file_name && names_.size() < kNamesMax &&
                 known_.insert(name).second) {
@@ -67,7 +67,7 @@ class NameMarks {
         if (unmatched == selected.end()) {
             return {};
         }
-        std::string text = "no triangle has the name '" + cleanUtf8(*unmatched, kAskedNameBytesMax) + "'";
+        std::string text = "no triangle has the name '" + cleanUtf8(*unmatched, kSelectedNameBytesMax) + "'";
         const std::vector<std::string_view> known(names_.begin(), names_.end());
         text += didYouMean(*unmatched, known);
         if (known.empty()) {
@@ -137,7 +137,7 @@ class Flattener {
     };
     /// Identifies a mesh: its parts, its mark, the linear transform applied to it (columns), and its node's response.
     using MeshKey = std::tuple<std::vector<std::uint32_t>, std::uint8_t, std::array<double, 9>,
-                               std::optional<NodeResponse>>;
+                               std::optional<SurfaceResponse>>;
 
     Result<void> prepare() {
         states_.resize(scene_.nodes.size());
@@ -201,7 +201,7 @@ class Flattener {
         const RigidPose rigid = pose.value_or(RigidPose{{0.0, 0.0, 0.0, 1.0}, 1.0});
         if (!isPlaced(use.transform.offset, rigid.scale)) {
             return invalidInput(
-                "the node '" + cleanUtf8(use.node->shown, kAskedNameBytesMax) +
+                "the node '" + cleanUtf8(use.node->shown, kSelectedNameBytesMax) +
                 "' is beyond 1e15, or its scale is not between 1e-9 and 1e9; fix its transform");
         }
         const std::uint32_t mesh = RELIEF_TRY(meshOf(use, applied));
@@ -278,11 +278,11 @@ class Flattener {
             counts.meshes += filled ? 1 : 0;
             counts.unplaced += filled && !placed_[i] ? 1 : 0;
         }
-        if (const std::optional<std::string> refusal = partsRefusal(counts)) {
+        if (const std::optional<std::string> refusal = partsError(counts)) {
             return invalidInput(*refusal);
         }
         mesh_.unused_vertices = counts.unused;
-        warnOfParts(counts, mesh_.warnings);
+        warnAboutParts(counts, mesh_.warnings);
         return {};
     }
 
@@ -358,11 +358,11 @@ class Flattener {
         }
         mesh_.marks.resize(marks_.any() ? mesh_.triangles.size() : 0,
                            std::max(mark, marks_.record(part.names)));
-        const NodeResponse response = node.response.value_or(NodeResponse());
+        const SurfaceResponse response = node.response.value_or(SurfaceResponse());
         mesh_.labels.resize(
             mesh_.triangles.size(),
-            labelOf({node.index.value_or(uses_), cleanUtf8(node.shown, kAskedNameBytesMax),
-                     cleanUtf8(part.material.empty() ? response.name : part.material, kAskedNameBytesMax),
+            labelOf({node.index.value_or(uses_), cleanUtf8(node.shown, kSelectedNameBytesMax),
+                     cleanUtf8(part.material.empty() ? response.name : part.material, kSelectedNameBytesMax),
                      response.restitution, response.friction}));
     }
 
@@ -380,7 +380,7 @@ class Flattener {
     const ImportJob& job_;
     NameMarks marks_;
     Transform root_;
-    LeftOutObjects left_out_;
+    SkippedObjects left_out_;
     std::vector<State> states_;  // by node
     std::vector<bool> placed_;   // by part
     TriangleMesh mesh_;

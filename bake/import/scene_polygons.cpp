@@ -100,7 +100,7 @@ MeshParts partsOf(const PolygonMesh& mesh) {
     MeshParts parts = mesh.others;
     constexpr std::uint8_t kByOther = 1;
     constexpr std::uint8_t kByPolygon = 2;
-    std::vector<std::uint8_t> used = mesh.in_others;
+    std::vector<std::uint8_t> used = mesh.used_by_others;
     used.resize(mesh.positions.size(), 0);
     auto corner = mesh.corners.begin();
     for (const std::uint32_t size : mesh.sizes) {
@@ -156,11 +156,11 @@ Result<void> addPolygons(const PolygonMesh& polygons, bool apart, const ImportJo
     return {};
 }
 
-ScenePart cutPolygons(const PolygonMesh& polygons) {
+ScenePart triangulatePolygons(const PolygonMesh& polygons) {
     return PolygonRuns(polygons, false).upTo(polygons.sizes.size(), false);
 }
 
-std::optional<std::string> partsRefusal(const MeshParts& parts) {
+std::optional<std::string> partsError(const MeshParts& parts) {
     if (parts.polygons > 0) {
         return std::nullopt;
     }
@@ -175,7 +175,7 @@ std::optional<std::string> partsRefusal(const MeshParts& parts) {
     return std::nullopt;
 }
 
-void warnOfParts(const MeshParts& parts, std::vector<std::string>& warnings) {
+void warnAboutParts(const MeshParts& parts, std::vector<std::string>& warnings) {
     if (const std::string others = othersText(parts); !others.empty()) {
         warnings.push_back("left out " + others + ": only polygons have a surface");
     }

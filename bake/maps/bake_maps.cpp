@@ -151,7 +151,7 @@ PatchOptions patchOptions(const BakeOptions& bake, const MapSpec& spec) {
     options.bytes = spec.bytes > 0 ? spec.bytes : kPatchBytesMax;
     options.texel = double{spec.texel};
     options.coarsen = spec.bytes > 0;
-    options.roots_hold = bake.roots_hold;
+    options.roots_contain = bake.roots_contain;
     options.costs.false_inside = bake.prefer == Prefer::kOutside ? kPreferredCost : 1.0;
     options.costs.false_outside = bake.prefer == Prefer::kInside ? kPreferredCost : 1.0;
     if (bake.quality == Quality::kFast) {
@@ -420,7 +420,7 @@ constexpr double kWrongPerStep = 0.1;
 
 double wrongByFloats(const TriangleMesh& mesh) {
     const double step = std::ldexp(1.0, std::ilogb(mesh.bounds.farthest()) - 23);
-    const double sigma = AccuracyOptions().sigma_share * double{mesh.bounds.longestSide()};
+    const double sigma = AccuracyOptions().sigma_fraction * double{mesh.bounds.longestSide()};
     return std::min(50.0, 100.0 * kWrongPerStep * step / sigma);
 }
 

@@ -39,8 +39,8 @@ struct BakeOptions {
     std::uint64_t budget = 0;  ///< bytes of patches, only recorded in the collider; 0: none
     /// Object units: MapSpec::texel for bakePatchesWithin(). 0: limited only by the budget.
     float texel = 0.0F;
-    std::optional<Bounds> roots_hold{};  ///< PatchOptions::roots_hold
-    unsigned threads = 0;                ///< 0: all cores; the result does not depend on it
+    std::optional<Bounds> roots_contain{};  ///< PatchOptions::roots_contain
+    unsigned threads = 0;                   ///< 0: all cores; the result does not depend on it
     /// Called periodically with the fraction of the work done, in [0, 1]; from any thread, never concurrently. Its
     /// exceptions end bake() and propagate.
     std::function<void(double)> progress;

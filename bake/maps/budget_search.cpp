@@ -76,7 +76,7 @@ class Search {
     Result<bool> meetsLimit(std::uint64_t budget) {
         Baked baked = RELIEF_TRY(bakePatchesWithin(query_, budget, options_.bake));
         const double wrong = measureField(truth_, fieldOf(baked.collider)).near.total();
-        const BudgetTry attempt{budget, baked.collider.texelBytes(), wrong};
+        const BudgetTrial attempt{budget, baked.collider.texelBytes(), wrong};
         tries_.push_back(attempt);
         if (options_.tried) {
             options_.tried(attempt);
@@ -91,7 +91,7 @@ class Search {
     [[nodiscard]] tl::unexpected<Error> notReached() const {
         const auto best = std::min_element(
             tries_.begin(), tries_.end(),
-            [](const BudgetTry& a, const BudgetTry& b) { return a.wrong_percent < b.wrong_percent; });
+            [](const BudgetTrial& a, const BudgetTrial& b) { return a.wrong_percent < b.wrong_percent; });
         return fail(ErrorCode::kDifference,
                     query_.mesh().name + ": --max-error " + percentText(options_.max_error_percent) +
                         " is not reached within " + megabytes(options_.budget_max) + "; the best is " +
@@ -102,7 +102,7 @@ class Search {
     const MeshQuery& query_;
     const BudgetSearchOptions& options_;
     TruthSamples truth_;
-    std::vector<BudgetTry> tries_;
+    std::vector<BudgetTrial> tries_;
     std::optional<BudgetSearchResult> best_;
 };
 
@@ -127,7 +127,7 @@ Result<BudgetSearchResult> bakeForError(const MeshQuery& query, const MeshQuery&
     return Search(query, truth, options).run();
 }
 
-void fields(FieldVisitor& visit, const BudgetTry& attempt) {
+void fields(FieldVisitor& visit, const BudgetTrial& attempt) {
     visit("budget", attempt.budget, {"Maximum bytes of texels"});
     visit("bytes", attempt.bytes, {"Actual bytes of texels"});
     visit("wrong_percent", attempt.wrong_percent,

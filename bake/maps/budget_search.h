@@ -24,13 +24,13 @@ inline constexpr std::uint64_t kBudgetMin = 4096;  ///< bytes
 [[nodiscard]] Result<Baked> bakePatchesWithin(const MeshQuery& query, std::uint64_t budget_bytes,
                                               BakeOptions options);
 
-struct BudgetTry {
+struct BudgetTrial {
     std::uint64_t budget = 0;    ///< bytes
     std::uint64_t bytes = 0;     ///< on the GPU, at most the budget
     double wrong_percent = 0.0;  ///< misclassified points near the surface (FieldAccuracy::near)
 };
 
-void fields(FieldVisitor& visit, const BudgetTry& attempt);
+void fields(FieldVisitor& visit, const BudgetTrial& attempt);
 
 struct BudgetSearchOptions {
     double max_error_percent = 1.0;
@@ -41,13 +41,13 @@ struct BudgetSearchOptions {
     /// smaller than the effect of another bisection.
     AccuracyOptions accuracy{.samples = 50'000};
     /// Called after each attempt.
-    std::function<void(const BudgetTry&)> tried;
+    std::function<void(const BudgetTrial&)> tried;
 };
 
 struct BudgetSearchResult {
     Baked baked;
-    BudgetTry chosen;
-    std::vector<BudgetTry> tries;  ///< in the order of the attempts
+    BudgetTrial chosen;
+    std::vector<BudgetTrial> tries;  ///< in the order of the attempts
 };
 
 /// Finds the smallest budget that meets the error limit. Budgets grow by factors of four; four bisections of the

@@ -160,7 +160,7 @@ std::vector<MaterialSample> sampleContacts(const Collider& collider, const Mater
             }
             const ClosestPoint foot = query->closest(glm::vec3(contact->at), contact->triangle);
             const std::uint8_t id = source.ids[foot.triangle];
-            const bool unclear = query->otherWithin(glm::vec3(foot.point), texel, source.ids, id);
+            const bool unclear = query->hasOtherLabelWithin(glm::vec3(foot.point), texel, source.ids, id);
             all[k][side] = MaterialSample{contact->at, contact->normal, id, unclear ? 1 : kClearContact};
         }
     });

@@ -492,7 +492,7 @@ Materials materialsFor(const Collider& collider, const MaterialSource* source) {
     options.box = collider.bounds;
     options.texel = double{finestTexel(collider)};
     options.budget =
-        std::max(static_cast<std::size_t>(kMaterialsShare * static_cast<double>(collider.texelBytes())),
+        std::max(static_cast<std::size_t>(kMaterialsFractionMax * static_cast<double>(collider.texelBytes())),
                  kMaterialsBytesMin);
     return TreeBuilder(*source, options, sampleContacts(collider, *source)).build();
 }

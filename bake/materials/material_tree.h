@@ -12,11 +12,11 @@
 namespace relief {
 
 /// Maximum size of the materials, as a fraction of the maps' bytes.
-inline constexpr double kMaterialsShare = 0.06;
+inline constexpr double kMaterialsFractionMax = 0.06;
 /// Minimum allowance for a small collider: patches of flat surfaces use few bytes, regardless of their materials.
 inline constexpr std::size_t kMaterialsBytesMin = 4096;
 
-/// Builds the materials of a collider within kMaterialsShare of its maps' bytes or kMaterialsBytesMin; none if `source`
+/// Builds the materials of a collider within kMaterialsFractionMax of its maps' bytes or kMaterialsBytesMin; none if `source`
 /// is null. If the budget does not suffice, minimizes the area with a wrong material. The result does not depend on the
 /// number of threads.
 [[nodiscard]] Materials materialsFor(const Collider& collider, const MaterialSource* source);

@@ -49,8 +49,8 @@ std::vector<std::optional<FieldValue>> evaluateAt(const std::vector<TruthPoint>&
     return values;
 }
 
-WrongShare wrongShare(const std::vector<TruthPoint>& points,
-                      const std::vector<std::optional<FieldValue>>& values) {
+WrongPercent wrongShare(const std::vector<TruthPoint>& points,
+                        const std::vector<std::optional<FieldValue>>& values) {
     std::uint64_t false_inside = 0;
     std::uint64_t false_outside = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -154,7 +154,7 @@ Field nearestFieldOf(const Collider& collider) {
     };
 }
 
-WrongShare measureNear(const std::vector<TruthPoint>& points, const Field& field) {
+WrongPercent measureNear(const std::vector<TruthPoint>& points, const Field& field) {
     return wrongShare(points, evaluateAt(points, field));
 }
 
@@ -184,13 +184,13 @@ ColliderAccuracy measureCollider(const TruthSamples& samples, const MeshQuery& q
     ColliderAccuracy accuracy;
     accuracy.field = measureField(samples, fieldOf(collider));
     measureDistances(samples, nearestFieldOf(collider), accuracy.field);
-    accuracy.unseen_percent = Sights(collider.maps, query).unseenPercent(samples.surface);
+    accuracy.unseen_percent = Sights(collider.maps, query).hiddenPercent(samples.surface);
     accuracy.buried_percent = percent(buriedPoints(samples.surface), samples.surface.size());
     accuracy.gpu_bytes = collider.texelBytes();
     return accuracy;
 }
 
-void fields(FieldVisitor& visit, const WrongShare& share) {
+void fields(FieldVisitor& visit, const WrongPercent& share) {
     visit("wrong_percent", share.total(),
           {"Fraction of the points that are on the wrong side", "%", kPercentRange});
     visit("false_inside_percent", share.false_inside,

@@ -32,13 +32,13 @@ using Field = std::function<std::optional<FieldValue>(const glm::vec3&)>;
 [[nodiscard]] Field nearestFieldOf(const Collider& collider);
 
 /// Misclassified points, as percentages of all points of their kind.
-struct WrongShare {
+struct WrongPercent {
     double false_inside = 0.0;   ///< points that are outside in truth
     double false_outside = 0.0;  ///< points that are inside in truth
     [[nodiscard]] double total() const { return false_inside + false_outside; }
 };
 
-void fields(FieldVisitor& visit, const WrongShare& share);
+void fields(FieldVisitor& visit, const WrongPercent& share);
 
 /// Accuracy of the vote at TruthSamples::inside.
 struct InsideAccuracy {
@@ -54,8 +54,8 @@ struct InsideAccuracy {
 };
 
 struct FieldAccuracy {
-    WrongShare near;     ///< points near the surface
-    WrongShare uniform;  ///< points in the box
+    WrongPercent near;     ///< points near the surface
+    WrongPercent uniform;  ///< points in the box
     /// |f − true signed distance| over points near the surface with a distance, object units. The 99th percentile uses
     /// the nearest rank.
     double distance_mean = 0.0;
@@ -72,7 +72,7 @@ struct FieldAccuracy {
 };
 
 /// Measures the points of sampleNear().
-[[nodiscard]] WrongShare measureNear(const std::vector<TruthPoint>& points, const Field& field);
+[[nodiscard]] WrongPercent measureNear(const std::vector<TruthPoint>& points, const Field& field);
 
 /// Measures a field. Apart from `seconds`, the result does not depend on the number of threads.
 [[nodiscard]] FieldAccuracy measureField(const TruthSamples& samples, const Field& field);

@@ -244,7 +244,7 @@ class Prover {
 
     [[nodiscard]] DepthProof prove(const DepthProofOptions& options) const {
         DepthProof proof;
-        const double least = options.least_share * double{query_.mesh().bounds.longestSide()};
+        const double least = options.bound_fraction_min * double{query_.mesh().bounds.longestSide()};
         std::vector<Box> boxes;
         for (const Cell& cell : cells_) {
             boxes.push_back({.centre = cell.low + 0.5 * cell.size,

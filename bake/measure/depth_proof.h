@@ -27,7 +27,7 @@ namespace relief {
 struct DepthProofOptions {
     /// The proof ends when the bound is at most this factor above the deepest error found.
     double tolerance = 1.1;
-    double least_share = 1e-4;            ///< bounds below this fraction of the longest side suffice
+    double bound_fraction_min = 1e-4;     ///< bounds below this fraction of the longest side suffice
     std::uint64_t boxes_max = 2'000'000;  ///< ends the proof with a larger bound
 };
 

@@ -11,10 +11,10 @@ namespace relief {
 inline constexpr double kGoodPercent = 1.0;
 inline constexpr double kFairPercent = 5.0;
 
-/// InsideAccuracy::far_face_percent; not graded with fewer than kInsidePointsLeast points.
+/// InsideAccuracy::far_face_percent; not graded with fewer than kInsidePointsMin points.
 inline constexpr double kGoodInsidePercent = 3.0;
 inline constexpr double kFairInsidePercent = 10.0;
-inline constexpr std::uint64_t kInsidePointsLeast = 300;
+inline constexpr std::uint64_t kInsidePointsMin = 300;
 
 /// Percentage of misclassified points near a part; about 50 for a missing part.
 inline constexpr double kPartCoarse = 10.0;

@@ -95,7 +95,7 @@ class PartMeter {
     [[nodiscard]] PartAccuracy judge(std::uint32_t part, std::uint32_t points) const {
         const double size = parts_.parts[part].size();
         const double least = leastSigma(part);
-        Judged found = judgeAt(part, points, std::max(options_.sigma_share * size, least));
+        Judged found = judgeAt(part, points, std::max(options_.sigma_fraction * size, least));
         for (int k = 0; k < kCloser && !found.lost() && found.accuracy.state != PartVerdict::kHidden &&
                         found.absent() && found.accuracy.sigma > least;
              ++k) {
@@ -131,7 +131,7 @@ class PartMeter {
         }
         // A shell that is too thick is measured against the face that it should have; against its own face, a lost
         // sheet would be correct.
-        const double too_deep = 0.5 * (parts_.parts[part].thickness - parts_.parts[part].right_thickness);
+        const double too_deep = 0.5 * (parts_.parts[part].thickness - parts_.parts[part].target_thickness);
         MersenneRandom random(options_.seed, part);
         std::uint32_t false_inside = 0;
         for (std::uint32_t k = 0; k < points; ++k) {
@@ -245,7 +245,7 @@ double defaultMinPart(const SurfaceParts& parts, const std::string& unit, double
     if (parts.parts.empty()) {
         return 0.0;
     }
-    const OutlierParts strays = straysOf(parts.parts);
+    const OutlierParts strays = findOutlierParts(parts.parts);
     Bounds box = strays.rest;
     if (strays.parts.empty()) {
         for (const SurfacePart& part : parts.parts) {

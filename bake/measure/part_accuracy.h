@@ -20,7 +20,7 @@ struct PartOptions {
     std::uint64_t points_all = 200'000;  ///< for all parts together, except points_min
     std::size_t parts_max = 10'000;      ///< only the largest parts are measured
     std::uint64_t seed = 1;
-    double sigma_share = 0.005;  ///< as in AccuracyOptions, in units of the part's longest side
+    double sigma_fraction = 0.005;  ///< as in AccuracyOptions, in units of the part's longest side
     /// Longest side of the smallest part that counts, object units; nullopt: defaultMinPart.
     std::optional<double> min_part = {};
     double scale = 1.0;  ///< of the object in its world, for defaultMinPart
@@ -47,7 +47,7 @@ struct PartAccuracy {
     std::uint32_t part = 0;  ///< index into SurfaceParts::parts
     PartVerdict state = PartVerdict::kKept;
     std::uint32_t points = 0;  ///< number near the part's exposed surface
-    WrongShare wrong;          ///< percent of them
+    WrongPercent wrong;        ///< percent of them
     double sigma = 0.0;        ///< standard deviation of their distance from the part, object units
 };
 
@@ -58,7 +58,7 @@ struct GroupAccuracy {
     std::uint64_t parts = 0;
     std::uint64_t lost = 0;
     Bounds bounds;
-    WrongShare wrong;  ///< percent
+    WrongPercent wrong;  ///< percent
 };
 
 /// The parts of one or more meshes that a verdict ignores.
@@ -91,7 +91,7 @@ struct PartsAccuracy {
 
 /// Measures points near each part's surface in the baked solid. Points are area-weighted, with an isotropic Gaussian
 /// offset. If most of a part seems to be missing, closer points are measured, too. Truth is the side of the whole mesh,
-/// except that a shell ends at its right_thickness. If fewer than 256 points classify a part as lost, it is measured
+/// except that a shell ends at its target_thickness. If fewer than 256 points classify a part as lost, it is measured
 /// again with 256.
 ///
 /// A lost part is minor if it is shorter than `min_part`. It is also minor if it is not missing, and enough points at a

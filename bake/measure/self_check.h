@@ -14,7 +14,7 @@
 namespace relief {
 
 struct SelfCheck {
-    WrongShare wrong;                    ///< near the surface
+    WrongPercent wrong;                  ///< near the surface
     std::optional<PartsAccuracy> parts;  ///< set if there are several
 };
 

@@ -71,7 +71,7 @@ bool Sight::sees(const SurfacePoint& point) const {
     const Lines lines = linesTo(p, in_map);
     for (std::size_t i = 0; i < lines.count; ++i) {
         const glm::dvec3& start = lines.start[i];
-        if (glm::dot(start - p, normal) > 0.0 && query_.segmentIsFree(p, start)) {
+        if (glm::dot(start - p, normal) > 0.0 && query_.isSegmentFree(p, start)) {
             return true;
         }
     }
@@ -88,7 +88,7 @@ std::optional<glm::dvec3> Sight::reaches(const glm::dvec3& p) const {
     }
     const Lines lines = linesTo(p, in_map);
     for (std::size_t i = 0; i < lines.count; ++i) {
-        if (query_.segmentIsFree(p, lines.start[i])) {
+        if (query_.isSegmentFree(p, lines.start[i])) {
             return lines.start[i];
         }
     }
@@ -101,14 +101,14 @@ Sights::Sights(std::span<const DepthMap> maps, const MeshQuery& query) {
     }
 }
 
-bool Sights::see(const SurfacePoint& point) const {
+bool Sights::isVisible(const SurfacePoint& point) const {
     return std::ranges::any_of(sights_, [&](const Sight& sight) { return sight.sees(point); });
 }
 
-double Sights::unseenPercent(std::span<const SurfacePoint> points) const {
+double Sights::hiddenPercent(std::span<const SurfacePoint> points) const {
     std::vector<char> unseen(points.size(), 0);
     forEachIndex(0, points.size(), 256,
-                 [&](std::size_t i) { unseen[i] = !points[i].buried && !see(points[i]) ? 1 : 0; });
+                 [&](std::size_t i) { unseen[i] = !points[i].buried && !isVisible(points[i]) ? 1 : 0; });
     return percent(static_cast<std::size_t>(std::ranges::count(unseen, 1)),
                    points.size() - buriedPoints(points));
 }

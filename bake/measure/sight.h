@@ -53,12 +53,12 @@ class Sights {
     /// Borrows both arguments.
     Sights(std::span<const DepthMap> maps, const MeshQuery& query);
 
-    [[nodiscard]] bool see(const SurfacePoint& point) const;
+    [[nodiscard]] bool isVisible(const SurfacePoint& point) const;
     [[nodiscard]] const std::vector<Sight>& maps() const { return sights_; }
 
     /// Unseen fraction of the points that are not buried, in percent. The result does not depend on the number of
     /// threads.
-    [[nodiscard]] double unseenPercent(std::span<const SurfacePoint> points) const;
+    [[nodiscard]] double hiddenPercent(std::span<const SurfacePoint> points) const;
 
   private:
     std::vector<Sight> sights_;

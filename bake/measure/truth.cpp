@@ -79,7 +79,7 @@ class Sampler {
     [[nodiscard]] glm::vec3 positionNear(std::size_t i) const {
         SplitMixRandom random(options_.seed, kNearKind, i);
         const glm::dvec3 from = draw(random).position;
-        return from + options_.sigma_share * longest_side_ * random.gaussian();
+        return from + options_.sigma_fraction * longest_side_ * random.gaussian();
     }
     [[nodiscard]] TruthPoint nearSurface(std::size_t i) const {
         const glm::vec3 near = positionNear(i);

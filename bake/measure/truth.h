@@ -18,7 +18,7 @@ struct AccuracyOptions {
     std::uint32_t samples = 200'000;  ///< per kind; above 0
     std::uint64_t seed = 1;
     /// Standard deviation of points near the surface, in units of the longest side of the mesh's box.
-    double sigma_share = 0.005;
+    double sigma_fraction = 0.005;
 };
 
 /// A point near the surface, or anywhere in the box.

@@ -138,7 +138,7 @@ class Causes {
         if (point.inside() && reached) {
             return WrongCause::kOpen;
         }
-        if (wrong.map < 0 || (!point.inside() && !reached && !sights_.see(surface))) {
+        if (wrong.map < 0 || (!point.inside() && !reached && !sights_.isVisible(surface))) {
             return WrongCause::kUnseen;
         }
         const Sight& sight = sights_.maps()[static_cast<std::size_t>(wrong.map)];

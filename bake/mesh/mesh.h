@@ -23,8 +23,8 @@ inline constexpr std::uint32_t kNoLabel = 0xffffffff;
 /// Maximum number of triangles in a mesh, counting each instance.
 inline constexpr std::uint64_t kTriangleMax = 100'000'000;
 /// Maximum number of names that an import may select, and of bytes per name.
-inline constexpr std::size_t kAskedNamesMax = 255;
-inline constexpr std::size_t kAskedNameBytesMax = 256;
+inline constexpr std::size_t kSelectedNamesMax = 255;
+inline constexpr std::size_t kSelectedNameBytesMax = 256;
 /// Maximum number of distinct surfaces in a file; all further ones share one unnamed entry.
 inline constexpr std::size_t kSurfaceNamesMax = 65'536;
 
@@ -84,7 +84,7 @@ struct TriangleMesh {
         dependencies;  ///< the file's path as given, then the files that it references, sorted
     std::vector<std::string> dependency_hashes;  ///< XXH3-128 of each dependency, in the same order
     std::vector<std::string> warnings;           ///< from the import, one line each
-    /// Set only for a level between the importer and cutLevel() (bake/import/level.h); else empty.
+    /// Set only for a level between the importer and splitLevel() (bake/import/level.h); else empty.
     std::vector<LevelMesh> level_meshes;
     std::vector<LevelBody> level_bodies;
     /// A serialized AnimatedMesh; set only between the importer and ImportSource::finishAnimated().

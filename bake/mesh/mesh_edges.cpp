@@ -140,7 +140,7 @@ std::size_t dropRepeats(std::vector<SortedTriangle>& sorted) {
     return dropped;
 }
 
-bool isSeveralShells(const MeshEdges& edges) {
+bool hasSeveralShells(const MeshEdges& edges) {
     DisjointSets triangles(edges.uses.size() / 3);
     std::size_t groups = edges.uses.size() / 3;
     bool balanced = true;

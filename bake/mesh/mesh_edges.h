@@ -118,6 +118,6 @@ std::size_t dropRepeats(std::vector<SortedTriangle>& sorted);
 /// Whether the mesh consists of several closed surfaces, each wound consistently: every edge is used equally often in
 /// both directions, and the triangles form groups that share no edge. Such surfaces may overlap; then the winding
 /// number decides whether a point is inside, not the parity of ray crossings.
-[[nodiscard]] bool isSeveralShells(const MeshEdges& edges);
+[[nodiscard]] bool hasSeveralShells(const MeshEdges& edges);
 
 }  // namespace relief

@@ -304,7 +304,7 @@ bool MeshQuery::inVoid(const glm::dvec3& p) const {
                 return;
             }
             const glm::dvec3 there = voids.position(node);
-            if (segmentIsFree(p, there)) {
+            if (isSegmentFree(p, there)) {
                 seen = place;
             } else if (const double squared = dot(there - p, there - p); squared < least) {
                 least = squared;
@@ -439,8 +439,8 @@ ClosestPoint MeshQuery::closest(const glm::vec3& p, std::optional<std::uint32_t>
             search.point / tree_->scale + tree_->center};
 }
 
-bool MeshQuery::otherWithin(const glm::vec3& p, double radius, std::span<const std::uint8_t> labels,
-                            std::uint8_t label) const {
+bool MeshQuery::hasOtherLabelWithin(const glm::vec3& p, double radius, std::span<const std::uint8_t> labels,
+                                    std::uint8_t label) const {
     const glm::dvec3 local = tree_->toLocal(p);
     const double reach = radius * tree_->scale;
     OtherSearch search{mesh(), *tree_, local, reach * reach, labels, label};
@@ -453,11 +453,11 @@ double MeshQuery::signedDistance(const glm::vec3& p) const {
     return inside(p) ? -distance : distance;
 }
 
-bool MeshQuery::segmentIsFree(const glm::dvec3& from, const glm::dvec3& to) const {
+bool MeshQuery::isSegmentFree(const glm::dvec3& from, const glm::dvec3& to) const {
     return isFree(from, to - from, 1.0F);
 }
 
-bool MeshQuery::rayIsFree(const glm::dvec3& origin, const glm::dvec3& direction) const {
+bool MeshQuery::isRayFree(const glm::dvec3& origin, const glm::dvec3& direction) const {
     return isFree(origin, direction, std::numeric_limits<float>::infinity());
 }
 

@@ -122,15 +122,15 @@ class MeshQuery {
 
     /// Whether a triangle with a label other than `label` is within `radius`.
     /// \param labels  per triangle.
-    [[nodiscard]] bool otherWithin(const glm::vec3& p, double radius, std::span<const std::uint8_t> labels,
-                                   std::uint8_t label) const;
+    [[nodiscard]] bool hasOtherLabelWithin(const glm::vec3& p, double radius,
+                                           std::span<const std::uint8_t> labels, std::uint8_t label) const;
 
     [[nodiscard]] double signedDistance(const glm::vec3& p) const;
 
     /// Whether no triangle meets the open segment between two points.
-    [[nodiscard]] bool segmentIsFree(const glm::dvec3& from, const glm::dvec3& to) const;
+    [[nodiscard]] bool isSegmentFree(const glm::dvec3& from, const glm::dvec3& to) const;
 
-    [[nodiscard]] bool rayIsFree(const glm::dvec3& origin, const glm::dvec3& direction) const;
+    [[nodiscard]] bool isRayFree(const glm::dvec3& origin, const glm::dvec3& direction) const;
 
     [[nodiscard]] std::optional<FirstHit> firstHit(const glm::dvec3& origin,
                                                    const glm::dvec3& direction) const;

@@ -12,7 +12,7 @@ void PreparedMesh::State::computeFromEdges() {
     const MeshEdges own = edges ? MeshEdges{} : edgesOf(mesh);
     const MeshEdges& from = edges ? *edges : own;
     odd_edges = relief::oddEdges(from);
-    several_shells = odd_edges->empty() && isSeveralShells(from);
+    several_shells = odd_edges->empty() && hasSeveralShells(from);
 }
 
 PreparedMesh::PreparedMesh(TriangleMesh mesh) : state_(std::make_shared<State>()) {

@@ -77,7 +77,7 @@ class PreparedMesh {
     [[nodiscard]] const std::vector<OddEdge>& oddEdges() const;
     /// Whether there is no odd edge. Then all rays from a point have the same crossing parity.
     [[nodiscard]] bool closed() const { return oddEdges().empty(); }
-    /// isSeveralShells() of a closed mesh after windOutwards. The winding number then classifies points, not the parity
+    /// hasSeveralShells() of a closed mesh after windOutwards. The winding number then classifies points, not the parity
     /// of ray crossings.
     [[nodiscard]] bool woundShells() const;
     /// Returns −1 if the mesh is closed and inside out (triangles are clockwise seen from outside), else 1. Here,

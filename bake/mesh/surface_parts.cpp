@@ -65,7 +65,7 @@ void SurfaceParts::add(const TriangleMesh& mesh, const std::vector<std::uint32_t
     }
 }
 
-OutlierParts straysOf(const std::vector<SurfacePart>& parts) {
+OutlierParts findOutlierParts(const std::vector<SurfacePart>& parts) {
     double area = 0.0;
     Bounds whole;
     for (const SurfacePart& part : parts) {

@@ -29,7 +29,7 @@ struct SurfacePart {
     double thickness = 0.0;        ///< of the shell that represents a sheet, object units; else 0
     /// The portion of `thickness` that counts as correct: all of a requested thickness; at most a tenth of the longest
     /// side if the thickness is a default.
-    double right_thickness = 0.0;
+    double target_thickness = 0.0;
 
     [[nodiscard]] double size() const { return static_cast<double>(bounds.longestSide()); }
 };
@@ -50,6 +50,6 @@ struct OutlierParts {
 };
 /// Finds outlier parts. Together they have at most 1 % of the area, and without them the box's longest side shrinks to
 /// at most a tenth.
-[[nodiscard]] OutlierParts straysOf(const std::vector<SurfacePart>& parts);
+[[nodiscard]] OutlierParts findOutlierParts(const std::vector<SurfacePart>& parts);
 
 }  // namespace relief

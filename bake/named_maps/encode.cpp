@@ -24,7 +24,7 @@ class SurfaceEncoder {
           normals_(normals),
           float_normals_(view.format == MapFormat::kFloat32),
           starts_free_(view.startsFree(end)),
-          may_start_inside_(mayStartInside(scene, view, end)) {}
+          may_start_inside_(centreMayBeInSolid(scene, view, end)) {}
 
     std::optional<IndexedSurface> encode(const Hit& hit) {
         if (hit.empty()) {

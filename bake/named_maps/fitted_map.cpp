@@ -69,7 +69,7 @@ class EndFitter {
           end_(view, end),
           samples_(options.samples),
           inside_out_(scene.insideOut()),
-          may_start_inside_(mayStartInside(scene, view, end)),
+          may_start_inside_(centreMayBeInSolid(scene, view, end)),
           starts_free_(view.startsFree(end)),
           shares_edges_(view.projection() == Projection::kOrthographic && starts_free_ &&
                         view.startsFree(otherEnd(end)) && !may_start_inside_),
@@ -115,7 +115,7 @@ class EndFitter {
         // A single ray already hits the best plane, so deep_ must not reject it: the fallback, a plane that faces the
         // viewer, would cut more off a slope.
         const std::optional<FittedPlane> plane = fitSupportingPlane(
-            rays_, [&] { return lookAround(here); }, edge_, end_.fromViewer(centre), centre.origin, fit_,
+            rays_, [&] { return probeAround(here); }, edge_, end_.fromViewer(centre), centre.origin, fit_,
             samples_ > 1 || !starts_free_ || may_start_inside_ ? &deep_ : nullptr);
         return plane ? std::optional(end_.surfaceOf(*plane, view_.format)) : std::nullopt;
     }
@@ -203,7 +203,7 @@ class EndFitter {
         return {any, all};
     }
 
-    std::span<const FootprintRay> lookAround(const Footprint& here) {
+    std::span<const FootprintRay> probeAround(const Footprint& here) {
         around_.clear();
         forEachAround(here, [&](std::uint32_t column, std::uint32_t row) {
             const Hit& hit = here.hits[indexOf(here, column, row)];

@@ -32,7 +32,7 @@ RayProbe::RayProbe(const RayScene& scene, const View& view, RayEnd end)
     : scene_(scene),
       view_(view),
       end_(end),
-      may_start_inside_(raysMayStartInside(scene, view, end)),
+      may_start_inside_(mayStartInSolid(scene, view, end)),
       planes_(scene.mesh(), view) {}
 
 RayProbe::Segment RayProbe::segmentOf(const TexelRay& ray) const {
@@ -47,7 +47,7 @@ RayProbe::Segment RayProbe::segmentOf(const TexelRay& ray) const {
 }
 
 Hit RayProbe::hitOf(std::uint32_t face, std::uint32_t x, std::uint32_t y, std::uint32_t triangle) {
-    SeenPlane& plane = known_planes_[triangle % kKnownPlanes];
+    ProjectedPlane& plane = known_planes_[triangle % kStoredPlanes];
     if (plane.triangle != triangle) {
         plane = planes_.of(triangle);
     }

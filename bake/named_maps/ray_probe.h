@@ -23,7 +23,7 @@ class RayProbe {
     [[nodiscard]] Hit trace(std::uint32_t face, std::uint32_t x, std::uint32_t y);
 
   private:
-    static constexpr std::size_t kKnownPlanes = 256;
+    static constexpr std::size_t kStoredPlanes = 256;
 
     /// A ray segment that starts slightly outside the volume, along or against the depth.
     struct Segment {
@@ -55,9 +55,9 @@ class RayProbe {
     const View& view_;
     RayEnd end_;
     bool may_start_inside_;
-    SeenPlanes planes_;
+    ProjectedPlanes planes_;
     /// A cache: neighbouring texels usually hit the same few triangles.
-    std::array<SeenPlane, kKnownPlanes> known_planes_;
+    std::array<ProjectedPlane, kStoredPlanes> known_planes_;
 };
 
 }  // namespace relief

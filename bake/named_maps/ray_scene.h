@@ -61,14 +61,14 @@ class RayScene : public MeshQuery {
 
 /// Returns whether a ray of this end that first hits the inner side of a surface has started in the solid, because the
 /// centre lies on the surface of a closed solid. Empty texels may still mean outside.
-[[nodiscard]] inline bool mayStartInside(const RayScene& scene, const View& view, RayEnd end) {
+[[nodiscard]] inline bool centreMayBeInSolid(const RayScene& scene, const View& view, RayEnd end) {
     return view.centre_on_surface && end == RayEnd::kNear && scene.closed();
 }
 
 /// Returns whether rays of this end may start in a closed solid, because the centre lies on the surface or the volume
 /// cuts the solid.
-[[nodiscard]] inline bool raysMayStartInside(const RayScene& scene, const View& view, RayEnd end) {
-    return mayStartInside(scene, view, end) || (scene.closed() && !view.startsFree(end));
+[[nodiscard]] inline bool mayStartInSolid(const RayScene& scene, const View& view, RayEnd end) {
+    return centreMayBeInSolid(scene, view, end) || (scene.closed() && !view.startsFree(end));
 }
 
 }  // namespace relief

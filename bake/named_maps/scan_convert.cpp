@@ -179,8 +179,8 @@ ScanConverter::ScanConverter(const RayScene& scene, const View& view)
     : scene_(scene),
       view_(view),
       cube_(view.projection() == Projection::kCube),
-      may_start_inside_{raysMayStartInside(scene, view, RayEnd::kNear),
-                        raysMayStartInside(scene, view, RayEnd::kFar)},
+      may_start_inside_{mayStartInSolid(scene, view, RayEnd::kNear),
+                        mayStartInSolid(scene, view, RayEnd::kFar)},
       planes_(scene.mesh(), view),
       blocks_((view.height + kBlockRows - 1) / kBlockRows) {
     place();
@@ -288,7 +288,7 @@ inline bool ScanConverter::isInView(double depth, std::uint32_t face, std::uint3
     return depth >= 0.0 && (view_.encloses || depth <= view_.depthMax(view_.ray(face, x, y)) + kDepthSlack);
 }
 
-inline void ScanConverter::meet(const SeenPlane& plane, std::uint32_t x, std::uint32_t y,
+inline void ScanConverter::meet(const ProjectedPlane& plane, std::uint32_t x, std::uint32_t y,
                                 const Block& block) const {
     const auto [depth, along] = planes_.at(plane, block.face, x, y);
     const double most = cube_ ? double{kCubeDepthMax} : 1.0;
@@ -319,7 +319,7 @@ void ScanConverter::draw(std::uint32_t triangle, std::uint32_t begin, std::uint3
     const Grid& grid = shape.grid();
     const std::array<Edge, 3> edges = shape.edges();
     const auto [first_column, end_column] = shape.rangeOf(0, view_.width);
-    const SeenPlane plane = planes_.of(triangle);
+    const ProjectedPlane plane = planes_.of(triangle);
     for (std::uint32_t row = begin; row < end; ++row) {
         const double y = grid.y(row);
         const auto holds = [&](std::int64_t column) {

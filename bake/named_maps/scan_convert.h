@@ -55,7 +55,7 @@ class ScanConverter {
     void prefetch(std::span<const Entry> entries, std::size_t i) const;
     /// Draws the rows [begin, end) of a triangle within a block.
     void draw(std::uint32_t triangle, std::uint32_t begin, std::uint32_t end, const Block& block) const;
-    inline void meet(const SeenPlane& plane, std::uint32_t x, std::uint32_t y, const Block& block) const;
+    inline void meet(const ProjectedPlane& plane, std::uint32_t x, std::uint32_t y, const Block& block) const;
     [[nodiscard]] inline bool isInView(double depth, std::uint32_t face, std::uint32_t x,
                                        std::uint32_t y) const;
     /// Whether a hit replaces another one. Resolves ties of almost equal depth.
@@ -71,7 +71,7 @@ class ScanConverter {
     const View& view_;
     bool cube_;
     std::array<bool, 2> may_start_inside_;  // by RayEnd
-    SeenPlanes planes_;
+    ProjectedPlanes planes_;
     /// The vertices of the mesh. Orthographic: (x, y, 1) in texels, with the centre of texel (i, j) at (i, j). Cube:
     /// relative to the centre, in units of its half sides.
     std::vector<glm::dvec3> places_;

@@ -25,7 +25,7 @@ double insideTriangle(const TriangleMesh& mesh, std::uint32_t triangle, const Te
 
 }  // namespace
 
-SeenPlanes::SeenPlanes(const TriangleMesh& mesh, const View& view)
+ProjectedPlanes::ProjectedPlanes(const TriangleMesh& mesh, const View& view)
     : mesh_(mesh),
       view_(view),
       orthographic_(view.projection() == Projection::kOrthographic),
@@ -33,9 +33,9 @@ SeenPlanes::SeenPlanes(const TriangleMesh& mesh, const View& view)
       column_step_(view.axis[0] / static_cast<double>(view.width)),
       row_step_(view.axis[1] / static_cast<double>(view.height)) {}
 
-SeenPlane SeenPlanes::of(std::uint32_t triangle) const {
+ProjectedPlane ProjectedPlanes::of(std::uint32_t triangle) const {
     const TrianglePlane plane = planeOf(mesh_, triangle);
-    SeenPlane seen;
+    ProjectedPlane seen;
     seen.triangle = triangle;
     seen.normal = plane.normal;
     seen.ahead = dot(plane.normal, plane.point - first_ray_.origin);
@@ -50,8 +50,8 @@ SeenPlane SeenPlanes::of(std::uint32_t triangle) const {
     return seen;
 }
 
-PlaneHit SeenPlanes::atAnyRay(const SeenPlane& plane, std::uint32_t face, std::uint32_t x,
-                              std::uint32_t y) const {
+PlaneHit ProjectedPlanes::atAnyRay(const ProjectedPlane& plane, std::uint32_t face, std::uint32_t x,
+                                   std::uint32_t y) const {
     if (orthographic_) {
         return {insideTriangle(mesh_, plane.triangle, view_.ray(face, x, y), depthAt(plane, x, y)),
                 plane.along};

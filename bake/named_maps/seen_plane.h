@@ -9,7 +9,7 @@
 
 namespace relief {
 
-struct SeenPlane {
+struct ProjectedPlane {
     std::uint32_t triangle = 0xffffffff;
     glm::dvec3 normal{0.0};
     // Orthographic, with parallel rays: the depth at texel (x, y) is base + x · per_column + y · per_row.
@@ -27,15 +27,15 @@ struct PlaneHit {
 };
 
 /// Makes the planes of a view.
-class SeenPlanes {
+class ProjectedPlanes {
   public:
     /// \param mesh, view  borrowed; must outlive it.
-    SeenPlanes(const TriangleMesh& mesh, const View& view);
+    ProjectedPlanes(const TriangleMesh& mesh, const View& view);
 
-    [[nodiscard]] SeenPlane of(std::uint32_t triangle) const;
+    [[nodiscard]] ProjectedPlane of(std::uint32_t triangle) const;
 
     /// The hit of a texel's ray, clamped to the triangle if it is seen almost edge-on.
-    [[nodiscard]] PlaneHit at(const SeenPlane& plane, std::uint32_t face, std::uint32_t x,
+    [[nodiscard]] PlaneHit at(const ProjectedPlane& plane, std::uint32_t face, std::uint32_t x,
                               std::uint32_t y) const {
         if (orthographic_ && !plane.grazing) {  // the common case; inline for millions of calls per bake
             return {depthAt(plane, x, y), plane.along};
@@ -44,11 +44,11 @@ class SeenPlanes {
     }
 
   private:
-    static double depthAt(const SeenPlane& plane, std::uint32_t x, std::uint32_t y) {
+    static double depthAt(const ProjectedPlane& plane, std::uint32_t x, std::uint32_t y) {
         return plane.base + static_cast<double>(x) * plane.per_column +
                static_cast<double>(y) * plane.per_row;
     }
-    [[nodiscard]] PlaneHit atAnyRay(const SeenPlane& plane, std::uint32_t face, std::uint32_t x,
+    [[nodiscard]] PlaneHit atAnyRay(const ProjectedPlane& plane, std::uint32_t face, std::uint32_t x,
                                     std::uint32_t y) const;
 
     const TriangleMesh& mesh_;

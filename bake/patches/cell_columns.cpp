@@ -70,7 +70,7 @@ class Path {
 
     void countCrossings(const glm::dvec3& from, const glm::dvec3& to, BodyCounter& counter) const {
         if (triangles_.size() > kTreeTriangles &&
-            query_.segmentIsFree(cell_.low + cell_.size * from, cell_.low + cell_.size * to)) {
+            query_.isSegmentFree(cell_.low + cell_.size * from, cell_.low + cell_.size * to)) {
             return;
         }
         for (std::uint32_t i = 0; i < triangles_.size(); ++i) {

@@ -51,7 +51,7 @@ class LeafTrial {
           triangles_(unitTriangles(query.mesh(), node.cell)),
           pieces_(node.tried == 0 ? clippedTriangles(triangles_) : std::vector<ClippedTriangle>()),
           columns_(query, node.cell, triangles_, grids[frameOf(node)]) {
-        if (node.tried < kFlatsAndSingles) {
+        if (node.tried < kSinglePatchShapesEnd) {
             if (node.tried == 0) {
                 node.mean = meanPlane(pieces_);
             }
@@ -71,18 +71,18 @@ class LeafTrial {
         if (fitted.heights.side < kPatchSideMax) {
             node_.heights[index - kFlats] = fitted.heights;
         }
-        node_.add(volume_ * fitted.wrong + node_.passed_by);
+        node_.add(volume_ * fitted.wrong + node_.missed_volume);
     }
     void beginPairs() {
         pairs_.emplace(columns_, costs_,
                        meanNormalAlong(clippedTriangles(triangles_), columns_.grid().along()));
-        node_.pair_least = volume_ * pairs_->least() + node_.passed_by;
+        node_.pair_least = volume_ * pairs_->least() + node_.missed_volume;
         node_.walls = pairs_->walls();
     }
     void tryPair() {
         const FittedPair fitted = pairs_->fit(kPatchShapes[node_.tried].side, kRounds);
         fitted_ = fitted.heights;
-        node_.add(volume_ * fitted.wrong + node_.passed_by);
+        node_.add(volume_ * fitted.wrong + node_.missed_volume);
     }
 
     [[nodiscard]] std::span<const UnitTriangle> triangles() const { return triangles_; }
@@ -97,10 +97,10 @@ class LeafTrial {
         return node.frame.index;
     }
     void tryFlats() {
-        node_.passed_by = volume_ * volumePassedBy(columns_, pieces_);
+        node_.missed_volume = volume_ * volumePassedBy(columns_, pieces_);
         const double inside = singles_->insideVolume();
-        node_.add(costs_.false_outside * volume_ * inside + node_.passed_by);
-        node_.add(costs_.false_inside * volume_ * (columns_.grid().volume() - inside) + node_.passed_by);
+        node_.add(costs_.false_outside * volume_ * inside + node_.missed_volume);
+        node_.add(costs_.false_inside * volume_ * (columns_.grid().volume() - inside) + node_.missed_volume);
         node_.turned = singles_->outsideBelow();
     }
 
@@ -140,7 +140,7 @@ bool LeafFitter::tryEmpty(PatchNode& node) const {
         node.in_void = query_.inVoid(node.cell.middle());
         node.add(0.0);
     }
-    return node.seenEmpty();
+    return node.wasEmpty();
 }
 
 void LeafFitter::tryWorth(PatchNode& node, double byte) const {
@@ -160,7 +160,7 @@ void LeafFitter::tryWorth(PatchNode& node, double byte) const {
             return true;
         }
         const std::size_t next = node.tried;
-        return next < (node.frame.two_sides ? kPatchShapes.size() : kFlatsAndSingles) &&
+        return next < (node.frame.two_sides ? kPatchShapes.size() : kSinglePatchShapesEnd) &&
                worth * kPatchShapes[next].bytes() + (kPatchShapes[next].pair ? node.pair_least : 0.0) <
                    least();
     };
@@ -169,10 +169,10 @@ void LeafFitter::tryWorth(PatchNode& node, double byte) const {
     }
     worth *= kForesight;
     LeafTrial trial(query_, costs_, grids_, node);
-    while (node.tried < kFlatsAndSingles && pays()) {
+    while (node.tried < kSinglePatchShapesEnd && pays()) {
         trial.trySingle();
     }
-    if (node.tried < kFlatsAndSingles || !pays()) {
+    if (node.tried < kSinglePatchShapesEnd || !pays()) {
         return;
     }
     trial.beginPairs();
@@ -207,7 +207,7 @@ bool LeafFitter::hold(PatchNode& node, double within, double byte) const {
         return agrees;
     };
     bool held = holds(0) || holds(1);
-    while (!held && node.tried < kFlatsAndSingles) {
+    while (!held && node.tried < kSinglePatchShapesEnd) {
         trial.trySingle();
         held = holds(node.tried - std::size_t{1});
     }

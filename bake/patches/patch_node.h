@@ -31,7 +31,7 @@ struct PatchShape {
 inline constexpr std::array<PatchShape, 8> kPatchShapes = {
     {{}, {}, {2, false}, {3, false}, {5, false}, {2, true}, {3, true}, {5, true}}};
 inline constexpr std::size_t kFlats = 2;
-inline constexpr std::size_t kFlatsAndSingles = 5;
+inline constexpr std::size_t kSinglePatchShapesEnd = 5;
 
 /// Planes of a leaf for points deep inside, in addition to its surface (depth_planes.h).
 enum class DepthPlanes : std::uint8_t {
@@ -51,10 +51,10 @@ struct PatchNode {
     DepthPlanes planes = DepthPlanes::kNone;
     /// Weighted error of each shape that was tried: volume, object units cubed.
     std::array<double, kPatchShapes.size()> errors;
-    double pair_least = 0.0;  ///< lower bound of the errors of any pair
-    double passed_by = 0.0;   ///< volume missed between the lines; included in all errors
-    double bytes = 0.0;       ///< of the chosen subtree
-    double wrong = 0.0;       ///< errors of the chosen subtree
+    double pair_least = 0.0;     ///< lower bound of the errors of any pair
+    double missed_volume = 0.0;  ///< volume missed between the lines; included in all errors
+    double bytes = 0.0;          ///< of the chosen subtree
+    double wrong = 0.0;          ///< errors of the chosen subtree
     std::unique_ptr<std::array<PatchNode, 8>> children;
     MeshCell cell;
     CellPlane mean;                       ///< mean plane of the surface in the cell
@@ -64,7 +64,7 @@ struct PatchNode {
     [[nodiscard]] bool empty() const { return cell.triangles.empty(); }
     /// Equals empty() after a trial, but does not access the cell, which is rarely in the CPU cache. A node with
     /// triangles has tried at least two shapes: outside and inside without a surface.
-    [[nodiscard]] bool seenEmpty() const { return tried == 1; }
+    [[nodiscard]] bool wasEmpty() const { return tried == 1; }
     [[nodiscard]] const PatchShape& shape() const { return kPatchShapes[chosen]; }
     [[nodiscard]] bool surface() const { return shape().side > 0; }
     [[nodiscard]] bool hasRecord() const { return split || surface() || planes != DepthPlanes::kNone; }

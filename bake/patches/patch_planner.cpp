@@ -86,9 +86,9 @@ class Planner {
           bytes_(static_cast<double>(options.bytes)),
           fitter_(query, options.costs, options.lines),
           depth_planes_(query, faces_) {
-        if (options.roots_hold) {
-            held_.add(options.roots_hold->min);
-            held_.add(options.roots_hold->max);
+        if (options.roots_contain) {
+            held_.add(options.roots_contain->min);
+            held_.add(options.roots_contain->max);
         }
     }
 
@@ -213,7 +213,7 @@ class Planner {
     }
 
     [[nodiscard]] double trialBytes(const PatchNode& node) const {
-        if (node.tried < kFlatsAndSingles) {
+        if (node.tried < kSinglePatchShapesEnd) {
             return options_.trial_bytes;
         }
         const double improvement = node.errors[3] / node.errors[4];
@@ -238,7 +238,7 @@ class Planner {
         }
         fitter_.tryWorth(node, byte);
         node.chooseLeaf(byte);
-        if (node.seenEmpty() || level == kLevels || node.wrong < trialBytes(node) * byte) {
+        if (node.wasEmpty() || level == kLevels || node.wrong < trialBytes(node) * byte) {
             return;
         }
         makeChildren(node);
@@ -548,7 +548,7 @@ class Planner {
     const MeshQuery& query_;
     std::vector<FlatFace> faces_;  // per triangle
     const PatchOptions& options_;
-    Bounds held_;  // of the mesh and PatchOptions::roots_hold
+    Bounds held_;  // of the mesh and PatchOptions::roots_contain
     double bytes_;
     LeafFitter fitter_;
     PatchRoots roots_;

@@ -24,7 +24,7 @@ struct PatchOptions {
     double texel = 0.0;
     bool coarsen = false;  ///< if the tree exceeds the bytes, uses a larger texel
     /// Object units: a box that the roots contain in addition to the mesh.
-    std::optional<Bounds> roots_hold{};
+    std::optional<Bounds> roots_contain{};
     /// A tree by texel that exceeds this size has small roots, so that it can be cut into tiles of this size
     /// (patch_tiles.h). A tree by bytes always has small roots.
     std::uint64_t tile_bytes = PatchTileOptions().bytes;

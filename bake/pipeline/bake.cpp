@@ -75,11 +75,11 @@ BakeRequest recordOf(const BakeRequest& request, const BakeSettings& settings, c
     }
     record.import = request.import;
     record.repair.method = solid.mesh.report.repair;
-    record.as = asWords(solid.shape);
+    record.as = asOptionWords(solid.shape);
     record.thickness = thicknessOf(solid.shape);
     record.texel = request.texel;
     record.materials = request.materials;
-    record.voids = solid.shape.voids > 0 ? VoidsAs::kFill : request.voids;
+    record.voids = solid.shape.voids > 0 ? VoidMode::kFill : request.voids;
     return record;
 }
 
@@ -113,7 +113,7 @@ Result<BakeResult> bakeFrom(const BakeRequest& request, const BakeSettings& sett
     result.inputs = RELIEF_TRY(inputsOf(mesh, watcher.files));
     Result<BakedMaps> maps = bakeMaps(request, settings, solid, watcher);
     if (!maps && maps.error().code != ErrorCode::kUsage) {
-        if (const auto stray = strayText(solid.parts, mesh.unit)) {
+        if (const auto stray = outlierText(solid.parts, mesh.unit)) {
             return fail(maps.error().code, mesh.name + ": " + *stray);
         }
     }

@@ -31,7 +31,7 @@ struct BakeResult : SolidMesh {
     BakeSettings settings;  ///< in effect
     Baked baked;
     std::optional<PatchesReport> patches;
-    std::optional<WrongShare> wrong;             ///< near the surface; not for named maps
+    std::optional<WrongPercent> wrong;           ///< near the surface; not for named maps
     std::optional<PartsAccuracy> part_accuracy;  ///< if there are several parts; not for named maps
     std::vector<std::string> notices;            ///< one line each, for display
     std::vector<InputFile> inputs;               ///< the mesh, and the files it references
@@ -54,7 +54,7 @@ struct BakeResult : SolidMesh {
 [[nodiscard]] Result<SolidMesh> prepareSolid(const BakeRequest& request, TriangleMesh mesh);
 
 /// Bakes a prepared solid.
-/// \param request  that of prepareSolid(); its budget may differ if solid.suitsAnyBudget().
+/// \param request  that of prepareSolid(); its budget may differ if solid.isBudgetIndependent().
 [[nodiscard]] Result<BakeResult> bake(const BakeRequest& request, const SolidMesh& solid);
 
 /// Returns the error curve of the trees of patches of a solid (bake/patches/patch_planner.h).

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kLevelNodes = 100;
 
 /// Returns options that may help if a bake is wrong in many places.
-std::string cureOf(const BakeRequest& request, const ShapeReport& shape) {
+std::string fixFor(const BakeRequest& request, const ShapeReport& shape) {
     const std::uint64_t budget = request.budget.value_or(kBudgetDefault);
     const std::string more = request.texel && !request.budget
                                  ? "--texel " + shortest(0.5F * *request.texel)
@@ -34,7 +34,7 @@ std::vector<std::string> warningsOf(const BakeRequest& request, const SolidMesh&
     const auto warn = [&](const std::string& warning) { warnings.push_back(mesh.name + ": " + warning); };
     std::vector<std::string> parts = partWarnings(solid.parts, mesh.unit);
     std::for_each(parts.rbegin(), parts.rend(), warn);
-    const auto forgotten = mesh.unit.empty() ? forgottenUnit(baked.collider.bounds) : std::nullopt;
+    const auto forgotten = mesh.unit.empty() ? missingUnitText(baked.collider.bounds) : std::nullopt;
     // A terrain of hundreds of metres is normal.
     if (forgotten && solid.shape.terrains == 0) {
         warn(*forgotten);
@@ -50,7 +50,7 @@ std::vector<std::string> warningsOf(const BakeRequest& request, const SolidMesh&
     const double wrong = check != nullptr ? check->wrong.total() : 0.0;
     if (wrong > kGoodPercent) {
         warn(shortNumber(wrong) + " % wrong near the surface; " +
-             (floatsLimit(mesh, wrong) ? "move it to the origin" : cureOf(request, solid.shape)));
+             (floatsLimit(mesh, wrong) ? "move it to the origin" : fixFor(request, solid.shape)));
     }
     if (check != nullptr && check->parts) {
         if (const auto lost = lostPartsWarning(*check->parts, solid.parts, baked.collider)) {

@@ -160,7 +160,7 @@ Result<ShapeOptions> shapeOptionsOf(const BakeRequest& request) {
     ShapeOptions options = RELIEF_TRY(parseShapeOptions(request.as));
     options.thickness_by_part = !request.thickness || request.thickness->by_part;
     options.thickness_by_texel = options.thickness_by_part && request.texel;
-    options.voids = request.voids.value_or(VoidsAs::kFill);
+    options.voids = request.voids.value_or(VoidMode::kFill);
     return options;
 }
 
@@ -180,7 +180,7 @@ Result<BakeSettings> settingsOf(const BakeRequest& request) {
     settings.bake.quality = request.quality.value_or(settings.bake.quality);
     settings.bake.prefer = request.prefer.value_or(settings.bake.prefer);
     settings.bake.texel = request.texel.value_or(0.0F);
-    settings.bake.roots_hold = request.roots_hold;
+    settings.bake.roots_contain = request.roots_contain;
     settings.bake.threads = request.threads.value_or(settings.bake.threads);
     return settings;
 }

@@ -25,9 +25,9 @@ enum class Holes : std::uint8_t { kClose, kKeep };
 template <>
 inline constexpr std::array<std::string_view, 2> kWordsOf<Holes>{"close", "keep"};
 
-enum class MaterialsAs : std::uint8_t { kKeep, kDrop };
+enum class MaterialMode : std::uint8_t { kKeep, kDrop };
 template <>
-inline constexpr std::array<std::string_view, 2> kWordsOf<MaterialsAs>{"keep", "drop"};
+inline constexpr std::array<std::string_view, 2> kWordsOf<MaterialMode>{"keep", "drop"};
 
 enum class FrontBackDepth : std::uint8_t { kUnorm16, kHalf };
 template <>
@@ -56,14 +56,14 @@ struct BakeRequest {
     RepairOptions repair;
     std::vector<std::string> as;
     std::optional<Thickness> thickness;
-    std::optional<VoidsAs> voids;
-    std::optional<MaterialsAs> materials;
+    std::optional<VoidMode> voids;
+    std::optional<MaterialMode> materials;
     bool animated = false;
     std::vector<std::string> clips;  ///< files with additional clips for `animated`
     std::string heights;             ///< HeightsSpec if `mesh` is a height map; empty if it is a mesh
     std::optional<float> timeout;    ///< seconds; enforced by the caller, who can end the bake
     /// Object units: a box that the roots of patches contain in addition to the mesh. Not an option, and not recorded.
-    std::optional<Bounds> roots_hold{};
+    std::optional<Bounds> roots_contain{};
 };
 
 void fields(FieldVisitor& visit, BakeRequest& request);
@@ -93,8 +93,8 @@ struct RecordedBake {
 
 [[nodiscard]] RecordedBake recordedBake(const std::vector<RecordedOption>& options);
 /// Returns kKeep if the record has no value: there were no voids, or the version that baked it ignored them.
-[[nodiscard]] inline VoidsAs voidsOf(const BakeRequest& recorded) {
-    return recorded.voids.value_or(VoidsAs::kKeep);
+[[nodiscard]] inline VoidMode voidsOf(const BakeRequest& recorded) {
+    return recorded.voids.value_or(VoidMode::kKeep);
 }
 
 /// Returns a bake of a mesh as a command line, quoted for a shell.

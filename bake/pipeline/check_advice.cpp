@@ -50,7 +50,7 @@ class Advisor {
         if (patches_.thickness && patches_.thickness->by_part) {
             patches_.thickness.reset();
         }
-        if (patches_.voids == VoidsAs::kFill) {
+        if (patches_.voids == VoidMode::kFill) {
             patches_.voids.reset();  // the default
         }
     }

@@ -23,7 +23,7 @@ constexpr double kBoundsTolerance = 1e-3;
 /// The offset of a wrap, which enlarges the bounds: see wrapMesh.
 constexpr double kWrapOffset = 1.0 / 30.0;
 /// A finer wrap takes minutes.
-constexpr double kWrapAlphaLeast = double{0.005F};
+constexpr double kAdvisedAlphaMin = double{0.005F};
 
 Result<void> checkSameMesh(const Collider& collider, const std::string& repair, const TriangleMesh& mesh) {
     const double tolerance = (kBoundsTolerance + kWrapOffset * wrapAlpha(repair).value_or(0.0)) *
@@ -169,7 +169,7 @@ bool MeshCheck::passes(std::optional<float> max_error) const {
 
 Result<ShapedMesh> repairedSolid(const BakeRequest& recorded, const PreparedMesh& mesh) {
     const double alpha = RELIEF_TRY(wrapAlpha(recorded.repair.method));
-    if (alpha > 0.0 && alpha < kWrapAlphaLeast) {
+    if (alpha > 0.0 && alpha < kAdvisedAlphaMin) {
         return fail(ErrorCode::kUnsupported, "--repair " + recorded.repair.method + " takes too long");
     }
     RepairOptions options = recorded.repair;

@@ -31,7 +31,7 @@ void copyWinding(const std::vector<glm::uvec3>& before, const std::vector<glm::u
 
 /// \param mesh  its triangles are those of the source. \return empty if no materials are kept.
 Result<MaterialSource> materialsOf(const BakeRequest& request, const TriangleMesh& mesh) {
-    if (request.materials == MaterialsAs::kDrop || request.animated) {
+    if (request.materials == MaterialMode::kDrop || request.animated) {
         return MaterialSource();
     }
     return materialSource(mesh, request.materials.has_value());

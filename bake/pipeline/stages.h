@@ -26,7 +26,7 @@ struct BakeWatcher {
     std::function<void(const char* stage)> begin;  ///< "baking the maps"
     std::function<void(double share)> progress;  ///< fraction of the stage, in [0, 1]; called from any thread
     std::function<void()> checkpoint;            ///< called within a stage without progress, from any thread
-    std::function<void(const BudgetTry&)> tried;        ///< during the search for the smallest budget
+    std::function<void(const BudgetTrial&)> tried;      ///< during the search for the smallest budget
     std::function<void(const TriangleMesh&)> imported;  ///< the mesh as imported
     FileGuard* files = nullptr;  ///< receives the inputs that are known only after the import
 };
@@ -58,7 +58,7 @@ struct SolidMesh {
     std::optional<PreparedMesh> imported;  ///< the imported mesh, if repaired and measured by --max-error
 
     /// Whether the solid is the same for any budget, because it has no shells.
-    [[nodiscard]] bool suitsAnyBudget() const { return shape.sheets == 0; }
+    [[nodiscard]] bool isBudgetIndependent() const { return shape.sheets == 0; }
 };
 
 /// Repairs a mesh, and makes its solid. Errors: kUsage (--thickness); those of repairMesh, materialSource and
@@ -78,7 +78,7 @@ struct PatchesReport {
     std::optional<float> requested_texel;  ///< --texel, object units
     std::optional<double> max_error;       ///< percent; for --max-error, as are the next two
     double wrong_percent = 0.0;            ///< measured
-    std::vector<BudgetTry> tries;
+    std::vector<BudgetTrial> tries;
 };
 
 struct BakedMaps {

@@ -208,7 +208,7 @@ py::tuple bakeGround(const BakeRequest& request) {
     need(files.reads(request.mesh));
     const GroundResult baked = need(interruptible<GroundResult>(
         [request](const auto& checkpoint) -> Result<GroundResult> {
-            return bakeGroundOf(request, {{}, {}, 0, [&](double) { checkpoint(); }});
+            return bakeHeightMap(request, {{}, {}, 0, [&](double) { checkpoint(); }});
         },
         request.timeout));
     return py::make_tuple(std::make_shared<Collider>(need(readContainer(baked.container))),

@@ -202,7 +202,7 @@ std::string assetKey(const std::string& tool, const std::vector<std::string>& op
     return xxh3_128Hex(std::as_bytes(std::span(text)));
 }
 
-std::string nameInRecipe(const fs::path& file, const fs::path& recipe_folder) {
+std::string pathFromRecipe(const fs::path& file, const fs::path& recipe_folder) {
     const fs::path inside = file.lexically_normal().lexically_relative(recipe_folder.lexically_normal());
     return inside.empty() ? file.string() : inside.string();
 }

@@ -73,8 +73,8 @@ using BakeCacheEntries = std::map<std::string, BakeCacheEntry>;
                                    std::vector<InputFile> inputs);
 
 /// Returns the path of a file relative to the recipe's folder, or the unchanged path if there is no relative one.
-[[nodiscard]] std::string nameInRecipe(const std::filesystem::path& file,
-                                       const std::filesystem::path& recipe_folder);
+[[nodiscard]] std::string pathFromRecipe(const std::filesystem::path& file,
+                                         const std::filesystem::path& recipe_folder);
 
 /// Returns why a job is stale, in a few words; nullopt if its output is up to date.
 /// \param entry  null if there is none.

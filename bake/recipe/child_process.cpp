@@ -51,7 +51,7 @@ struct ChildProcesses::Child {
     void kill(int signal) const { ::kill(-process.pid(), signal); }
 };
 
-void ChildProcesses::endWithRecipe() {
+void ChildProcesses::endWithParent() {
     if (const char* const parent = std::getenv(kParentVariable)) {
         ::prctl(PR_SET_PDEATHSIG, SIGTERM);
         if (std::to_string(::getppid()) != parent) {  // the parent died before prctl()

@@ -59,7 +59,7 @@ class ChildProcesses {
     std::vector<ChildEnd> endAll();
 
     /// Call it at the start of main(): a process started by startSelf() then ends (SIGTERM) when its parent does.
-    static void endWithRecipe();
+    static void endWithParent();
 
     /// Ends this process with the signal that requested termination. Call it after cleanup.
     [[noreturn]] static void endBySignal(int signal);

@@ -149,7 +149,7 @@ class Expander {
     }
 
     Result<void> checkWorldFolder(const RecipeJob& job, const RecipePlace& place) {
-        const auto owned = ownWorldFolder(job.output_path.parent_path(), bakeOf(job), result_.files);
+        const auto owned = reserveWorldFolder(job.output_path.parent_path(), bakeOf(job), result_.files);
         return owned ? Result<void>() : at(place, owned.error().message);
     }
 
@@ -309,7 +309,7 @@ class Expander {
 
 }  // namespace
 
-Result<void> ownWorldFolder(const fs::path& folder, std::string_view option, FileGuard& files) {
+Result<void> reserveWorldFolder(const fs::path& folder, std::string_view option, FileGuard& files) {
     RELIEF_TRY(files.writes(FilesByEnding{folder, std::string(kColliderExtension)}, option));
     RELIEF_TRY(files.keeps(folder / kBakeCacheName, option));
     return files.keeps(folder / kErrorCurvesName, option);

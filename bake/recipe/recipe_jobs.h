@@ -58,8 +58,8 @@ struct RecipeJobs {
 
 /// Reserves the folder of a world: its containers, including those that are up to date, and its caches.
 /// \param option  the option that names the folder, for messages. Errors: those of FileGuard::writes().
-[[nodiscard]] Result<void> ownWorldFolder(const std::filesystem::path& folder, std::string_view option,
-                                          FileGuard& files);
+[[nodiscard]] Result<void> reserveWorldFolder(const std::filesystem::path& folder, std::string_view option,
+                                              FileGuard& files);
 
 /// Returns the folder of a recipe; never empty.
 [[nodiscard]] std::filesystem::path recipeFolder(const std::filesystem::path& recipe);

@@ -288,7 +288,7 @@ class Runner {
                     !input.contains("hash") || !input["hash"].is_string()) {
                     continue;
                 }
-                asset.inputs.push_back({nameInRecipe(input["file"].get<std::string>(), folder),
+                asset.inputs.push_back({pathFromRecipe(input["file"].get<std::string>(), folder),
                                         input["hash"].get<std::string>()});
             }
         }

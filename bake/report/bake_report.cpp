@@ -130,7 +130,7 @@ std::string shapeText(const ShapeReport& report, const std::string& unit) {
     return "shape: " + text + "\n";
 }
 
-std::optional<ShapeReport> madeShapes(const ShapeReport& report) {
+std::optional<ShapeReport> shapesIfAny(const ShapeReport& report) {
     return report.text().empty() ? std::nullopt : std::optional(report);
 }
 
@@ -163,7 +163,7 @@ std::string bakeText(const BakeResult& result, const std::string& output, std::s
         const MapReport& report = baked.report.maps[i];
         rows.push_back({std::to_string(i), mapFormatName(map.format), projectionText(map), keepsText(map),
                         sizeText(map), bytesText(map.texelBytes()),
-                        map.format == MapFormat::kPatches ? "-" : shareText(report.coverage()),
+                        map.format == MapFormat::kPatches ? "-" : fractionText(report.coverage()),
                         toString(report.spec)});
     }
     text += table(rows);
@@ -231,7 +231,7 @@ struct BakedMapReport {
 void fields(FieldVisitor& visit, const BakedMapReport& report) {
     fields(visit, report.map);
     visit("coverage", report.baked.coverage(),
-          {"Fraction of the texels that store a surface", {}, kShareRange});
+          {"Fraction of the texels that store a surface", {}, kFractionRange});
 }
 
 }  // namespace
@@ -275,7 +275,7 @@ void fields(FieldVisitor& visit, const BakeJson& report) {
     visit("settings", group(settings), {"Effective options"});
     visit("patches", result.patches,
           {"Patches limited by a budget, a texel or an error; null for named maps"});
-    visit("shape", madeShapes(result.shape), {"Treatment of the parts of the mesh; null with --holes keep"});
+    visit("shape", shapesIfAny(result.shape), {"Treatment of the parts of the mesh; null with --holes keep"});
     visit("wrong_percent", result.wrong ? std::optional(result.wrong->total()) : std::nullopt,
           {"Points, out of 4000 near the surface, that are on the wrong side; null for named maps and with "
            "--no-check",

@@ -18,7 +18,7 @@ namespace relief {
 /// Returns one line with a line feed: "shape: 2 solids, 1 sheet (0.01 m thick)"; empty if no shapes were made.
 [[nodiscard]] std::string shapeText(const ShapeReport& report, const std::string& unit);
 /// Returns the report, or nullopt if no shapes were made.
-[[nodiscard]] std::optional<ShapeReport> madeShapes(const ShapeReport& report);
+[[nodiscard]] std::optional<ShapeReport> shapesIfAny(const ShapeReport& report);
 
 // --- The same data as fields.
 

@@ -99,9 +99,9 @@ void fields(FieldVisitor& visit, const AnimatedMesh& mesh) {
 void fields(FieldVisitor& visit, const Material& material) {
     visit("name", material.name, {"Name, unique in the collider; empty for surfaces without a material"});
     visit("restitution", material.restitution,
-          {"Restitution; multiplies that of the particles", {}, kShareRange});
+          {"Restitution; multiplies that of the particles", {}, kFractionRange});
     visit("friction", material.friction,
-          {"Friction; 1 − friction multiplies that of the particles", {}, kShareRange});
+          {"Friction; 1 − friction multiplies that of the particles", {}, kFractionRange});
     visit("lifetime_loss", material.lifetime_loss,
           {"Lifetime lost per step in contact", "s", {0.0, double{kMaterialLossMax}}});
     visit("area_percent", 100.0 * double{material.area_fraction},

@@ -64,7 +64,7 @@ std::string inspectionText(const Inspection& inspection, const std::string& name
                             map.frame ? mapFormatName(map.frame->format) : "-",
                             map.frame ? sizeText(*map.frame) : "-",
                             map.payload ? bytesText(map.payload->stored_size) : "-",
-                            map.coverage && !patches ? shareText(*map.coverage) : "-"});
+                            map.coverage && !patches ? fractionText(*map.coverage) : "-"});
         }
         text += table(rows);
     }
@@ -103,8 +103,9 @@ void fields(FieldVisitor& visit, const MapInspectionReport& report) {
           {"First byte of the payload, according to the metadata"});
     visit("stored_bytes", payload ? std::optional(payload->stored_size) : std::nullopt,
           {"Size of the payload, according to the metadata", "bytes"});
-    visit("coverage", report.map.coverage,
-          {"Fraction of the texels that store a surface; null if they could not be read", {}, kShareRange});
+    visit(
+        "coverage", report.map.coverage,
+        {"Fraction of the texels that store a surface; null if they could not be read", {}, kFractionRange});
 }
 
 }  // namespace

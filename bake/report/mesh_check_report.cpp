@@ -27,7 +27,7 @@ void fields(FieldVisitor& visit, const MeshCheckReport& report) {
         visit_mesh("hash", run.mesh->content_hash, {.help = "XXH3-128 of the file", .pattern = kHashPattern});
         visit_mesh("triangles", run.mesh->sourceTriangles(), {"Triangles of the mesh"});
         visit_mesh("closed", run.watertight, {"Whether the mesh is closed"});
-        visit_mesh("shape", madeShapes(run.shape),
+        visit_mesh("shape", shapesIfAny(run.shape),
                    {"Treatment of the parts of the mesh; null if it was baked with --holes keep"});
         visit_mesh("is_source", run.same_file, {"Whether the collider was baked from exactly this file"});
     };

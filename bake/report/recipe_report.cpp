@@ -167,7 +167,7 @@ bool sameGroup(std::string_view a, std::string_view b, bool join_numbers) {
 
 }  // namespace
 
-std::vector<std::string> warningLines(std::span<const OwnWarnings> all, std::string_view owners,
+std::vector<std::string> warningLines(std::span<const OwnerWarnings> all, std::string_view owners,
                                       bool join_numbers) {
     constexpr std::size_t kNamed = 3;
     struct Group {
@@ -176,7 +176,7 @@ std::vector<std::string> warningLines(std::span<const OwnWarnings> all, std::str
         std::vector<std::string> owners;
     };
     std::vector<Group> groups;
-    for (const OwnWarnings& own : all) {
+    for (const OwnerWarnings& own : all) {
         // Remove the name of the mesh, with which a warning may start, so that equal warnings match.
         const std::string mesh = own.mesh + ": ";
         for (const std::string& full : own.warnings) {
@@ -203,7 +203,7 @@ std::vector<std::string> warningLines(std::span<const OwnWarnings> all, std::str
 }
 
 std::vector<std::string> warningLines(const std::vector<AssetResult>& assets) {
-    std::vector<OwnWarnings> all;
+    std::vector<OwnerWarnings> all;
     for (const AssetResult& asset : assets) {
         all.push_back({cleanUtf8(asset.job.output),
                        cleanUtf8(std::filesystem::path(asset.job.mesh).filename().string()), asset.warnings});

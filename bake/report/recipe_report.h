@@ -105,7 +105,7 @@ class RecipeEvents {
 };
 
 /// The warnings of one of many bakes.
-struct OwnWarnings {
+struct OwnerWarnings {
     std::string owner;  ///< name for the line
     std::string mesh;   ///< name that may start a warning
     std::span<const std::string> warnings;
@@ -113,8 +113,8 @@ struct OwnWarnings {
 /// Groups equal warnings into one line each, in the order of their first occurrence.
 /// \param owners  plural noun for the owners, such as "assets"
 /// \param join_numbers  warnings are treated as equal even if their numbers differ
-[[nodiscard]] std::vector<std::string> warningLines(std::span<const OwnWarnings> all, std::string_view owners,
-                                                    bool join_numbers);
+[[nodiscard]] std::vector<std::string> warningLines(std::span<const OwnerWarnings> all,
+                                                    std::string_view owners, bool join_numbers);
 /// Groups the warnings of assets: "2 assets (a.relief, b.relief): it is skinned". All warnings about a missing unit form
 /// one group, with the size of the first asset.
 [[nodiscard]] std::vector<std::string> warningLines(const std::vector<AssetResult>& assets);

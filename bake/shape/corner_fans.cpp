@@ -13,7 +13,7 @@ namespace {
 /// Longest mitre, in units of half the thickness: that of kFoldCosine.
 constexpr double kMitreMax = 2.0;
 /// Smallest offset of a side by its mitre, in units of half the thickness.
-constexpr double kMitreLeast = 0.7;
+constexpr double kMitreMin = 0.7;
 /// Damping, in units of the number of normals; keeps the mitre defined if all normals are equal.
 constexpr double kMitreDamping = 1e-4;
 
@@ -108,7 +108,7 @@ void CornerFans::addFan(std::vector<std::uint32_t>& fan, bool closed) {
         addTo(whole, corner);
     }
     const glm::dvec3 all = whole.solve();
-    if (std::ranges::all_of(fan, [&](std::uint32_t k) { return dot(normalOf(k), all) >= kMitreLeast; })) {
+    if (std::ranges::all_of(fan, [&](std::uint32_t k) { return dot(normalOf(k), all) >= kMitreMin; })) {
         setMitre(fan, all);
         return;
     }
@@ -134,7 +134,7 @@ void CornerFans::addFan(std::vector<std::uint32_t>& fan, bool closed) {
             addTo(mitre, fan[end]);
             const glm::dvec3 with = mitre.solve();
             if (end > first &&
-                std::min(dot(normalOf(fan[first]), with), dot(normalOf(fan[end]), with)) < kMitreLeast) {
+                std::min(dot(normalOf(fan[first]), with), dot(normalOf(fan[end]), with)) < kMitreMin) {
                 cut(fan[end - 1], fan[end]);
                 break;
             }

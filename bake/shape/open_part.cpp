@@ -57,7 +57,7 @@ std::array<double, 2> sightOf(const Sheet& sheet, std::size_t samples, const Mes
                 const glm::dvec3 towards = face == 0 ? normal : -normal;
                 const glm::dvec3 from = on + kSurfaceStep * side * towards;
                 const glm::dvec3 ray = dot(direction, towards) < 0.0 ? -direction : direction;
-                out[face] += query.segmentIsFree(from, from + 4.0 * side * ray) ? 1.0 : 0.0;
+                out[face] += query.isSegmentFree(from, from + 4.0 * side * ray) ? 1.0 : 0.0;
             }
         }
     }
@@ -165,8 +165,8 @@ double sizeOf(const Sheet& sheet) {
     return double{boundsOf(sheet.positions).longestSide()};
 }
 
-Result<void> sortSheets(std::span<OpenPart> open, const PreparedMesh& mesh, std::span<const ShapeAs> kinds,
-                        std::size_t parts) {
+Result<void> classifyOpenParts(std::span<OpenPart> open, const PreparedMesh& mesh,
+                               std::span<const ShapeAs> kinds, std::size_t parts) {
     std::vector<OpenPart*> unclear;
     for (OpenPart& part : open) {
         if (part.as == ShapeAs::kTerrain) {
@@ -196,7 +196,7 @@ Result<void> sortSheets(std::span<OpenPart> open, const PreparedMesh& mesh, std:
         } else if (const Shadow shadow = shadowOf(part.sheet);
                    sizeOf(part.sheet) >= kBodyExtent * mesh->bounds.longestSide() &&
                    length(shadow.signed_area) <= kMouthMax * length(shadow.area)) {
-            part.role.kind = OpenKind::kPerhapsHoled;
+            part.role.kind = OpenKind::kPossibleSolid;
         }
     });
     return {};

@@ -14,7 +14,7 @@
 
 namespace relief {
 
-enum class OpenKind : std::uint8_t { kHoled, kPerhapsHoled, kJoined, kSheet, kTerrain };
+enum class OpenKind : std::uint8_t { kHoled, kPossibleSolid, kJoined, kSheet, kTerrain };
 struct OpenRole {
     OpenKind kind = OpenKind::kSheet;
     int axis = 1;  ///< up axis of a terrain
@@ -33,8 +33,8 @@ struct OpenPart {
 /// \param kinds  per triangle; empty: all of one kind.
 /// \param parts  number of parts of the mesh, including the closed ones.
 /// Errors: those of MeshQuery::build.
-[[nodiscard]] Result<void> sortSheets(std::span<OpenPart> open, const PreparedMesh& mesh,
-                                      std::span<const ShapeAs> kinds, std::size_t parts);
+[[nodiscard]] Result<void> classifyOpenParts(std::span<OpenPart> open, const PreparedMesh& mesh,
+                                             std::span<const ShapeAs> kinds, std::size_t parts);
 
 /// A part with holes, after closing.
 struct ClosedPart {

@@ -243,7 +243,7 @@ Voids sealedVoids(const MeshQuery& query, const std::vector<Wall>& walls) {
         std::size_t out = 0;
         for (std::size_t i = 0; i < kRays; ++i) {
             const std::size_t node = nodes[random.below(nodes.size())];
-            out += query.rayIsFree(fine.position(node), random.direction()) ? 1 : 0;
+            out += query.isRayFree(fine.position(node), random.direction()) ? 1 : 0;
         }
         return static_cast<double>(out) <= kRaysOut * kRays;
     });

@@ -85,13 +85,13 @@ class Shaper {
         }
         report_.solids = solids.size();
         makeSheets(others);
-        RELIEF_TRY(sortSheets(open_, prepared_, kinds_, parts_.size()));
+        RELIEF_TRY(classifyOpenParts(open_, prepared_, kinds_, parts_.size()));
         RELIEF_TRY(closeParts());
         RELIEF_TRY(checkThickness());
         RELIEF_TRY(addSheets());
         PreparedMesh mesh = RELIEF_TRY(union_.finish(report_.thickness));
         std::vector<std::uint32_t> part_of = union_.takePartOf();
-        if (options_.voids == VoidsAs::kFill && hasSealingSheet()) {
+        if (options_.voids == VoidMode::kFill && hasSealingSheet()) {
             mesh = RELIEF_TRY(fillVoids(std::move(mesh), part_of));
         }
         return ShapedMesh{std::move(mesh), report_, {std::move(collected_.parts), std::move(part_of)}};
@@ -183,7 +183,7 @@ class Shaper {
         return 2.0 * repeats > kTwice * static_cast<double>(part.triangles.size());
     }
 
-    /// Turns all open parts into sheets; sortSheets() finds the other kinds.
+    /// Turns all open parts into sheets; classifyOpenParts() finds the other kinds.
     void makeSheets(const std::vector<const Part*>& parts) {
         open_.resize(parts.size());
         tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
@@ -222,7 +222,7 @@ class Shaper {
             OpenKind& kind = open_[i].role.kind;
             if (joined[i]) {
                 kind = OpenKind::kJoined;
-            } else if (kind == OpenKind::kHoled || kind == OpenKind::kPerhapsHoled) {
+            } else if (kind == OpenKind::kHoled || kind == OpenKind::kPossibleSolid) {
                 holed.push_back(&open_[i]);
             }
         }
@@ -240,7 +240,7 @@ class Shaper {
                 holed[i]->full = true;
                 add(part);
                 ++report_.solids_with_holes;
-            } else if (holed[i]->role.kind == OpenKind::kPerhapsHoled) {
+            } else if (holed[i]->role.kind == OpenKind::kPossibleSolid) {
                 holed[i]->role.kind = OpenKind::kSheet;
                 report_.closable_sheets += part.mesh ? 1 : 0;
             } else {
@@ -263,7 +263,7 @@ class Shaper {
     }
 
     static bool mayBeHoled(const OpenPart& part) {
-        return (part.role.kind == OpenKind::kHoled || part.role.kind == OpenKind::kPerhapsHoled) &&
+        return (part.role.kind == OpenKind::kHoled || part.role.kind == OpenKind::kPossibleSolid) &&
                part.as == ShapeAs::kAuto;
     }
 
@@ -276,7 +276,7 @@ class Shaper {
                                   part.as == ShapeAs::kAuto && part.role.kind != OpenKind::kTerrain,
                                   mayBeHoled(part)});
         }
-        ShellWalls walls = wallsAmong(candidates, mesh_.name);
+        ShellWalls walls = findWalls(candidates, mesh_.name);
         unjoined_ = std::move(walls.unjoined);
         std::vector<bool> joined(open_.size(), false);
         for (ShellWall& wall : walls.walls) {
@@ -349,14 +349,15 @@ class Shaper {
                     options_.thickness_by_part
                         ? partThickness(options_.thickness, size, options_.thickness_by_texel)
                         : options_.thickness;
-                const double right = options_.thickness_by_part ? rightThickness(thickness, size) : thickness;
+                const double right =
+                    options_.thickness_by_part ? targetThickness(thickness, size) : thickness;
                 TriangleMesh finished = RELIEF_TRY(finishMesh(meshOf(part.sheet, mesh_.name)));
                 const MeshQuery query = RELIEF_TRY(MeshQuery::build(std::move(finished)));
                 add(part.sheet, thickened(part.sheet, query, thickness), PartKind::kSheet);
                 for (const std::uint32_t source : part.sheet.sources) {
                     SurfacePart& piece = collected_.parts[collected_.part_of[source]];
                     piece.thickness = thickness;
-                    piece.right_thickness = right;
+                    piece.target_thickness = right;
                 }
                 report_.thickness = std::max(report_.thickness, thickness);
                 report_.thickness_min =

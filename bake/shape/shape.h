@@ -58,7 +58,7 @@ struct ShapeReport {
 void fields(FieldVisitor& visit, const ShapeReport& report);
 
 /// Returns the values of --as, and of --thickness if there are shells, that reproduce the solid.
-[[nodiscard]] std::vector<std::string> asWords(const ShapeReport& report);
+[[nodiscard]] std::vector<std::string> asOptionWords(const ShapeReport& report);
 [[nodiscard]] std::optional<Thickness> thicknessOf(const ShapeReport& report);
 
 struct ShapedMesh {

@@ -18,8 +18,8 @@ bool isNamed(const ShapeOptions& options, std::string_view name) {
     return std::ranges::any_of(options.named, [&](const NamedShape& named) { return named.name == name; });
 }
 
-constexpr double kShellLeast = 0.004;
-constexpr double kShellMost = 0.25;
+constexpr double kShellMin = 0.004;
+constexpr double kShellMax = 0.25;
 constexpr double kShellRight = 0.1;
 constexpr double kThicknessMin = 1e-4;
 /// Resolution of floats at the far end of a mesh's box, in units of its longest side.
@@ -27,14 +27,14 @@ constexpr double kThicknessFloat = 4e-6;
 
 }  // namespace
 
-bool readForm(std::string_view word, Thickness& thickness) {
+bool parseThickness(std::string_view word, Thickness& thickness) {
     thickness.by_part = word.starts_with(kByPart);
     const std::optional<float> length = parseFloat(word.substr(thickness.by_part ? kByPart.size() : 0));
     thickness.length = double{length.value_or(0.0F)};
     return length && *length >= 1e-15F && *length <= 1e15F;
 }
 
-std::string formText(const Thickness& thickness) {
+std::string thicknessText(const Thickness& thickness) {
     return std::string(thickness.by_part ? kByPart : "") + shortest(static_cast<float>(thickness.length));
 }
 
@@ -58,7 +58,7 @@ Result<ShapeOptions> parseShapeOptions(const std::vector<std::string>& words) {
         const std::optional<ShapeAs> as = fromWord<ShapeAs>(kind);
         const auto wrong = [&](const std::string& why) {
             return fail(ErrorCode::kUsage,
-                        "--as is '" + cleanUtf8(word, 2 * kAskedNameBytesMax) + "' but " + why);
+                        "--as is '" + cleanUtf8(word, 2 * kSelectedNameBytesMax) + "' but " + why);
         };
         if (!as) {
             return wrong((is_named ? "the kind after the last = must be one of " : "must be one of ") +
@@ -78,14 +78,15 @@ Result<ShapeOptions> parseShapeOptions(const std::vector<std::string>& words) {
             return wrong(
                 "must have a name of the mesh file before the =; leave out the = for the whole mesh");
         }
-        if (name.size() > kAskedNameBytesMax) {
-            return wrong("a name has at most " + std::to_string(kAskedNameBytesMax) + " bytes; shorten it");
+        if (name.size() > kSelectedNameBytesMax) {
+            return wrong("a name has at most " + std::to_string(kSelectedNameBytesMax) +
+                         " bytes; shorten it");
         }
         if (isNamed(options, name)) {
             return wrong("another --as has the same name; leave one out");
         }
-        if (options.named.size() == kAskedNamesMax) {
-            return fail(ErrorCode::kLimit, "--as gives more than " + std::to_string(kAskedNamesMax) +
+        if (options.named.size() == kSelectedNamesMax) {
+            return fail(ErrorCode::kLimit, "--as gives more than " + std::to_string(kSelectedNamesMax) +
                                                " names; use a parent node, or another default");
         }
         options.named.push_back({name, *as});
@@ -107,11 +108,11 @@ double thicknessOfTexel(const Bounds& bounds, double texel) {
 }
 
 double partThickness(double default_thickness, double part_size, bool by_texel) {
-    return std::clamp(default_thickness, (by_texel ? kThicknessMin : kShellLeast) * part_size,
-                      kShellMost * part_size);
+    return std::clamp(default_thickness, (by_texel ? kThicknessMin : kShellMin) * part_size,
+                      kShellMax * part_size);
 }
 
-double rightThickness(double thickness, double part_size) {
+double targetThickness(double thickness, double part_size) {
     return std::min(thickness, kShellRight * part_size);
 }
 

@@ -20,21 +20,21 @@ template <>
 inline constexpr std::array<std::string_view, 4> kWordsOf<ShapeAs>{"auto", "solid", "shell", "terrain"};
 
 /// The treatment of free space that sheets and solids seal together (sealed_voids.h).
-enum class VoidsAs : std::uint8_t { kFill, kKeep };
+enum class VoidMode : std::uint8_t { kFill, kKeep };
 template <>
-inline constexpr std::array<std::string_view, 2> kWordsOf<VoidsAs>{"fill", "keep"};
+inline constexpr std::array<std::string_view, 2> kWordsOf<VoidMode>{"fill", "keep"};
 
 /// The thickness of shells: "0.01", or "auto=0.01" for a default that each sheet adapts to its size.
 struct Thickness {
     double length = 0.0;  ///< object units, above 0
     bool by_part = false;
 };
-[[nodiscard]] bool readForm(std::string_view word, Thickness& thickness);
-[[nodiscard]] std::string formText(const Thickness& thickness);
+[[nodiscard]] bool parseThickness(std::string_view word, Thickness& thickness);
+[[nodiscard]] std::string thicknessText(const Thickness& thickness);
 
 /// The interpretation of triangles with a name, identified by TriangleMesh::marks.
 struct NamedShape {
-    std::string name;  ///< clean UTF-8, 1 to kAskedNameBytesMax bytes
+    std::string name;  ///< clean UTF-8, 1 to kSelectedNameBytesMax bytes
     ShapeAs as = ShapeAs::kAuto;
 
     friend bool operator==(const NamedShape&, const NamedShape&) = default;
@@ -46,13 +46,13 @@ struct ShapeOptions {
     /// projection.
     ShapeAs as = ShapeAs::kAuto;
     double thickness = 0.0;  ///< of shells, object units, above 0; see defaultThickness()
-    /// Overrides `as`. Names are unique, at most kAskedNamesMax. If a triangle has several, the last one applies.
+    /// Overrides `as`. Names are unique, at most kSelectedNamesMax. If a triangle has several, the last one applies.
     std::vector<NamedShape> named = {};
     /// `thickness` is a default that each sheet adapts to its size (partThickness).
     bool thickness_by_part = false;
     /// The default is derived from --texel. Adapting it to a part then does not make the shell thicker.
     bool thickness_by_texel = false;
-    VoidsAs voids = VoidsAs::kFill;
+    VoidMode voids = VoidMode::kFill;
 
     [[nodiscard]] std::vector<std::string> names() const;  ///< of `named`, in order
 };
@@ -71,8 +71,8 @@ inline constexpr double kThicknessMax = 0.5;
 [[nodiscard]] double thicknessOfTexel(const Bounds& bounds, double texel);
 /// Clamps a default to between 0.4 % and 25 % of a part's longest side. With `by_texel`, the lower limit is 0.01 %.
 [[nodiscard]] double partThickness(double default_thickness, double part_size, bool by_texel = false);
-/// Returns SurfacePart::right_thickness for a default thickness: at most a tenth of the part's longest side.
-[[nodiscard]] double rightThickness(double thickness, double part_size);
+/// Returns SurfacePart::target_thickness for a default thickness: at most a tenth of the part's longest side.
+[[nodiscard]] double targetThickness(double thickness, double part_size);
 
 /// Checks the thickness. Errors: kUsage, if shells would be thinner than 1e-4 of the smallest sheet's longest side, or
 /// too thin for floats to resolve.

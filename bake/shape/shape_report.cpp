@@ -17,7 +17,7 @@ void append(std::string& text, std::uint64_t count, const char* one, const char*
 
 }  // namespace
 
-std::vector<std::string> asWords(const ShapeReport& report) {
+std::vector<std::string> asOptionWords(const ShapeReport& report) {
     std::vector<std::string> words;
     if (report.as != ShapeAs::kAuto) {
         words.emplace_back(wordOf(report.as));

@@ -357,7 +357,7 @@ ShellWalls joinRims(std::vector<RimmedShell>& shells) {
 
 }  // namespace
 
-ShellWalls wallsAmong(const std::vector<WallCandidate>& candidates, const std::string& name) {
+ShellWalls findWalls(const std::vector<WallCandidate>& candidates, const std::string& name) {
     const std::vector<bool> may_be_wall = mayBeWalls(candidates);
     std::vector<RimmedShell> shells;
     for (std::size_t i = 0; i < candidates.size(); ++i) {

@@ -38,7 +38,7 @@ struct WallCandidate {
 /// Rims of the inner candidate that face no rim of the outer candidate must be small. A candidate belongs to at most one
 /// wall. Tests only pairs that overlap along x, because a file may have thousands of open parts.
 /// \param name  of the mesh.
-[[nodiscard]] ShellWalls wallsAmong(const std::vector<WallCandidate>& candidates, const std::string& name);
+[[nodiscard]] ShellWalls findWalls(const std::vector<WallCandidate>& candidates, const std::string& name);
 
 /// Whether the two shells of a wall have the same winding in the file, or one of them has an inconsistent winding.
 /// \param mesh    the mesh of the candidates.

@@ -88,7 +88,7 @@ std::string verdictText(double wrong_percent) {
 }
 
 std::string insideGradeOf(const InsideAccuracy& accuracy) {
-    return accuracy.points < kInsidePointsLeast              ? "unknown"
+    return accuracy.points < kInsidePointsMin                ? "unknown"
            : accuracy.far_face_percent <= kGoodInsidePercent ? "good"
            : accuracy.far_face_percent <= kFairInsidePercent ? "fair"
                                                              : "poor";
@@ -106,7 +106,7 @@ std::string accuracyText(const ColliderAccuracy& accuracy, const TruthSamples& s
                          const std::string& unit) {
     const FieldAccuracy& field = accuracy.field;
     const std::string units = " " + unitText(unit);
-    const auto wrongRow = [](const char* where, const WrongShare& share) {
+    const auto wrongRow = [](const char* where, const WrongPercent& share) {
         return std::vector<std::string>{where, precisely(share.total()), precisely(share.false_inside),
                                         precisely(share.false_outside)};
     };
@@ -140,7 +140,7 @@ std::string accuracyText(const ColliderAccuracy& accuracy, const TruthSamples& s
             ". " + std::to_string(samples.options.samples) + " points of each kind, " +
             std::to_string(field.inside.points) + " inside, seed " + std::to_string(samples.options.seed) +
             ".\nThe distance of points near the surface has a standard deviation of " +
-            precisely(100.0 * samples.options.sigma_share) + ".\n";
+            precisely(100.0 * samples.options.sigma_fraction) + ".\n";
     return text;
 }
 
@@ -249,9 +249,9 @@ void fields(FieldVisitor& visit, const ColliderAccuracyReport& report) {
 void fields(FieldVisitor& visit, const TruthSamples& samples) {
     visit("samples", samples.options.samples, {"Points of each kind"});
     visit("seed", samples.options.seed, {"Seed of the points"});
-    visit("sigma", samples.options.sigma_share * samples.longest_side,
+    visit("sigma", samples.options.sigma_fraction * samples.longest_side,
           {"Standard deviation of the distance of the points near the surface", "object units", kFromZero});
-    visit("sigma_percent", 100.0 * samples.options.sigma_share,
+    visit("sigma_percent", 100.0 * samples.options.sigma_fraction,
           {"The same standard deviation", "% of the longest side", kFromZero});
     visit("step", kSurfaceStep * samples.longest_side,
           {"Distance from the surface at which normals are measured", "object units", kFromZero});

@@ -22,7 +22,7 @@ namespace relief {
 [[nodiscard]] std::string verdictText(double wrong_percent);
 
 /// Returns the grade of the votes at points inside, by InsideAccuracy::far_face_percent; "unknown" with fewer than
-/// kInsidePointsLeast points.
+/// kInsidePointsMin points.
 [[nodiscard]] std::string insideGradeOf(const InsideAccuracy& accuracy);
 /// Returns a line like "at 12 % of the points inside, the nearest face does not decide: poor"; "" if the grade is good
 /// or unknown.

@@ -127,10 +127,10 @@ double partTexel(const SurfacePart& part, const Collider& collider) {
 }
 
 /// Returns "9 m long at (1, 2, 3): 48 % of the points near it are on the wrong side, classified as outside; …", then
-/// partCure().
+/// partFix().
 std::string partText(const PartAccuracy& accuracy, const SurfaceParts& parts, const Collider& collider) {
     const SurfacePart& part = parts.parts[accuracy.part];
-    const std::string cure = partCure(part, collider);
+    const std::string cure = partFix(part, collider);
     return lengthText(part.size(), collider.unit) + " long at " + positionText(part.bounds.center()) + ": " +
            percentText(accuracy.wrong.total()) + " of the points near it are on the wrong side, " +
            partSideText(accuracy) + (cure.empty() ? "" : "; " + cure);
@@ -177,15 +177,15 @@ Verdict verdictOf(double wrong_percent, const PartsAccuracy& accuracy, const std
         accuracy.ignored, unit);
 }
 
-std::string partCure(const SurfacePart& part, const Collider& collider) {
+std::string partFix(const SurfacePart& part, const Collider& collider) {
     std::string cure;
-    if (part.right_thickness < part.thickness) {
+    if (part.target_thickness < part.thickness) {
         cure = "its shell is " + lengthText(part.thickness, collider.unit) + " thick; --thickness " +
-               shortest(parseFloat(roughly(part.right_thickness)).value_or(0.0F));
+               shortest(parseFloat(roughly(part.target_thickness)).value_or(0.0F));
     }
     const double texel = partTexel(part, collider);
     const double right =
-        kTexelsAcross * (part.kind == PartKind::kSheet ? part.right_thickness : middleExtent(part));
+        kTexelsAcross * (part.kind == PartKind::kSheet ? part.target_thickness : middleExtent(part));
     const double needed = std::min(right, 0.5 * texel);
     const bool patches = collider.hasPatches();
     if (!(needed > 0.0) || (patches && !cure.empty() && texel <= right)) {
@@ -253,8 +253,8 @@ std::optional<std::string> lostPartsWarning(const PartsAccuracy& accuracy, const
            partName(parts.parts[largest->part], largest->part) + ", " + partText(*largest, parts, collider);
 }
 
-std::optional<std::string> strayText(const SurfaceParts& parts, const std::string& unit) {
-    const OutlierParts strays = straysOf(parts.parts);
+std::optional<std::string> outlierText(const SurfaceParts& parts, const std::string& unit) {
+    const OutlierParts strays = findOutlierParts(parts.parts);
     if (strays.parts.empty()) {
         return std::nullopt;
     }
@@ -271,14 +271,14 @@ std::optional<std::string> strayText(const SurfaceParts& parts, const std::strin
 
 std::vector<std::string> partWarnings(const SurfaceParts& parts, const std::string& unit) {
     std::vector<std::string> warnings;
-    if (std::optional<std::string> stray = strayText(parts, unit)) {
+    if (std::optional<std::string> stray = outlierText(parts, unit)) {
         warnings.push_back(std::move(*stray));
     }
     std::uint64_t swallowed = 0;
     std::uint32_t largest = 0;
     for (std::uint32_t i = 0; i < parts.parts.size(); ++i) {
         const SurfacePart& part = parts.parts[i];
-        if (part.right_thickness >= kSwallows * part.size() && part.thickness > 0.0) {
+        if (part.target_thickness >= kSwallows * part.size() && part.thickness > 0.0) {
             largest = swallowed == 0 || part.size() > parts.parts[largest].size() ? i : largest;
             ++swallowed;
         }
@@ -358,7 +358,7 @@ void fields(FieldVisitor& visit, const PartReport& report) {
     visit("texel", partTexel(part, collider),
           {"Side of the finest texels at its center, or of the finest patches in its box", "object units",
            kFromZero});
-    visit("fix", needs_fix ? std::optional(partCure(part, collider)) : std::nullopt,
+    visit("fix", needs_fix ? std::optional(partFix(part, collider)) : std::nullopt,
           {"How to keep the part; null unless coarse, lost or minor"});
 }
 

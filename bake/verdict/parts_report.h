@@ -33,7 +33,7 @@ void fields(FieldVisitor& visit, const IgnoredParts& ignored);
 [[nodiscard]] Verdict verdictOf(double wrong_percent, const PartsAccuracy& accuracy, const std::string& unit);
 
 /// Returns how to keep a lost or coarse part: a budget, a resolution, a thickness, or a separate bake.
-[[nodiscard]] std::string partCure(const SurfacePart& part, const Collider& collider);
+[[nodiscard]] std::string partFix(const SurfacePart& part, const Collider& collider);
 
 /// Returns the worst parts, the worst named nodes and materials, and the ignored parts; "" if all parts are
 /// represented.
@@ -44,8 +44,8 @@ void fields(FieldVisitor& visit, const IgnoredParts& ignored);
                                                           const SurfaceParts& parts,
                                                           const Collider& collider);
 /// Returns a line about parts far from all others; nullopt if there are none.
-[[nodiscard]] std::optional<std::string> strayText(const SurfaceParts& parts, const std::string& unit);
-/// Returns strayText(), and one line about all sheets whose --thickness is at least a quarter of their length.
+[[nodiscard]] std::optional<std::string> outlierText(const SurfaceParts& parts, const std::string& unit);
+/// Returns outlierText(), and one line about all sheets whose --thickness is at least a quarter of their length.
 [[nodiscard]] std::vector<std::string> partWarnings(const SurfaceParts& parts, const std::string& unit);
 
 // --- The same data as fields.

@@ -50,7 +50,7 @@ std::string percentText(double percent) {
     return roughly(percent) + " %";
 }
 
-std::string shareText(double share) {
+std::string fractionText(double share) {
     return formatted("%.1f %%", 100.0 * share);
 }
 
@@ -113,8 +113,8 @@ std::string boxText(const Bounds& bounds, const std::string& unit) {
            cornerText(bounds.max);
 }
 
-std::optional<std::string> forgottenUnit(const Bounds& bounds) {
-    if (!(bounds.longestSide() >= kForgottenUnitFrom)) {
+std::optional<std::string> missingUnitText(const Bounds& bounds) {
+    if (!(bounds.longestSide() >= kMissingUnitSize)) {
         return std::nullopt;
     }
     const glm::vec3 size = bounds.size();

@@ -19,7 +19,7 @@ namespace relief {
 /// "0.41 %": two digits.
 [[nodiscard]] std::string percentText(double percent);
 /// "41.3 %" for 0.413.
-[[nodiscard]] std::string shareText(double share);
+[[nodiscard]] std::string fractionText(double share);
 /// "1 hole", "3 holes". \param plural  if not `what` with an s: "vertices"
 [[nodiscard]] std::string countText(std::uint64_t count, std::string_view what, std::string_view plural = {});
 
@@ -41,16 +41,16 @@ namespace relief {
 [[nodiscard]] std::string sizeText(const DepthMap& map);
 
 /// Longest sides above this are rare in metres, and common in centimetres and millimetres.
-inline constexpr float kForgottenUnitFrom = 100.0F;
-/// Start of the text of forgottenUnit().
+inline constexpr float kMissingUnitSize = 100.0F;
+/// Start of the text of missingUnitText().
 inline constexpr std::string_view kNoUnit = "no unit is named";
 
 /// "2 x 4 x 6 m, from (-1, -2, -3) to (1, 2, 3)"; "object units" without a unit.
 [[nodiscard]] std::string boxText(const Bounds& bounds, const std::string& unit);
 /// Returns the size in centimetres and in millimetres, and the option for each; nullopt if the bounds are smaller than
-/// kForgottenUnitFrom.
+/// kMissingUnitSize.
 /// \param bounds  of a mesh without a unit
-[[nodiscard]] std::optional<std::string> forgottenUnit(const Bounds& bounds);
+[[nodiscard]] std::optional<std::string> missingUnitText(const Bounds& bounds);
 
 /// Formats rows as aligned columns; the first row is the header. Columns whose header ends in '>' are right-aligned;
 /// the mark is not printed.

@@ -52,7 +52,7 @@ tl::unexpected<Error> unknown(const std::string& what, std::string_view word,
 Result<bool> parseWord(std::string_view key, std::string_view value,
                        const std::array<std::string_view, 2>& words) {
     if (value != words[0] && value != words[1]) {
-        return usage(std::string(key) + " " + butMustBeOneOf(value, words));
+        return usage(std::string(key) + " " + expectedOneOfMessage(value, words));
     }
     return value == words[1];
 }

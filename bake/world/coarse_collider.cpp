@@ -32,7 +32,7 @@ Result<Collider> bakeCoarse(const BakeRequest& request, const FineCollider& fine
     coarse.texel.reset();
     coarse.no_check = true;
     const glm::vec3 margin(kMargin * fine.box.longestSide());
-    coarse.roots_hold = Bounds{fine.box.min - margin, fine.box.max + margin};
+    coarse.roots_contain = Bounds{fine.box.min - margin, fine.box.max + margin};
     Collider collider = RELIEF_TRY(bake(coarse)).baked.collider;
     collider.bounds = fine.bounds;  // its own bounds include thicker shells
     return collider;

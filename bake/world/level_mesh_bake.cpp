@@ -68,7 +68,7 @@ Result<std::vector<WorldColliderResult>> bakeLevelMesh(const LevelMeshBake& of,
         part.tile = tile.name;
         part.file = of.names.fileOf(tile.name);
         RELIEF_TRY(writeFile(of.world.folder / part.file, bytes));
-        takeContainer(tile.collider, bytes, part);
+        copyContainerInfo(tile.collider, bytes, part);
         if (!parts.empty()) {
             part.warnings.clear();
             part.ignored = {};
@@ -78,7 +78,7 @@ Result<std::vector<WorldColliderResult>> bakeLevelMesh(const LevelMeshBake& of,
     TriangleMesh mesh = std::move(of.mesh);
     if (std::ranges::any_of(parts, &WorldColliderResult::has_coarse)) {
         const auto by = [&](const BakeRequest& request) {
-            return solid.suitsAnyBudget() ? bake(request, solid) : bake(request, {}, std::move(mesh));
+            return solid.isBudgetIndependent() ? bake(request, solid) : bake(request, {}, std::move(mesh));
         };
         const Collider coarse = RELIEF_TRY(bakeCoarse(of.request, whole, by));
         for (std::size_t k = 0; k < parts.size(); ++k) {

@@ -96,7 +96,7 @@ class WorldBaker {
         names_ = RELIEF_TRY(parseShapeOptions(request_.bake.as)).names();
         ImportOptions options = request_.bake.import;
         options.names = names_;
-        options.materials = request_.bake.materials != MaterialsAs::kDrop;
+        options.materials = request_.bake.materials != MaterialMode::kDrop;
         level_ = RELIEF_TRY(importLevel(request_.bake.mesh, options, request_.bake.import_limits));
         for (std::size_t i = 0; i < level_.dependencies.size(); ++i) {
             if (watcher_.files != nullptr) {
@@ -114,7 +114,7 @@ class WorldBaker {
         parts_.resize(level_.meshes.size());
         solids_.resize(level_.meshes.size());
         tiles_.bytes = request_.tile_bytes;
-        tiles_.most = tilesMost(level_.meshes.size(), level_.bodies.size());
+        tiles_.most = maxTiles(level_.meshes.size(), level_.bodies.size());
         for (const LevelBody& body : level_.bodies) {
             WorldColliderResult& collider = meshes_[body.mesh];
             ++collider.bodies;
@@ -128,11 +128,11 @@ class WorldBaker {
             meshes_[i].area = areaOf(mesh);
             requests_.push_back(requestOf(request_.bake, names_, mesh));
             if (several) {
-                requests_.back().materials = MaterialsAs::kKeep;
+                requests_.back().materials = MaterialMode::kKeep;
             }
             inputs_.push_back({{mesh.name, mesh.content_hash},
                                {"marks", xxh3_128Hex(std::as_bytes(std::span(mesh.marks)))}});
-            if (several || request_.bake.materials == MaterialsAs::kKeep) {
+            if (several || request_.bake.materials == MaterialMode::kKeep) {
                 inputs_.back().push_back({"materials", materialHash(mesh)});
             }
         }
@@ -189,7 +189,7 @@ class WorldBaker {
     [[nodiscard]] std::string curveKey(std::size_t mesh, std::uint64_t bytes) const {
         BakeRequest request = requests_[mesh];
         request.budget = bytes;
-        return assetKey(tool_, optionWords(request, 0), inputs_[mesh]);
+        return assetKey(tool_, cacheOptions(request, 0), inputs_[mesh]);
     }
 
     /// Returns the error curve of a mesh. Keeps its solid for the bake, within kTrianglesKept.
@@ -198,7 +198,7 @@ class WorldBaker {
         request.budget = kSharePerPlan * bytes;  // shells have the thickness for this budget
         SolidMesh solid = RELIEF_TRY(solidFor(request, mesh));
         Result<ErrorCurve> curve = planErrors(request, solid, bytes);
-        if (!solids_[mesh] && solid.suitsAnyBudget() && kept_triangles_ < kTrianglesKept) {
+        if (!solids_[mesh] && solid.isBudgetIndependent() && kept_triangles_ < kTrianglesKept) {
             kept_triangles_ += solid.mesh.mesh->triangles.size();
             solids_[mesh] = std::move(solid);
         }
@@ -226,7 +226,7 @@ class WorldBaker {
             if (request.texel) {
                 request.texel = static_cast<float>(double{*request.texel} / collider.largest_scale);
             }
-            BakeCacheEntry entry{tool_, optionWords(request, request_.compress), inputs_[i], "", 0};
+            BakeCacheEntry entry{tool_, cacheOptions(request, request_.compress), inputs_[i], "", 0};
             request = withoutImport(request);
             if (!collider.budget || *collider.budget > tiles_.bytes) {
                 entry.options.push_back("--tile-bytes=" + std::to_string(tiles_.bytes));
@@ -302,7 +302,7 @@ class WorldBaker {
             for (const WorldColliderResult& part : parts_[i]) {
                 tiles.push_back(part.tile);
             }
-            entry.options.push_back(tilesWord(tiles));
+            entry.options.push_back(tilesOption(tiles));
         }
         for (const WorldColliderResult& part : parts_[i]) {
             entry.output_hash = part.hash;

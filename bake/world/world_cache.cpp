@@ -39,7 +39,7 @@ bool isUpToDate(const std::filesystem::path& folder, const BakeCacheEntry& expec
     }
     const Result<Collider> there = readContainer(*bytes);
     if (there) {
-        takeContainer(*there, *bytes, collider);
+        copyContainerInfo(*there, *bytes, collider);
     }
     return there.has_value();
 }
@@ -81,7 +81,7 @@ std::vector<std::string> knownTiles(const ContainerNames& names, const BakeCache
 
 }  // namespace
 
-std::vector<std::string> optionWords(const BakeRequest& request, std::uint32_t compress) {
+std::vector<std::string> cacheOptions(const BakeRequest& request, std::uint32_t compress) {
     std::vector<std::string> words = {"--compress=" + std::to_string(compress)};
     for (const FieldWords& field : changedFields(request)) {
         for (const std::string& word : field.words) {
@@ -108,7 +108,7 @@ std::string coarseFile(const std::string& file) {
     return file.substr(0, key) + "coarse-" + file.substr(key);
 }
 
-std::string tilesWord(const std::vector<std::string>& tiles) {
+std::string tilesOption(const std::vector<std::string>& tiles) {
     std::string word(kTilesWord);
     for (const std::string& tile : tiles) {
         word += (word.size() == kTilesWord.size() ? "" : ",") + tile;
@@ -116,7 +116,8 @@ std::string tilesWord(const std::vector<std::string>& tiles) {
     return word;
 }
 
-void takeContainer(const Collider& from, std::span<const std::byte> bytes, WorldColliderResult& collider) {
+void copyContainerInfo(const Collider& from, std::span<const std::byte> bytes,
+                       WorldColliderResult& collider) {
     collider.box = from.bounds;
     collider.gpu_bytes = from.texelBytes();
     collider.has_coarse = hasCoarse(from);
@@ -138,7 +139,7 @@ std::vector<WorldColliderResult> upToDate(const std::filesystem::path& folder,
     }
     std::vector<WorldColliderResult> parts;
     const std::vector<std::string> tiles = knownTiles(names, cache);
-    expected.options.push_back(tilesWord(tiles));
+    expected.options.push_back(tilesOption(tiles));
     for (const std::string& tile : tiles) {
         part.tile = tile;
         part.file = names.fileOf(tile);

@@ -15,7 +15,7 @@
 namespace relief {
 
 /// Returns the options of a request that affect the bytes of a container, as words of a command line.
-[[nodiscard]] std::vector<std::string> optionWords(const BakeRequest& request, std::uint32_t compress);
+[[nodiscard]] std::vector<std::string> cacheOptions(const BakeRequest& request, std::uint32_t compress);
 
 /// The names of the containers of one mesh.
 struct ContainerNames {
@@ -32,10 +32,10 @@ struct ContainerNames {
 [[nodiscard]] std::string coarseFile(const std::string& file);
 
 /// Returns the cache option that lists all tiles of a mesh; part of the entry of each tile.
-[[nodiscard]] std::string tilesWord(const std::vector<std::string>& tiles);
+[[nodiscard]] std::string tilesOption(const std::vector<std::string>& tiles);
 
 /// Copies the properties of a container into the result of its collider.
-void takeContainer(const Collider& from, std::span<const std::byte> bytes, WorldColliderResult& collider);
+void copyContainerInfo(const Collider& from, std::span<const std::byte> bytes, WorldColliderResult& collider);
 
 /// Finds the colliders of a mesh in the folder of a world.
 /// \param whole  the result of the mesh, with the file of the whole mesh.

@@ -26,7 +26,7 @@ constexpr std::uint64_t kSamplesMax = 100'000'000;
 constexpr std::uint64_t kPointsMin = 100;  ///< per body
 constexpr std::size_t kWorst = 10;
 /// Standard deviation of the points, in units of the longest side, as in AccuracyOptions.
-constexpr double kSigma = AccuracyOptions().sigma_share;
+constexpr double kSigma = AccuracyOptions().sigma_fraction;
 
 glm::dvec3 inBall(MersenneRandom& random) {
     for (;;) {
@@ -62,7 +62,7 @@ class WorldChecker {
   private:
     /// Reads the level with the names that the colliders were baked with.
     Result<void> readLevel() {
-        HiddenAs hidden = request_.check.import.hidden;
+        HiddenMode hidden = request_.check.import.hidden;
         for (const WorldCollider& collider : field_.world().colliders) {
             const std::size_t index = static_cast<std::size_t>(&collider - field_.world().colliders.data());
             const Provenance& from = field_.colliders()[index].provenance;

@@ -28,7 +28,7 @@ struct BodyAccuracy {
     std::string node;
     std::string mesh;
     std::uint64_t points = 0;
-    WrongShare wrong;
+    WrongPercent wrong;
     std::size_t tiles = 1;     ///< consecutive bodies of the world, one per tile; 0: the level has changed
     glm::vec3 position{0.0F};  ///< world space: a typical misclassified point, or the position of the body
 };
@@ -42,7 +42,7 @@ struct LostParts {
 };
 
 struct WorldAccuracy {
-    WrongShare all;                    ///< of all points; each body has the same number
+    WrongPercent all;                  ///< of all points; each body has the same number
     std::vector<BodyAccuracy> bodies;  ///< in the order of the level
     std::vector<std::size_t> worst;    ///< bodies with misclassified points, worst first, at most ten
     std::vector<WorldPlace> places;    ///< of `worst`, in the same order

@@ -51,7 +51,7 @@ struct WorldColliderResult {
     bool has_coarse = false;             ///< hasCoarse(); if true, the next two members are set
     std::optional<WorldFile> coarse;
     std::uint64_t coarse_bytes = 0;     ///< size of that container
-    std::optional<WrongShare> wrong;    ///< near the surface of the mesh; for a baked collider
+    std::optional<WrongPercent> wrong;  ///< near the surface of the mesh; for a baked collider
     std::optional<Verdict> verdict;     ///< if measured; all tiles have the verdict of their mesh
     IgnoredParts ignored;               ///< sizes in world space; for tiles, only in the first
     std::vector<std::string> warnings;  ///< one line each; for tiles, only in the first

@@ -56,7 +56,7 @@ bool isTileName(std::string_view text) {
            text.find_first_not_of("0123456789-") == std::string_view::npos;
 }
 
-std::uint32_t tilesMost(std::size_t meshes, std::size_t bodies) {
+std::uint32_t maxTiles(std::size_t meshes, std::size_t bodies) {
     const std::size_t most = std::min(
         {std::size_t{PatchTileOptions().most}, kWorldCollidersMax / meshes, kWorldBodiesMax / bodies});
     return static_cast<std::uint32_t>(std::bit_floor(std::max(most, std::size_t{1})));

@@ -25,7 +25,7 @@ struct ColliderTile {
 
 /// Returns the maximum number of tiles per mesh that keeps a world within its limits of colliders and bodies. It is a
 /// power of two, so that it rarely changes as a level grows.
-[[nodiscard]] std::uint32_t tilesMost(std::size_t meshes, std::size_t bodies);
+[[nodiscard]] std::uint32_t maxTiles(std::size_t meshes, std::size_t bodies);
 
 /// Returns the budget of a collider whose tiles then fit into `share` bytes, although they duplicate some cells.
 [[nodiscard]] std::uint64_t bytesBeforeCut(std::uint64_t share, const PatchTileOptions& options);

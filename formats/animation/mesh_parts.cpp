@@ -38,7 +38,7 @@ std::string listedNames(const std::vector<std::string>& names) {
     return list;
 }
 
-std::string noSuchPart(const char* kind, std::string_view name, const std::vector<std::string>& names) {
+std::string partNotFound(const char* kind, std::string_view name, const std::vector<std::string>& names) {
     const std::string list = listedNames(names);
     return "there is no " + std::string(kind) + " '" + cleanUtf8(name, kAnimatedNameMax) +
            "'; the mesh has " + (list.empty() ? "none with a name" : list);
@@ -63,7 +63,7 @@ Result<std::vector<float>> groupWeights(const AnimatedMesh& mesh, std::string_vi
         wanted[i] = wanted[i] != 0 && !name.empty() && mesh.nodes[mesh.joints[i].node].name == name ? 1 : 0;
     }
     if (std::count(wanted.begin(), wanted.end(), 1) == 0) {
-        return invalidInput(noSuchPart("joint or node with vertices", name, groupNames(mesh)));
+        return invalidInput(partNotFound("joint or node with vertices", name, groupNames(mesh)));
     }
     std::vector<float> weights(mesh.positions.size(), 0.0F);
     for (std::size_t vertex = 0; vertex < weights.size(); ++vertex) {
@@ -79,7 +79,7 @@ Result<std::vector<float>> groupWeights(const AnimatedMesh& mesh, std::string_vi
 Result<std::vector<glm::uvec3>> materialTriangles(const AnimatedMesh& mesh, std::string_view name) {
     const auto found = std::find(mesh.materials.begin(), mesh.materials.end(), name);
     if (name.empty() || found == mesh.materials.end()) {
-        return invalidInput(noSuchPart("material", name, mesh.materials));
+        return invalidInput(partNotFound("material", name, mesh.materials));
     }
     const auto material = static_cast<std::uint16_t>(found - mesh.materials.begin());
     std::vector<glm::uvec3> triangles;

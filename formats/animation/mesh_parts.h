@@ -28,7 +28,7 @@ namespace relief {
 [[nodiscard]] std::string listedNames(const std::vector<std::string>& names);
 
 /// Returns "there is no KIND 'NAME'; the mesh has 'A', 'B', …".
-[[nodiscard]] std::string noSuchPart(const char* kind, std::string_view name,
-                                     const std::vector<std::string>& names);
+[[nodiscard]] std::string partNotFound(const char* kind, std::string_view name,
+                                       const std::vector<std::string>& names);
 
 }  // namespace relief

@@ -27,7 +27,7 @@ void store(void* to, double value) {
 
 FieldVisitor::~FieldVisitor() = default;
 
-FieldRef FieldRef::heldOrBlank() const {
+FieldRef FieldRef::valueOrDefault() const {
     if (form() != FieldForm::kOptional) {
         return *this;
     }

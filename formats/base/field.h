@@ -62,7 +62,7 @@ constexpr FieldRange within(double limit) {
 
 inline constexpr FieldRange kFromZero{0.0};
 inline constexpr FieldRange kFromOne{1.0};
-inline constexpr FieldRange kShareRange{0.0, 1.0};
+inline constexpr FieldRange kFractionRange{0.0, 1.0};
 inline constexpr FieldRange kPercentRange{0.0, 100.0};
 
 /// A string literal as a template argument.
@@ -157,12 +157,12 @@ inline constexpr bool kIsForm = false;
 template <template <class...> class Form, class... Parts>
 inline constexpr bool kIsForm<Form, Form<Parts...>> = true;
 
-/// A type with its own text form provides readForm(word, value), which returns false if the word is not valid, and
-/// formText(value).
+/// A type with its own text form provides parseThickness(word, value), which returns false if the word is not valid, and
+/// thicknessText(value).
 template <class T>
 concept WithForm = requires(std::string_view word, T& value) {
-    { readForm(word, value) } -> std::same_as<bool>;
-    { formText(value) } -> std::same_as<std::string>;
+    { parseThickness(word, value) } -> std::same_as<bool>;
+    { thicknessText(value) } -> std::same_as<std::string>;
 };
 
 /// Functions of a type with its own file format. Specialize it beside the type.
@@ -258,9 +258,9 @@ constexpr FieldType describe() {
     }
     if constexpr (WithForm<T>) {
         type.read_form = [](std::string_view word, void* value) {
-            return readForm(word, *static_cast<T*>(value));
+            return parseThickness(word, *static_cast<T*>(value));
         };
-        type.form_text = [](const void* value) { return formText(*static_cast<const T*>(value)); };
+        type.form_text = [](const void* value) { return thicknessText(*static_cast<const T*>(value)); };
     } else if constexpr (std::same_as<T, bool>) {
         type.form = FieldForm::kBool;
     } else if constexpr (std::is_floating_point_v<T>) {
@@ -327,7 +327,7 @@ constexpr FieldType describe() {
         }
     } else {
         static_assert(kFieldCustom<T> != nullptr,
-                      "declare fields(), or readForm() and formText(), before this use");
+                      "declare fields(), or parseThickness() and thicknessText(), before this use");
     }
     return type;
 }

@@ -118,7 +118,7 @@ class FieldRef {
     }
 
     /// Returns the value of an optional, or a default value if empty; for other types, the value itself.
-    [[nodiscard]] FieldRef heldOrBlank() const;
+    [[nodiscard]] FieldRef valueOrDefault() const;
     /// Returns a default value of the type, which must have one.
     [[nodiscard]] FieldRef blank() const { return {type_->blank(), *type_}; }
     /// Access elements of a vector, array, list or optional.

@@ -175,7 +175,7 @@ std::string_view withoutByteOrderMark(std::string_view bytes) {
     return bytes.substr(bytes.substr(0, 3) == "\xef\xbb\xbf" ? 3 : 0);
 }
 
-std::string_view takeLine(std::string_view& text) {
+std::string_view popLine(std::string_view& text) {
     const std::size_t end = text.find_first_of("\r\n");
     const std::string_view line = text.substr(0, end);
     text.remove_prefix(line.size());
@@ -203,7 +203,7 @@ std::string shellQuoted(const std::string& word) {
     return text + "'";
 }
 
-std::string_view takeWord(std::string_view& text) {
+std::string_view popWord(std::string_view& text) {
     const auto is_space = [](char c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
     const char* const begin = std::find_if_not(text.data(), text.data() + text.size(), is_space);
     const char* const end = std::find_if(begin, text.data() + text.size(), is_space);

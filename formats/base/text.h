@@ -43,9 +43,9 @@ void appendShortest(std::string& out, float value);
 /// Removes a leading UTF-8 byte order mark.
 [[nodiscard]] std::string_view withoutByteOrderMark(std::string_view bytes);
 /// Removes the first line from `text`. \return the line without its end ("\n", "\r\n" or "\r").
-[[nodiscard]] std::string_view takeLine(std::string_view& text);
+[[nodiscard]] std::string_view popLine(std::string_view& text);
 /// Removes leading white space and the first word from `text`. \return the word; empty if there is none.
-[[nodiscard]] std::string_view takeWord(std::string_view& text);
+[[nodiscard]] std::string_view popWord(std::string_view& text);
 /// "max_error" -> "--max-error"
 [[nodiscard]] std::string optionName(std::string_view field);
 /// Quotes a word for a POSIX shell; control characters are replaced (cleanUtf8).

@@ -61,7 +61,7 @@ void TextScanner::skipBlanks(bool over_lines) {
     }
 }
 
-std::string_view TextScanner::takeWord() {
+std::string_view TextScanner::popWord() {
     const std::size_t line = line_;
     const char* const begin = at_;
     while (at_ != end_ && *at_ != '\n' && *at_ != '\r' && !isBlank(*at_) &&
@@ -74,12 +74,12 @@ std::string_view TextScanner::takeWord() {
 
 std::string_view TextScanner::word() {
     skipBlanks(false);
-    return takeWord();
+    return popWord();
 }
 
 std::string_view TextScanner::anyWord() {
     skipBlanks(true);
-    return takeWord();
+    return popWord();
 }
 
 bool TextScanner::atLineEnd() {
@@ -125,7 +125,7 @@ bool CsvReader::next() {
         if (text_.empty()) {
             return false;
         }
-        line_ = trimmed(takeLine(text_));
+        line_ = trimmed(popLine(text_));
         ++number_;
     } while (line_.empty() || line_.starts_with('#'));
     fields_.clear();

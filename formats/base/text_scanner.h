@@ -44,7 +44,7 @@ class TextScanner {
     /// Returns the length of a line continuation, from the backslash to the start of the next line, or 0.
     [[nodiscard]] std::size_t joint(const char* at) const;
     void skipBlanks(bool over_lines);
-    std::string_view takeWord();
+    std::string_view popWord();
 
     const char* at_;
     const char* end_;

@@ -19,7 +19,7 @@ class TableRules : public FieldVisitor {
     }
 
     /// Fails at the first key of the file that is not a field.
-    void refuseUnknown(const TomlValue& table) const;
+    void rejectUnknown(const TomlValue& table) const;
     /// Returns the value that the present keys imply for the missing selecting field; empty: none.
     [[nodiscard]] std::string_view chosen(const TomlValue& table) const;
     /// Fails if a required key is missing, two keys exclude each other, or a key has no effect.
@@ -37,7 +37,7 @@ class TableRules : public FieldVisitor {
     std::vector<Field> fields_;
 };
 
-void TableRules::refuseUnknown(const TomlValue& table) const {
+void TableRules::rejectUnknown(const TomlValue& table) const {
     std::vector<std::string_view> known;
     for (const Field& field : fields_) {
         known.push_back(field.name);
@@ -305,7 +305,7 @@ void readValue(const TomlValue& from, FieldRef value, const FieldInfo& info) {
 void readToml(const TomlValue& from, FieldRef value) {
     TableRules rules;
     value.visit(rules);
-    rules.refuseUnknown(from);
+    rules.rejectUnknown(from);
     TableReader reader(from, rules.chosen(from));
     value.visit(reader);
     rules.checkTable(from, reader.selected());

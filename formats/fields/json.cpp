@@ -287,7 +287,9 @@ Json schemaOf(FieldRef value, const FieldInfo& info) {
     inner.left_out = false;
     const FieldType& type = value.type();
     const auto held = [&] { return schemaOf(FieldRef(type.held->blank(), *type.held), inner); };
-    const auto blankPart = [&](FieldRef part) { return schemaOf(part.blank().heldOrBlank().blank(), inner); };
+    const auto blankPart = [&](FieldRef part) {
+        return schemaOf(part.blank().valueOrDefault().blank(), inner);
+    };
     if (type.custom != nullptr && type.custom->schema != nullptr) {
         FieldJson made;
         type.custom->schema(made);
@@ -316,7 +318,7 @@ Json schemaOf(FieldRef value, const FieldInfo& info) {
         case FieldForm::kVector:
             return arraySchema(numberSchema(false, false, info), {3.0, 3.0});
         case FieldForm::kOptional: {
-            Json schema = schemaOf(value.heldOrBlank(), inner);
+            Json schema = schemaOf(value.valueOrDefault(), inner);
             return info.left_out ? schema : nullable(std::move(schema));
         }
         case FieldForm::kVariant: {

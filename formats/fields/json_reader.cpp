@@ -56,7 +56,7 @@ class JsonValue {
     /// Fails with "PATH WHAT", and appends a fix if `what` has none.
     [[noreturn]] void fail(const std::string& what) const;
     /// Fails at the first key that is not a field.
-    void refuseUnknown(const std::vector<std::string_view>& fields) const;
+    void rejectUnknown(const std::vector<std::string_view>& fields) const;
 
   private:
     const nlohmann::json* json_;
@@ -135,7 +135,7 @@ void JsonValue::needArray(const FieldRange& count) const {
     }
 }
 
-void JsonValue::refuseUnknown(const std::vector<std::string_view>& fields) const {
+void JsonValue::rejectUnknown(const std::vector<std::string_view>& fields) const {
     for (const auto& [key, value] : json_->items()) {
         if (std::find(fields.begin(), fields.end(), key) == fields.end()) {
             const std::string hint = didYouMean(key, fields);
@@ -206,7 +206,7 @@ class JsonReader : public FieldVisitor {
         }
     }
     [[nodiscard]] bool fills() const override { return true; }
-    void refuseUnknown() const { from_.refuseUnknown(fields_); }
+    void rejectUnknown() const { from_.rejectUnknown(fields_); }
 
   private:
     const JsonValue& from_;
@@ -216,7 +216,7 @@ class JsonReader : public FieldVisitor {
 void readObject(const JsonValue& from, FieldRef value) {
     JsonReader reader(from);
     value.visit(reader);
-    reader.refuseUnknown();
+    reader.rejectUnknown();
     if (value.type().check != nullptr) {
         const auto given = [&](const std::string& key) { return from.find(key).has_value(); };
         if (const std::optional<FieldFault> fault = value.type().check(value.value(), given)) {

@@ -36,14 +36,14 @@ std::string requirementOf(const FieldInfo& info, std::uint64_t least, std::uint6
 
 }  // namespace
 
-std::string butMustBe(std::string_view word, std::string_view must) {
+std::string expectedMessage(std::string_view word, std::string_view must) {
     return "is '" + cleanUtf8(word) + "' but must be " + std::string(must);
 }
 
-std::string butMustBeOneOf(std::string_view word, std::span<const std::string_view> words) {
+std::string expectedOneOfMessage(std::string_view word, std::span<const std::string_view> words) {
     const std::string must = words.size() == 2 ? std::string(words[0]) + " or " + std::string(words[1])
                                                : "one of " + listed(words);
-    return butMustBe(word, must + (word.size() > 1 ? didYouMean(word, words) : ""));
+    return expectedMessage(word, must + (word.size() > 1 ? didYouMean(word, words) : ""));
 }
 
 std::string bytesWord(std::uint64_t bytes) {
@@ -76,7 +76,7 @@ std::string readUnsigned(std::string_view word, const FieldInfo& info, std::uint
     most = maximumOf(info.range, most);
     const std::optional<std::uint64_t> number = isBytes(info) ? parseByteCount(word) : parseUnsigned(word);
     if (!number || *number < least || *number > most) {
-        return butMustBe(word, requirementOf(info, least, most));
+        return expectedMessage(word, requirementOf(info, least, most));
     }
     value = *number;
     return {};
@@ -105,9 +105,9 @@ std::string readFloat(std::string_view word, const FieldInfo& info, float& value
         number = static_cast<float>(parseDouble(trimmed(plain)).value_or(0.0) * scale);
     }
     if (!number || !info.range.holds(double{*number})) {
-        return butMustBe(word, !info.must.empty() ? info.must
-                               : percent          ? "a percentage, such as 1.5"
-                                                  : "a number");
+        return expectedMessage(word, !info.must.empty() ? info.must
+                                     : percent          ? "a percentage, such as 1.5"
+                                                        : "a number");
     }
     value = *number;
     return {};
@@ -116,7 +116,7 @@ std::string readFloat(std::string_view word, const FieldInfo& info, float& value
 std::string readDouble(std::string_view word, const FieldInfo& info, double& value) {
     const std::optional<double> number = parseDouble(word);
     if (!number || !info.range.holds(*number)) {
-        return butMustBe(word, info.must.empty() ? "a number" : info.must);
+        return expectedMessage(word, info.must.empty() ? "a number" : info.must);
     }
     value = *number;
     return {};
@@ -127,7 +127,7 @@ std::string readText(std::string_view word, const FieldInfo& info, std::string& 
         return "is empty; omit it, or give it a value";
     }
     if (!info.words.empty() && std::ranges::find(info.words, word) == info.words.end()) {
-        return butMustBeOneOf(word, info.words);
+        return expectedOneOfMessage(word, info.words);
     }
     value = word;
     return {};
@@ -172,7 +172,7 @@ class FieldSetter : public FieldVisitor {
 std::string readWord(std::string_view word, const FieldInfo& info, FieldRef value) {
     const FieldType& type = value.type();
     if (type.read_form != nullptr) {
-        return type.read_form(word, value.value()) ? "" : butMustBe(word, info.must);
+        return type.read_form(word, value.value()) ? "" : expectedMessage(word, info.must);
     }
     switch (value.form()) {
         case FieldForm::kOptional:
@@ -180,7 +180,7 @@ std::string readWord(std::string_view word, const FieldInfo& info, FieldRef valu
             return readWord(word, info, value.add());
         case FieldForm::kBool:
             value.as<bool>() = word == "true";
-            return value.as<bool>() || word == "false" ? "" : butMustBe(word, "true or false");
+            return value.as<bool>() || word == "false" ? "" : expectedMessage(word, "true or false");
         case FieldForm::kUnsigned: {
             std::uint64_t number = 0;
             std::string wrong = readUnsigned(
@@ -192,7 +192,7 @@ std::string readWord(std::string_view word, const FieldInfo& info, FieldRef valu
             return type.size == sizeof(float) ? readFloat(word, info, value.as<float>())
                                               : readDouble(word, info, value.as<double>());
         case FieldForm::kWord:
-            return value.setWord(word) ? "" : butMustBeOneOf(word, type.words);
+            return value.setWord(word) ? "" : expectedOneOfMessage(word, type.words);
         default:
             return readText(word, info, value.as<std::string>());
     }

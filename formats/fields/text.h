@@ -15,9 +15,10 @@
 namespace relief {
 
 /// Returns "is 'x' but must be MUST".
-[[nodiscard]] std::string butMustBe(std::string_view word, std::string_view must);
+[[nodiscard]] std::string expectedMessage(std::string_view word, std::string_view must);
 /// Returns "is 'x' but must be one of a, b, c; did you mean 'a'?", or "is 'x' but must be a or b".
-[[nodiscard]] std::string butMustBeOneOf(std::string_view word, std::span<const std::string_view> words);
+[[nodiscard]] std::string expectedOneOfMessage(std::string_view word,
+                                               std::span<const std::string_view> words);
 
 /// Returns "1MB" for 1000000; the plain number if no power of 1000 divides it.
 [[nodiscard]] std::string bytesWord(std::uint64_t bytes);

@@ -40,8 +40,8 @@ class ObjReader {
             mesh_.colors.clear();
         }
         for (const std::uint32_t vertex : in_others_) {
-            mesh_.in_others.resize(mesh_.positions.size(), 0);
-            mesh_.in_others[vertex] = 1;
+            mesh_.used_by_others.resize(mesh_.positions.size(), 0);
+            mesh_.used_by_others[vertex] = 1;
         }
         return std::move(obj_);
     }
@@ -187,7 +187,7 @@ class ObjReader {
         group.begin = mesh_.sizes.size();
         group.names.push_back(name_);
         std::string_view rest = name_;
-        for (std::string_view word = takeWord(rest); !word.empty(); word = takeWord(rest)) {
+        for (std::string_view word = popWord(rest); !word.empty(); word = popWord(rest)) {
             group.names.emplace_back(word);
         }
         group.names.push_back(by_material_ && !group_.empty() ? group_ : name_);

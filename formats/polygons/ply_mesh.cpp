@@ -52,7 +52,7 @@ class PlyImport {
     explicit PlyImport(PolygonColors colors) : colors_(colors) {}
 
     Result<PolygonMesh> run(std::string_view data) {
-        const PlyHeader header = RELIEF_TRY(takePlyHeader(data));
+        const PlyHeader header = RELIEF_TRY(readPlyHeader(data));
         RELIEF_TRY(checkVertices(header));
         if (std::none_of(header.elements.begin(), header.elements.end(), isSurface)) {
             return noFaces(header);
@@ -112,7 +112,7 @@ class PlyImport {
         for (std::uint64_t i = 0; i < element.count; ++i) {
             for (const PlyProperty& property : element.properties) {
                 if (!surface || !isVertexList(property)) {
-                    RELIEF_TRY(passPlyProperty(property, numbers));
+                    RELIEF_TRY(skipPlyProperty(property, numbers));
                 } else if (strip) {
                     RELIEF_TRY(readStrips(property, i, numbers));
                 } else {
@@ -164,7 +164,7 @@ class PlyImport {
     }
 
     Result<void> readFace(const PlyProperty& property, std::uint64_t index, PlyNumbers& numbers) {
-        const std::uint64_t length = RELIEF_TRY(takePlyLength(numbers, *property.length_type));
+        const std::uint64_t length = RELIEF_TRY(readPlyLength(numbers, *property.length_type));
         for (std::uint64_t k = 0; k < length; ++k) {
             const std::optional<double> value = numbers.next(property.type);
             if (!value) {
@@ -185,7 +185,7 @@ class PlyImport {
     Result<void> readStrips(const PlyProperty& property, std::uint64_t index, PlyNumbers& numbers) {
         // Writers that use a signed type store -1 as the largest 32-bit number.
         const double other_end = property.type == PlyType::kUint32 ? 4294967295.0 : -1.0;
-        const std::uint64_t length = RELIEF_TRY(takePlyLength(numbers, *property.length_type));
+        const std::uint64_t length = RELIEF_TRY(readPlyLength(numbers, *property.length_type));
         std::uint32_t before_last = 0;
         std::uint32_t last = 0;
         std::uint64_t in_strip = 0;

@@ -56,18 +56,17 @@ Result<void> addProperty(std::span<const std::string_view> words, PlyHeader& hea
 
 }  // namespace
 
-Result<PlyHeader> takePlyHeader(std::string_view& data) {
+Result<PlyHeader> readPlyHeader(std::string_view& data) {
     PlyHeader header;
     std::optional<PlyEncoding> encoding;
     // If header lines end in carriage returns, a line feed after the header belongs to the numbers.
     bool returns = false;
     for (;;) {
         const std::string_view before = data;
-        std::string_view line = takeLine(data);
+        std::string_view line = popLine(data);
         const std::string_view taken = before.substr(0, before.size() - data.size());
         std::vector<std::string_view> words;
-        for (std::string_view word = takeWord(line); !word.empty() && words.size() < 6;
-             word = takeWord(line)) {
+        for (std::string_view word = popWord(line); !word.empty() && words.size() < 6; word = popWord(line)) {
             words.push_back(word);
         }
         const std::string_view kind = words.empty() ? std::string_view() : words[0];
@@ -147,7 +146,7 @@ tl::unexpected<Error> plyNumberError(const PlyNumbers& numbers) {
                                          : "'" + cleanUtf8(numbers.word(), kShownMax) + "' is not a number"));
 }
 
-Result<std::uint64_t> takePlyLength(PlyNumbers& numbers, PlyType type) {
+Result<std::uint64_t> readPlyLength(PlyNumbers& numbers, PlyType type) {
     const std::optional<double> length = numbers.next(type);
     if (!length) {
         return plyNumberError(numbers);
@@ -158,10 +157,10 @@ Result<std::uint64_t> takePlyLength(PlyNumbers& numbers, PlyType type) {
     return static_cast<std::uint64_t>(*length);
 }
 
-Result<void> passPlyProperty(const PlyProperty& property, PlyNumbers& numbers) {
+Result<void> skipPlyProperty(const PlyProperty& property, PlyNumbers& numbers) {
     std::uint64_t length = 1;
     if (property.isList()) {
-        length = RELIEF_TRY(takePlyLength(numbers, *property.length_type));
+        length = RELIEF_TRY(readPlyLength(numbers, *property.length_type));
     }
     for (std::uint64_t k = 0; k < length; ++k) {
         if (!numbers.next(property.type)) {
@@ -187,7 +186,7 @@ std::size_t PlyColumns::count(std::size_t name) const {
 Result<void> PlyColumns::read(PlyNumbers& numbers, std::span<double> values) const {
     for (std::size_t i = 0; i < places_.size(); ++i) {
         if (places_[i] < 0) {
-            RELIEF_TRY(passPlyProperty(element_.properties[i], numbers));
+            RELIEF_TRY(skipPlyProperty(element_.properties[i], numbers));
             continue;
         }
         const std::optional<double> value = numbers.next(element_.properties[i].type);

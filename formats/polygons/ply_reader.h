@@ -49,7 +49,7 @@ struct PlyHeader {
 
 /// Parses the header at the start of `data` and removes it.
 /// Errors, without the file: kInvalidInput.
-[[nodiscard]] Result<PlyHeader> takePlyHeader(std::string_view& data);
+[[nodiscard]] Result<PlyHeader> readPlyHeader(std::string_view& data);
 
 /// Reads the numbers after a header in order, from text or binary.
 class PlyNumbers {
@@ -86,10 +86,10 @@ class PlyNumbers {
 [[nodiscard]] tl::unexpected<Error> plyNumberError(const PlyNumbers& numbers);
 
 /// Reads the length of a list. Errors: those of plyNumberError; kInvalidInput for an invalid length.
-[[nodiscard]] Result<std::uint64_t> takePlyLength(PlyNumbers& numbers, PlyType type);
+[[nodiscard]] Result<std::uint64_t> readPlyLength(PlyNumbers& numbers, PlyType type);
 
-/// Skips a property: a number or a list. Errors: those of takePlyLength.
-[[nodiscard]] Result<void> passPlyProperty(const PlyProperty& property, PlyNumbers& numbers);
+/// Skips a property: a number or a list. Errors: those of readPlyLength.
+[[nodiscard]] Result<void> skipPlyProperty(const PlyProperty& property, PlyNumbers& numbers);
 
 /// Reads the properties of one element that a reader needs: single numbers, by name.
 class PlyColumns {
@@ -100,7 +100,7 @@ class PlyColumns {
     /// Returns how many properties of the element have this name: 1 in a well-formed header.
     [[nodiscard]] std::size_t count(std::size_t name) const;
     /// Reads the element's next item. \param values  entries without a property are unchanged.
-    /// Errors: those of takePlyLength.
+    /// Errors: those of readPlyLength.
     [[nodiscard]] Result<void> read(PlyNumbers& numbers, std::span<double> values) const;
 
   private:

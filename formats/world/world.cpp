@@ -315,10 +315,10 @@ void fields(FieldVisitor& visit, WorldBody& body) {
     visit("scale", body.scale,
           {.help = "World units per object unit", .range = {1e-9, 1e9}, .rules = kRequired});
     visit("restitution", body.restitution,
-          {.help = "Multiplies the restitution of particles", .range = kShareRange, .rules = kRequired});
+          {.help = "Multiplies the restitution of particles", .range = kFractionRange, .rules = kRequired});
     visit("friction", body.friction,
           {.help = "1 − friction multiplies 1 − friction of particles",
-           .range = kShareRange,
+           .range = kFractionRange,
            .rules = kRequired});
 }
 

@@ -78,7 +78,7 @@ Result<AirBlock> AirBlock::create(const AirSettings& air) {
     }
 
     const PassState state;  // so that texels are tightly packed
-    forgetGlErrors();
+    clearGlErrors();
     if (air.flow) {
         const FlowField& flow = *air.flow;
         GLint side_max = 0;

@@ -88,7 +88,7 @@ void warmUp(const Bench& bench, double ms, const std::function<void()>& run) {
     }
 }
 
-Result<Json> timeInTurns(const Bench& bench, const std::vector<Work>& works, const Blocks& blocks) {
+Result<Json> timeAlternating(const Bench& bench, const std::vector<Work>& works, const Blocks& blocks) {
     std::vector<Times> times(works.size());
     std::vector<int> calls;
     for (const Work& work : works) {

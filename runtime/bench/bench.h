@@ -54,13 +54,13 @@ struct Blocks {
 /// that other load on the machine affects both workloads equally. With a software renderer, ratios use CPU time, which
 /// other load hardly changes.
 /// Errors: those of the workloads.
-[[nodiscard]] Result<Json> timeInTurns(const Bench& bench, const std::vector<Work>& works,
-                                       const Blocks& blocks);
+[[nodiscard]] Result<Json> timeAlternating(const Bench& bench, const std::vector<Work>& works,
+                                           const Blocks& blocks);
 
 /// Calls `run` for `ms` milliseconds, because idle GPUs reduce their clock. Does nothing on a software renderer.
 void warmUp(const Bench& bench, double ms, const std::function<void()>& run);
 
-// The cases. Each returns its tables: objects that describe the table, with `rows` of timeInTurns().
+// The cases. Each returns its tables: objects that describe the table, with `rows` of timeAlternating().
 [[nodiscard]] Result<Json> benchStep(const Bench& bench);
 [[nodiscard]] Result<Json> benchPicture(const Bench& bench);
 [[nodiscard]] Result<Json> benchMesh(const Bench& bench);

@@ -40,7 +40,7 @@ Result<Json> timeWithStep(const Bench& bench, std::vector<Work> works, BenchSyst
                          }
                          return {};
                      }});
-    return timeInTurns(bench, works, {.rounds = 9});
+    return timeAlternating(bench, works, {.rounds = 9});
 }
 
 }  // namespace
@@ -55,7 +55,7 @@ Result<Json> benchMesh(const Bench& bench) {
     const Wobble wobble{.amplitude = 0.02F * box.longestSide(), .wavelength = 0.5F * box.longestSide()};
     box.min -= wobble.amplitude;
     box.max += wobble.amplitude;
-    const Collider frames = RELIEF_TRY(liveFrames(box));
+    const Collider frames = RELIEF_TRY(liveMaps(box));
     auto live = RELIEF_TRY(LiveCollider::create(mesh.positions, triangles, frames));
     auto pass = RELIEF_TRY(WobblePass::create(wobble, mesh.positions, mesh.normals));
     const std::uint32_t count = bench.particlesOr(1U << 18, 1U << 18);

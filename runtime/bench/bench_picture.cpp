@@ -142,7 +142,7 @@ Result<Json> benchSize(const Bench& bench, const BenchScene& scene, BenchSystem&
     return Json{{"particles", count},
                 {"picture", {width, height}},
                 {"pixels_of_a_point", diameter * unit},
-                {"rows", RELIEF_TRY(timeInTurns(bench, works, {.rounds = bench.software ? 3 : 7}))}};
+                {"rows", RELIEF_TRY(timeAlternating(bench, works, {.rounds = bench.software ? 3 : 7}))}};
 }
 
 }  // namespace

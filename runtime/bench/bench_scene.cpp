@@ -234,7 +234,7 @@ std::vector<BenchVariant> benchVariants() {
         variants.push_back({.name = "village_" + std::to_string(bodies),
                             .solids = Solids::kCrowd,
                             .bodies = bodies,
-                            .share = kVillageShare});
+                            .share = kVillageFill});
     }
     return variants;
 }

@@ -16,10 +16,10 @@
 namespace relief {
 
 inline constexpr float kBenchDt = 1.0F / 60.0F;
-inline constexpr int kBenchStepsMost = 16;  ///< maximum steps per block
+inline constexpr int kBenchStepsMax = 16;  ///< maximum steps per block
 /// Seconds; longer than a block and the step before it, so that no particle dies meanwhile.
 inline constexpr float kBenchLifetime = 0.5F;
-static_assert(kBenchLifetime > kBenchDt * (kBenchStepsMost + 2));
+static_assert(kBenchLifetime > kBenchDt * (kBenchStepsMax + 2));
 inline constexpr float kBenchForever = 1e6F;  ///< seconds
 
 /// Snow as in samples/, but born in the whole box of the collider at once, so that particles collide from the first
@@ -55,10 +55,10 @@ inline constexpr std::size_t kCrowdColliders = 50;
 /// Additional work of each step: none, new poses of bodies (at most kCrowdMoves of a crowd), or read-back of events.
 enum class EachStep : std::uint8_t { kNothing, kPoses, kEvents };
 inline constexpr std::size_t kCrowdMoves = 1'000;
-inline constexpr float kCrowdShare = 0.8F;
+inline constexpr float kCrowdFill = 0.8F;
 /// With this value, bounds of bodies fill 8 % of the space, like the objects of samples/village.py between ground and
 /// roofs.
-inline constexpr float kVillageShare = 0.43F;
+inline constexpr float kVillageFill = 0.43F;
 
 struct BenchVariant {
     std::string name;
@@ -66,8 +66,8 @@ struct BenchVariant {
     Integrator integrator = Integrator::kEuler;
     std::function<Result<void>(ParticleSystem&, const BenchScene&)> set = {};  ///< may be empty
     EachStep each_step = EachStep::kNothing;
-    std::uint32_t bodies = 0;   ///< number of bodies in a crowd
-    float share = kCrowdShare;  ///< side of a body, as a fraction of the lattice spacing
+    std::uint32_t bodies = 0;  ///< number of bodies in a crowd
+    float share = kCrowdFill;  ///< side of a body, as a fraction of the lattice spacing
 };
 
 /// Returns "no_collider", "collider" (the reference), the features one by one, and crowds of bodies.

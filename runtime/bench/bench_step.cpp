@@ -189,10 +189,10 @@ Result<Json> benchStep(const Bench& bench) {
     const BenchScene scene = makeBenchScene(RELIEF_TRY(loadCollider(bench.file)), count, kBenchLifetime);
     std::vector<Baseline> baselines = RELIEF_TRY(baselinesFor(bench, scene));
     const std::vector<BenchVariant> variants = RELIEF_TRY(variantsFor(bench.only, baselines));
-    const int steps = bench.software ? 4 : kBenchStepsMost;
+    const int steps = bench.software ? 4 : kBenchStepsMax;
     auto copy = RELIEF_TRY(Copy::create(count, bench.path));
     const auto copies = [&] {
-        for (int i = 0; i < kBenchStepsMost; ++i) {
+        for (int i = 0; i < kBenchStepsMax; ++i) {
             copy.step();
         }
     };
@@ -227,7 +227,7 @@ Result<Json> benchStep(const Bench& bench) {
                  {"maps", scene.collider.maps.size()},
                  {"steps", steps},
                  {"rivals", factsOf(baselines)},
-                 {"rows", RELIEF_TRY(timeInTurns(bench, works, {.rounds = rounds, .calls = steps}))}}};
+                 {"rows", RELIEF_TRY(timeAlternating(bench, works, {.rounds = rounds, .calls = steps}))}}};
 }
 
 }  // namespace relief

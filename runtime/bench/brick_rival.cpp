@@ -150,7 +150,7 @@ Result<Rival> makeBrickRival(const BrickAtlas& atlas) {
     rival.shader = {"bench/brick_step.frag",
                     dense ? "#define RELIEF_DENSE\n"
                           : "#define RELIEF_BRICK_BITS " + std::to_string(packing.bits()) + "\n"};
-    forgetGlErrors();
+    clearGlErrors();
     uploadCodes(rival, atlas, bricks);
     if (!dense) {
         uploadIndex(rival, packedIndex(atlas, glm::uvec3(bricks), packing), glm::ivec3(atlas.cubes),

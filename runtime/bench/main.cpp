@@ -22,7 +22,7 @@ const std::map<std::string_view, Case> kCases{{"step", benchStep},
 Result<void> run(int argc, char** argv) {
     CLI::App app("Times parts of the runtime, and prints JSON", "relief-bench");
     setUpHelp(app);
-    app.footer("relief-bench step bunny.relief --path compute --particles 1048576");
+    app.footer("relief-bench step bunny.relief --shaders compute --particles 1048576");
     std::string name;
     Bench bench;
     app.add_option("CASE", name, "step, picture, mesh, animated or stream")
@@ -39,7 +39,7 @@ Result<void> run(int argc, char** argv) {
     app.add_option("--blocks", bench.rounds, "Number of measurement rounds (default: depends on the case)")
         ->option_text("N")
         ->transform(CLI::Validator(wholeNumber(1, 1000), ""));
-    addWords(app, "--path", bench.path,
+    addWords(app, "--shaders", bench.path,
              WordsFor<StepPath>{{"fragment", StepPath::kFragment}, {"compute", StepPath::kCompute}},
              "Shaders of particle steps (default: fragment)");
     app.add_option("--only", bench.only, "Run only one variant of step, and its references");
@@ -64,7 +64,7 @@ Result<void> run(int argc, char** argv) {
               {"device", context->description()},
               {"renderer", reinterpret_cast<const char*>(glGetString(GL_RENDERER))},
               {"software", bench.software},
-              {"path", bench.path == StepPath::kCompute ? "compute" : "fragment"}};
+              {"shaders", bench.path == StepPath::kCompute ? "compute" : "fragment"}};
     json["tables"] = RELIEF_TRY(kCases.at(name)(bench));
     return printOut(jsonText(json));
 }

@@ -42,7 +42,7 @@ Result<Rival> makeMeshRival(const MeshTree& tree, bool keeps) {
                                                 (keeps ? "#define RELIEF_KEPT\n" : "")};
     rival.keeps = keeps;
     rival.bytes = tree.bytes();
-    forgetGlErrors();
+    clearGlErrors();
     RELIEF_TRY(upload(rival, "u_nodes", kWords4, tree.nodes));
     RELIEF_TRY(upload(rival, "u_triangles", kWords4, tree.triangles));
     RELIEF_TRY(upload(rival, "u_vertices", kWords1, tree.vertices));

@@ -24,7 +24,7 @@ Result<RivalStep> RivalStep::create(Rival rival, const BenchScene& scene, StepPa
     const PassState state;
     RivalStep made;
     made.rival_ = std::move(rival);
-    made.path_ = RELIEF_TRY(chosenPath(path));
+    made.path_ = RELIEF_TRY(resolvePath(path));
     made.forces_ = scene.forces;
     made.types_ = {kBenchSnow};
     made.makeState(scene);

@@ -222,7 +222,7 @@ Result<std::vector<glm::uvec3>> materialTriangles(const ColliderSurface& surface
                    [](const Material& one) { return one.name; });
     const auto found = std::find(names.begin(), names.end(), name);
     if (name.empty() || found == names.end()) {
-        return invalidInput(noSuchPart("material", name, names));
+        return invalidInput(partNotFound("material", name, names));
     }
     const auto material = static_cast<std::size_t>(found - names.begin());
     std::vector<glm::uvec3> kept;

@@ -56,7 +56,7 @@ std::uint64_t carryFiltered(const EmitterMotion& motion, double time, const Emit
                             std::uint64_t room, std::size_t first, std::vector<Birth>& births) {
     const std::span<Birth> made = std::span(births).subspan(first);
     std::vector<glm::vec3> velocities;
-    carry(motion, time, made, emitter.placeVelocities(), &velocities);
+    carry(motion, time, made, emitter.birthSurfaceVelocities(), &velocities);
     const std::vector<bool> stays = motion.filter(made, velocities, time);
     std::uint64_t rejected = 0;
     std::size_t kept = 0;
@@ -87,7 +87,8 @@ std::uint64_t emitAll(std::span<Emitter> emitters, double dt, std::uint64_t room
         } else {
             rejected += emitters[i].emit(dt, room, births);
             if (i < motions.size()) {
-                carry(motions[i], time, std::span(births).subspan(before), emitters[i].placeVelocities());
+                carry(motions[i], time, std::span(births).subspan(before),
+                      emitters[i].birthSurfaceVelocities());
             }
         }
         room -= births.size() - before;

@@ -94,7 +94,7 @@ Bounds EmitterSurface::bounds() const {
 /// Samples barycentric coordinates. Spacings of sorted uniform numbers are uniform on a simplex. A linear density on a
 /// triangle is a mixture of three densities, each proportional to the coordinate of one corner. The function therefore
 /// draws a corner first; the coordinate of this corner is the sum of two spacings of three numbers.
-glm::vec3 EmitterSurface::cornersShare(Pcg32& random, const glm::uvec3& triangle) const {
+glm::vec3 EmitterSurface::sampleBarycentric(Pcg32& random, const glm::uvec3& triangle) const {
     float cuts[3]{};
     if (weights_.empty()) {
         cuts[0] = random.uniform();
@@ -124,7 +124,7 @@ EmitterSurface::Place EmitterSurface::draw(Pcg32& random, float age) const {
     const auto found = std::upper_bound(upto_.begin(), upto_.end(), at);
     const std::size_t i = std::min(static_cast<std::size_t>(found - upto_.begin()), triangles_.size() - 1);
     const glm::uvec3& t = triangles_[i];
-    const glm::vec3 share = cornersShare(random, t);
+    const glm::vec3 share = sampleBarycentric(random, t);
     const auto placeIn = [&](const std::vector<glm::vec3>& in) {
         return share.x * in[t.x] + share.y * in[t.y] + share.z * in[t.z];
     };

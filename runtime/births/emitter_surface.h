@@ -52,7 +52,7 @@ class EmitterSurface : public BirthSurface {
 
   private:
     void weigh();
-    [[nodiscard]] glm::vec3 cornersShare(Pcg32& random, const glm::uvec3& triangle) const;
+    [[nodiscard]] glm::vec3 sampleBarycentric(Pcg32& random, const glm::uvec3& triangle) const;
 
     std::vector<glm::uvec3> triangles_;
     std::vector<float> weights_;

@@ -93,7 +93,7 @@ Result<PointList> parseCsv(std::string_view text, const std::string& name) {
 
 /// Errors do not name the file.
 Result<PlyHeader> takePointsHeader(std::string_view& text) {
-    PlyHeader header = RELIEF_TRY(takePlyHeader(text));
+    PlyHeader header = RELIEF_TRY(readPlyHeader(text));
     if (header.elements.empty() || header.elements.front().name != "vertex") {
         return invalidInput("vertices must be the first element of a PLY of points");
     }
@@ -136,7 +136,7 @@ Result<PointList> parsePly(std::string_view text, const std::string& name) {
 Result<PointList> parsePointList(std::span<const std::byte> bytes, const std::string& name) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     std::string_view rest = text;
-    auto list = trimmed(takeLine(rest)) == "ply" ? parsePly(text, name) : parseCsv(text, name);
+    auto list = trimmed(popLine(rest)) == "ply" ? parsePly(text, name) : parseCsv(text, name);
     if (list && list->positions.empty()) {
         return fail(ErrorCode::kInvalidInput, name + ": contains no points; write x,y,z in each line");
     }

@@ -35,7 +35,7 @@ Result<WorldTextures> WorldTextures::create(const Collider& collider) {
     result.defines_ = bare.defines();
     result.maps_ = std::move(bare).takeMaps();
     const PassState state;
-    forgetGlErrors();
+    clearGlErrors();
     const Materials* const materials = &collider.materials;
     RELIEF_TRY(result.uploadMaterials(std::span(&materials, 1)));
     RELIEF_TRY(
@@ -106,7 +106,7 @@ void WorldTextures::setPoses(std::span<const Pose> poses) {
     }
 }
 
-std::size_t WorldTextures::texelsMost() {
+std::size_t WorldTextures::maxTexels() {
     const auto side = static_cast<std::size_t>(MapTextures::sideMax());
     return side * side;
 }
@@ -204,7 +204,7 @@ Result<WorldTextures> WorldTextures::upload(std::span<const PlacedMap> maps, std
                       "\n" + mapDefines(maps, layout);
 
     const PassState state;  // resets row lengths and skips, so that texels are tightly packed
-    forgetGlErrors();
+    clearGlErrors();
     result.maps_ = MapTextures(maps, layout);
     RELIEF_TRY(result.uploadMaterials(materials));
     result.world_ =

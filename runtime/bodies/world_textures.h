@@ -66,7 +66,7 @@ class WorldTextures : public ShaderCollider {
     /// Returns the first reserved texel.
     [[nodiscard]] std::size_t room() const { return room_; }
     /// Returns the maximum number of patch texels in one texture of this context, including those of the bodies.
-    [[nodiscard]] static std::size_t texelsMost();
+    [[nodiscard]] static std::size_t maxTexels();
     /// Returns the texels per row of the texture with the reserved range.
     [[nodiscard]] std::size_t rowTexels() const { return std::size_t{1} << room_log2_width_; }
     /// Copies texels of a map of patches into the reserved range, for exchange(). Does not wait.
@@ -103,7 +103,7 @@ class WorldTextures : public ShaderCollider {
     [[nodiscard]] std::size_t bodyCount() const override { return world_ ? world_->bodies.size() : 0; }
     [[nodiscard]] std::uint64_t revision() const override { return revision_; }
     [[nodiscard]] std::span<const std::string> materialNames() const override { return materials_.names; }
-    [[nodiscard]] bool materialsRespond() const override { return materials_.responds; }
+    [[nodiscard]] bool materialsAffectReaction() const override { return materials_.responds; }
     [[nodiscard]] std::string materialDefines() const override;
 
   private:

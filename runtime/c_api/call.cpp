@@ -80,7 +80,7 @@ void CallErrors::fail(const char* message) noexcept {
     }
 }
 
-void CallErrors::failedToMake(HandleKind kind) noexcept {
+void CallErrors::creationFailed(HandleKind kind) noexcept {
     try {
         of(kind) = shown_;
     } catch (...) {
@@ -133,13 +133,14 @@ tl::unexpected<Error> Call::faulty(HandleKind kind, std::uintptr_t handle, const
         return reject(std::string(argument) + " is not a live " + type +
                       " handle: it was freed, has another type, or was never created");
     }
-    if (const std::string& cause = callErrors().unreadOf(kind); !cause.empty()) {
+    if (const std::string& cause = callErrors().unreadError(kind); !cause.empty()) {
         return fail(ErrorCode::kUsage, cause);
     }
     return reject(std::string(argument) + " is NULL; pass a " + type + " that was created successfully");
 }
 
-tl::unexpected<Error> Call::wrongNumber(double value, const FieldRange& range, const NumberName& name) const {
+tl::unexpected<Error> Call::numberOutOfRange(double value, const FieldRange& range,
+                                             const NumberName& name) const {
     return reject(name.text() + " is " + numberText(value) + "; it must be " +
                   (range.low_included ? "from " : "above ") + numberText(range.low) +
                   (range.low_included ? " to " : " and at most ") + numberText(range.high));

@@ -77,10 +77,10 @@ class CallErrors {
 
     void fail(const char* message) noexcept;
     /// Records that creating an object of this kind failed with last(); its NULL may be passed to other functions.
-    void failedToMake(HandleKind kind) noexcept;
+    void creationFailed(HandleKind kind) noexcept;
     void made(HandleKind kind) noexcept { of(kind).clear(); }
     /// The unread error that a NULL of this kind represents, or empty.
-    [[nodiscard]] const std::string& unreadOf(HandleKind kind) const {
+    [[nodiscard]] const std::string& unreadError(HandleKind kind) const {
         return unread_[static_cast<std::size_t>(kind) - 1];
     }
     void read() noexcept;
@@ -132,7 +132,7 @@ class Call {
     template <class H>
     [[nodiscard]] Result<std::shared_ptr<typename HandleType<H>::Object>> optional(
         const H* handle, const char* argument) const {
-        if (handle == nullptr && callErrors().unreadOf(HandleType<H>::kKind).empty()) {
+        if (handle == nullptr && callErrors().unreadError(HandleType<H>::kKind).empty()) {
             return std::shared_ptr<typename HandleType<H>::Object>();
         }
         return shared(handle, argument);
@@ -172,7 +172,7 @@ class Call {
             return {};
         } else {
             const auto given = static_cast<double>(value);
-            return range.holds(given) ? Result<void>() : wrongNumber(given, range, name);
+            return range.holds(given) ? Result<void>() : numberOutOfRange(given, range, name);
         }
     }
     /// Checks that a GL context is current.
@@ -189,8 +189,8 @@ class Call {
     }
     [[nodiscard]] tl::unexpected<Error> faulty(HandleKind kind, std::uintptr_t handle,
                                                const char* argument) const;
-    [[nodiscard]] tl::unexpected<Error> wrongNumber(double value, const FieldRange& range,
-                                                    const NumberName& name) const;
+    [[nodiscard]] tl::unexpected<Error> numberOutOfRange(double value, const FieldRange& range,
+                                                         const NumberName& name) const;
 
     const char* function_;
 };
@@ -223,7 +223,7 @@ H* create(const char* function, const F& body) noexcept {
         return handleTable().add(kKind, std::make_shared<Object>(RELIEF_TRY(body(call))));
     });
     if (handle == 0) {
-        callErrors().failedToMake(kKind);
+        callErrors().creationFailed(kKind);
     } else {
         callErrors().made(kKind);
     }

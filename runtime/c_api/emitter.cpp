@@ -175,7 +175,7 @@ int64_t relief_particles_emit(relief_particles* particles, relief_emitter* emitt
         if (!among.poses.empty()) {
             motion.body = motionOf(among.before[body], among.poses[body], dt);
         }
-        carry(motion, dt, to.births, from.emitter.placeVelocities());
+        carry(motion, dt, to.births, from.emitter.birthSurfaceVelocities());
         return static_cast<int64_t>(RELIEF_TRY(to.system.spawn(to.births)));
     });
 }

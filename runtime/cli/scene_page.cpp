@@ -70,13 +70,13 @@ Result<std::vector<std::string>> writeScenePage(PlayerOptions& options, const st
         RELIEF_TRY(guard.reads(protected_file));
     }
     for (const fs::path& named : RELIEF_TRY(filesForBrowser(loaded))) {
-        page.files[nameBeside(named, file)] = RELIEF_TRY(readForPage(guard, named));
+        page.files[relativeName(named, file)] = RELIEF_TRY(readForPage(guard, named));
     }
     const std::vector<SceneCollider>& colliders = loaded.scene.colliders;
     const auto shown = std::find_if(colliders.begin(), colliders.end(),
                                     [](const SceneCollider& collider) { return !collider.live; });
     if (shown != colliders.end()) {
-        page.shows = nameBeside(shown->path, file);
+        page.shows = relativeName(shown->path, file);
     } else {
         page.container = RELIEF_TRY(emptyMaps(*loaded.live.front()));
     }

@@ -23,7 +23,7 @@ Result<ColliderTextures> ColliderTextures::create(const Collider& collider) {
     const std::vector<PlacedMap> maps = placedMaps(collider);
     const MapLayout layout = RELIEF_TRY(MapLayout::create(maps, MapTextures::sideMax()));
     const PassState state;  // resets row lengths and skips, so that texels are tightly packed
-    forgetGlErrors();
+    clearGlErrors();
     ColliderTextures result;
     result.defines_ = colliderDefines(maps, layout);
     result.maps_ = MapTextures(maps, layout);

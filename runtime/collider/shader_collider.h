@@ -52,7 +52,7 @@ class ShaderCollider {
     [[nodiscard]] virtual std::span<const std::string> materialNames() const { return {}; }
     /// Returns whether a material has a restitution other than 1, a friction or a lifetime loss. If false, only events
     /// need materials.
-    [[nodiscard]] virtual bool materialsRespond() const { return false; }
+    [[nodiscard]] virtual bool materialsAffectReaction() const { return false; }
     /// Returns lines for makeProgram, after defines(), for shaders that include bodies/materials.glsl.
     [[nodiscard]] virtual std::string materialDefines() const { return {}; }
     /// Binds the texture of the materials, if there is one.

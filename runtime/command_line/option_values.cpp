@@ -135,7 +135,7 @@ OptionRef addWordOption(CLI::App& app, const std::string& names, std::vector<std
                                   name](const CLI::results_t& given) {
         const auto found = std::find(words.begin(), words.end(), given.back());
         if (found == words.end()) {
-            throw CLI::ValidationError(name, butMustBeOneOf(given.back(), words));
+            throw CLI::ValidationError(name, expectedOneOfMessage(given.back(), words));
         }
         set(static_cast<std::size_t>(found - words.begin()));
         return true;
@@ -143,12 +143,13 @@ OptionRef addWordOption(CLI::App& app, const std::string& names, std::vector<std
     return app.add_option(names, read, help)->option_text(shown);
 }
 
-OptionRef addFormOption(CLI::App& app, const std::string& names, std::function<bool(const std::string&)> read,
-                        const std::string& must, const std::string& help) {
+OptionRef addCustomOption(CLI::App& app, const std::string& names,
+                          std::function<bool(const std::string&)> read, const std::string& must,
+                          const std::string& help) {
     const std::string name = names.substr(names.rfind(',') + 1);
     const CLI::callback_t callback = [read = std::move(read), must, name](const CLI::results_t& words) {
         if (!read(words.back())) {
-            throw CLI::ValidationError(name, butMustBe(words.back(), must));
+            throw CLI::ValidationError(name, expectedMessage(words.back(), must));
         }
         return true;
     };

@@ -86,13 +86,14 @@ OptionRef addWords(CLI::App& app, const std::string& names, Field& field, const 
 }
 
 /// Adds an option with a custom format. \param read  returns false if the word is invalid
-OptionRef addFormOption(CLI::App& app, const std::string& names, std::function<bool(const std::string&)> read,
-                        const std::string& must, const std::string& help);
+OptionRef addCustomOption(CLI::App& app, const std::string& names,
+                          std::function<bool(const std::string&)> read, const std::string& must,
+                          const std::string& help);
 /// \param parse  converts std::string to std::optional<T>; nullopt: invalid
 template <class T, class Parse>
 OptionRef addParsed(CLI::App& app, const std::string& names, std::optional<T>& field, const Parse& parse,
                     const std::string& must, const std::string& help) {
-    return addFormOption(
+    return addCustomOption(
         app, names,
         [&field, parse](const std::string& word) {
             field = parse(word);

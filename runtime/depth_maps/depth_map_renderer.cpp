@@ -61,7 +61,7 @@ Result<DepthMapRenderer> DepthMapRenderer::create(std::uint32_t width, std::uint
     renderer.height_ = height;
     const auto w = static_cast<GLsizei>(width);
     const auto h = static_cast<GLsizei>(height);
-    forgetGlErrors();
+    clearGlErrors();
     renderer.texels_ = makeTexture2D(GL_RGBA16UI, w, h, GL_RGBA_INTEGER, GL_UNSIGNED_SHORT);
     renderer.depth_ = makeTexture2D(GL_DEPTH_COMPONENT32F, w, h, GL_DEPTH_COMPONENT, GL_FLOAT);
     for (GlTexture& motion : renderer.motion_) {

@@ -159,7 +159,7 @@ Result<void> GpuMesh::createTextures(std::span<const glm::uvec3> triangles) {
     const auto allocated = [&] {
         return checkAllocated("a mesh of " + std::to_string(triangle_count_) + " triangles", "simplify it");
     };
-    forgetGlErrors();
+    clearGlErrors();
     for (GlTexture& positions : positions_) {
         positions = makeTexture2D(GL_RGB32F, 1 << vertex_shift_, rowsFor(vertex_count_, vertex_shift_),
                                   GL_RGB, GL_FLOAT);

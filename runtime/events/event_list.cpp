@@ -24,7 +24,7 @@ constexpr std::uint32_t kEventsPerStepMax = 1U << 24;
 constexpr auto kWidth = static_cast<std::uint32_t>(kEventsWidth);
 
 std::uint32_t reduced(std::uint32_t count) {
-    return (count + kEventsCounted - 1) / kEventsCounted;
+    return (count + kEventsPerCount - 1) / kEventsPerCount;
 }
 
 std::uint32_t rowsOf(std::uint32_t count) {
@@ -94,7 +94,7 @@ std::uint32_t EventList::layOut(std::uint32_t particles,
 }
 
 Result<void> EventList::createTextures(std::uint32_t capacity) {
-    forgetGlErrors();
+    clearGlErrors();
     std::uint32_t count = capacity;
     for (Level& level : counts_) {
         count = reduced(count);

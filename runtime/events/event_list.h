@@ -2,7 +2,7 @@
 // Lists the events of a step on the GPU, and reads them back to the CPU some steps later.
 //
 // The step writes the event of each particle into two textures (shaders/events/step_event.glsl). On either step path,
-// fragment shaders build the list from them: sums of kEventsCounted elements in kEventLevels levels count the events
+// fragment shaders build the list from them: sums of kEventsPerCount elements in kEventLevels levels count the events
 // before each index, and every texel of the list looks up its own event (a histogram pyramid, Ziegler et al. 2006).
 #pragma once
 

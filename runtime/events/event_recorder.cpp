@@ -150,7 +150,7 @@ Result<void> setEvents(ParticleSystem& particles, std::span<const EventOptions> 
         old->replaceList(std::move(list));
         return {};
     }
-    forgetGlErrors();
+    clearGlErrors();
     EventRecorder::Outputs outputs{particles.makeStateTexture(), particles.makeStateTexture()};
     RELIEF_TRY(checkAllocated("the events of " + std::to_string(particles.capacity()) + " particles",
                               "choose a smaller capacity"));

@@ -39,7 +39,7 @@ Result<void> checkGpu(const std::string& during) {
                     ", and its contents are lost; run again, with less work at once if it recurs");
 }
 
-void forgetGlErrors() {
+void clearGlErrors() {
     for (int i = 0; i < kErrorFlagsMax && glGetError() != GL_NO_ERROR; ++i) {
     }
 }
@@ -49,7 +49,7 @@ Result<void> checkAllocated(const std::string& what, const std::string& cure) {
     if (error == GL_NO_ERROR) {
         return {};
     }
-    forgetGlErrors();
+    clearGlErrors();
     RELIEF_TRY(checkGpu("allocating " + what));
     if (error == GL_OUT_OF_MEMORY) {
         return fail(ErrorCode::kLimit, what + ": out of GPU memory; " + cure);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // GPU failures that occur even if all calls are valid: a reset, out of memory, textures beyond the size limit. All
-// functions except checkContext() need a current context. forgetGlErrors() and checkAllocated() clear the GL's error
+// functions except checkContext() need a current context. clearGlErrors() and checkAllocated() clear the GL's error
 // flags.
 #pragma once
 
@@ -22,9 +22,9 @@ namespace relief {
 [[nodiscard]] Result<void> checkGpu(const std::string& during);
 
 /// Clears the error flags. Call it before allocations that checkAllocated() covers.
-void forgetGlErrors();
+void clearGlErrors();
 
-/// Checks that textures and buffers created since forgetGlErrors() were allocated.
+/// Checks that textures and buffers created since clearGlErrors() were allocated.
 /// \param what  for the message: "a picture of 960x720 pixels".
 /// \param cure  "choose a smaller size".
 /// Errors: kLimit (out of GPU memory), kFailure (a reset, another GL error).

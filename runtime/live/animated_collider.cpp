@@ -28,9 +28,9 @@ std::string sidesText(const glm::vec3& sides) {
 
 }  // namespace
 
-Result<Collider> animatedFrames(const glm::vec3& box_size, std::uint32_t resolution) {
+Result<Collider> animatedMaps(const glm::vec3& box_size, std::uint32_t resolution) {
     Collider frames =
-        RELIEF_TRY(liveFrames({-0.5F * box_size, 0.5F * box_size}, resolution, LiveSize::kSquareTexels));
+        RELIEF_TRY(liveMaps({-0.5F * box_size, 0.5F * box_size}, resolution, LiveSize::kSquareTexels));
     for (DepthMap& map : frames.maps) {
         map.encloses = true;
         map.empty_is_outside = true;
@@ -41,7 +41,7 @@ Result<Collider> animatedFrames(const glm::vec3& box_size, std::uint32_t resolut
 Result<AnimatedCollider> AnimatedCollider::create(std::shared_ptr<const AnimatedMesh> mesh,
                                                   const AnimatedColliderOptions& options) {
     const glm::vec3 box_size = options.box_size ? *options.box_size : poseExtent(*mesh).box_size;
-    Collider frames = RELIEF_TRY(animatedFrames(box_size, options.resolution));
+    Collider frames = RELIEF_TRY(animatedMaps(box_size, options.resolution));
     SkinPass pass = RELIEF_TRY(SkinPass::create(*mesh));
     // Any initial positions are valid: setPose() replaces all of them before the first render.
     LiveCollider live = RELIEF_TRY(LiveCollider::create(mesh->positions, mesh->triangles, std::move(frames)));

@@ -27,10 +27,10 @@
 
 namespace relief {
 
-/// Returns liveFrames() around the origin for a mesh whose poses fit into a box of this size. Space around the mesh
+/// Returns liveMaps() around the origin for a mesh whose poses fit into a box of this size. Space around the mesh
 /// counts as outside.
-/// \param box_size  object units, see poseExtent(). Errors: those of liveFrames().
-[[nodiscard]] Result<Collider> animatedFrames(const glm::vec3& box_size, std::uint32_t resolution);
+/// \param box_size  object units, see poseExtent(). Errors: those of liveMaps().
+[[nodiscard]] Result<Collider> animatedMaps(const glm::vec3& box_size, std::uint32_t resolution);
 
 struct AnimatedColliderOptions {
     std::uint32_t resolution = 512;  ///< texels along the longest side of the box
@@ -43,7 +43,7 @@ class AnimatedCollider {
     /// Starts in firstPose(). Every call except placed() needs a current context, restores the GL state that it
     /// changes, and does not wait.
     /// \param mesh  valid; may be shared by several colliders.
-    /// Errors: those of animatedFrames(), LiveCollider and SkinPass.
+    /// Errors: those of animatedMaps(), LiveCollider and SkinPass.
     [[nodiscard]] static Result<AnimatedCollider> create(std::shared_ptr<const AnimatedMesh> mesh,
                                                          const AnimatedColliderOptions& options = {});
 

@@ -33,7 +33,7 @@ bool contains(const DepthMap& map, const glm::vec3& p) {
            glm::all(glm::lessThanEqual(q, 1.0F - rim + kTexelRounding));
 }
 
-/// Returns whether a map has the form that liveFrames() makes.
+/// Returns whether a map has the form that liveMaps() makes.
 bool isLiveMap(const DepthMap& map) {
     return map.format == MapFormat::kFrontBackFixed && map.compare == Compare::kBoth &&
            map.decode == Decode::kPlane && validateFrame(map);
@@ -41,7 +41,7 @@ bool isLiveMap(const DepthMap& map) {
 
 }  // namespace
 
-Result<Collider> liveFrames(const Bounds& box, std::uint32_t resolution, LiveSize size) {
+Result<Collider> liveMaps(const Bounds& box, std::uint32_t resolution, LiveSize size) {
     if (resolution < kMapSizeMin || resolution > kMapSizeMax) {
         return fail(ErrorCode::kUsage, "live maps of " + std::to_string(resolution) +
                                            " texels along a side are not supported; choose " +
@@ -101,7 +101,7 @@ Result<LiveCollider> LiveCollider::create(std::span<const glm::vec3> positions,
                                           std::span<const glm::uvec3> triangles, Collider frames) {
     RELIEF_TRY(checkContext());
     if (frames.maps.empty() || !std::all_of(frames.maps.begin(), frames.maps.end(), isLiveMap)) {
-        return fail(ErrorCode::kUsage, "a live collider needs maps from liveFrames()");
+        return fail(ErrorCode::kUsage, "a live collider needs maps from liveMaps()");
     }
     auto mesh = RELIEF_TRY(GpuMesh::create(positions, triangles));
     std::uint32_t width = 0;
@@ -124,7 +124,7 @@ Result<LiveCollider> LiveCollider::create(std::span<const glm::vec3> positions,
     return live;
 }
 
-Result<void> LiveCollider::refuseSecondChange() const {
+Result<void> LiveCollider::rejectSecondChange() const {
     if (shown_ && moved_) {
         return fail(ErrorCode::kUsage,
                     "a live collider's positions were set twice between two updates, so half of "
@@ -134,7 +134,7 @@ Result<void> LiveCollider::refuseSecondChange() const {
 }
 
 Result<void> LiveCollider::setPositions(std::span<const glm::vec3> positions) {
-    RELIEF_TRY(refuseSecondChange());
+    RELIEF_TRY(rejectSecondChange());
     for (const DepthMap& map : frames_.maps) {
         for (std::size_t i = 0; map.encloses && i < positions.size(); ++i) {
             const glm::vec3& p = positions[i];
@@ -151,7 +151,7 @@ Result<void> LiveCollider::setPositions(std::span<const glm::vec3> positions) {
 }
 
 Result<void> LiveCollider::setPositions(GLuint buffer, std::size_t offset) {
-    RELIEF_TRY(refuseSecondChange());
+    RELIEF_TRY(rejectSecondChange());
     RELIEF_TRY(mesh_.setPositions(buffer, offset));
     moved_ = true;
     return {};

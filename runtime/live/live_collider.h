@@ -3,7 +3,7 @@
 // (Kolb, Latta and Rezk-Salama 2004, section 5). For each texel the GPU also stores the motion of the surface since the
 // previous update, for the relative velocity at contacts.
 //
-//     LiveCollider live = *LiveCollider::create(positions, triangles, *liveFrames(box));
+//     LiveCollider live = *LiveCollider::create(positions, triangles, *liveMaps(box));
 //     ColliderBody body{.collider = &live.frames(), .live = true};
 //     WorldTextures textures = *WorldTextures::create({&body, 1});   // static bodies may be added
 //     each step:  live.setPositions(…);  live.update(textures, 0);  particles.step(dt);
@@ -33,16 +33,16 @@ enum class LiveSize : std::uint8_t {
 /// \param box         object units; must contain the mesh at all times.
 /// \param resolution  texels along a side, kMapSizeMin…kMapSizeMax.
 /// Errors: kUsage (an empty or infinite box, a resolution out of range).
-[[nodiscard]] Result<Collider> liveFrames(const Bounds& box, std::uint32_t resolution = 256,
-                                          LiveSize size = LiveSize::kEqual);
+[[nodiscard]] Result<Collider> liveMaps(const Bounds& box, std::uint32_t resolution = 256,
+                                        LiveSize size = LiveSize::kEqual);
 
 class LiveCollider {
   public:
     /// Every call needs a current context, restores the GL state that it changes, and does not wait.
     /// \param positions, triangles  the initial mesh, as required by GpuMesh::create.
-    /// \param frames  maps from liveFrames(). The box of a map must contain the mesh at all times: geometry outside is
+    /// \param frames  maps from liveMaps(). The box of a map must contain the mesh at all times: geometry outside is
     /// clipped, and a map that encloses everything treats it as free space.
-    /// Errors: those of GpuMesh and DepthMapRenderer; kUsage (maps that are not from liveFrames()).
+    /// Errors: those of GpuMesh and DepthMapRenderer; kUsage (maps that are not from liveMaps()).
     [[nodiscard]] static Result<LiveCollider> create(std::span<const glm::vec3> positions,
                                                      std::span<const glm::uvec3> triangles, Collider frames);
 
@@ -72,7 +72,7 @@ class LiveCollider {
   private:
     LiveCollider(GpuMesh mesh, DepthMapRenderer renderer, Collider frames)
         : mesh_(std::move(mesh)), renderer_(std::move(renderer)), frames_(std::move(frames)) {}
-    [[nodiscard]] Result<void> refuseSecondChange() const;
+    [[nodiscard]] Result<void> rejectSecondChange() const;
     void copyTexels(const LiveSlot& slot, const DepthMap& map) const;
     void copyMotion(const LiveSlot& slot, const DepthMap& map) const;
 

@@ -75,7 +75,7 @@ Result<SkinPass> SkinPass::create(const AnimatedMesh& mesh, std::span<const glm:
     }
 
     const PassState state;
-    forgetGlErrors();
+    clearGlErrors();
     SkinPass pass;
     pass.joints_ = static_cast<int>(mesh.joints.size());
     pass.feedback_ = RELIEF_TRY(VertexFeedback::create(

@@ -40,7 +40,7 @@ Result<VertexFeedback> VertexFeedback::create(const char* shader, std::size_t ve
                                                    normals ? "#define RELIEF_NORMALS 1\n" : ""));
     made.output_ = makeBuffer();
     made.array_ = makeVertexArray();
-    forgetGlErrors();
+    clearGlErrors();
     made.pixel_ = makeTexture2D(GL_RGBA8, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE);
     glBindVertexArray(made.array_.name());
     glBindBuffer(GL_ARRAY_BUFFER, made.output_.name());

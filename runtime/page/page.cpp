@@ -184,7 +184,7 @@ Result<std::string> playerPage(FileGuard& files) {
     return text;
 }
 
-std::string nameBeside(const fs::path& file, const fs::path& scene) {
+std::string relativeName(const fs::path& file, const fs::path& scene) {
     return file.lexically_normal().lexically_relative(scene.parent_path().lexically_normal());
 }
 

@@ -34,7 +34,7 @@ namespace relief {
 [[nodiscard]] std::string base64(std::span<const std::byte> bytes);
 
 /// Returns the path of a file relative to the folder of a scene or world.
-[[nodiscard]] std::string nameBeside(const std::filesystem::path& file, const std::filesystem::path& scene);
+[[nodiscard]] std::string relativeName(const std::filesystem::path& file, const std::filesystem::path& scene);
 
 struct PageMesh {
     std::string name;

@@ -91,7 +91,7 @@ Emitter::Emitter(EmitterSettings settings, std::uint64_t seed, std::uint64_t str
     }
 }
 
-double Emitter::steadyBirths(double active) const {
+double Emitter::rateBirths(double active) const {
     const double until = std::min(active, settings_.duration * (1.0 + kTimeSlack));
     return std::min(settings_.rate * until, kCountMax);
 }
@@ -124,7 +124,7 @@ Emitter::Due Emitter::dueAfter(double dt) const {
     const double active = sum - settings_.start + kTimeSlack * sum;
     due.started = active >= 0.0;
     if (due.started) {
-        due.steady = wholeCount(steadyBirths(active));
+        due.steady = wholeCount(rateBirths(active));
         due.bursts = burstsDue(active);
     }
     return due;
@@ -162,7 +162,7 @@ std::uint64_t Emitter::emit(double dt, std::uint64_t room, std::vector<Birth>& b
     for (std::uint64_t burst = bursts_; left > 0; ++burst) {
         const bool last = burst >= due.bursts;
         const std::uint64_t until =
-            last ? due.steady : wholeCount(steadyBirths(static_cast<double>(burst) * settings_.burst_every));
+            last ? due.steady : wholeCount(rateBirths(static_cast<double>(burst) * settings_.burst_every));
         const std::uint64_t by_rate = std::min(left, until - std::min(until, steady));
         for (std::uint64_t i = 0; i < by_rate; ++i) {
             const double moment = settings_.start + static_cast<double>(steady + i + 1) / settings_.rate;

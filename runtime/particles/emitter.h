@@ -108,12 +108,12 @@ class Emitter {
     }
     /// Returns the surface velocity at each birth of the last emit(), for carry(); empty for all shapes except
     /// kSurface.
-    [[nodiscard]] std::span<const glm::vec3> placeVelocities() const { return place_velocities_; }
+    [[nodiscard]] std::span<const glm::vec3> birthSurfaceVelocities() const { return place_velocities_; }
 
     [[nodiscard]] const EmitterSettings& settings() const { return settings_; }
 
   private:
-    [[nodiscard]] double steadyBirths(double active) const;
+    [[nodiscard]] double rateBirths(double active) const;
     [[nodiscard]] std::uint64_t burstsDue(double active) const;
     /// Totals due up to a time since the start.
     struct Due {

@@ -63,7 +63,7 @@ Result<ParticleSystem> ParticleSystem::create(const ParticleSystemOptions& optio
     system.time_ = options.start_time;
     system.epoch_ = options.start_time;
     system.integrator_ = options.integrator;
-    system.path_ = RELIEF_TRY(chosenPath(options.path));
+    system.path_ = RELIEF_TRY(resolvePath(options.path));
     system.width_ = std::min(options.capacity, kStateWidth);
     system.height_ = (options.capacity + system.width_ - 1) / system.width_;
     system.ids_.resize(options.capacity);
@@ -85,7 +85,7 @@ GlTexture ParticleSystem::makeStateTexture() const {
 }
 
 Result<void> ParticleSystem::createTextures() {
-    forgetGlErrors();
+    clearGlErrors();
     birth_ = makeStateTexture();
     for (int i = 0; i < 2; ++i) {
         position_[i] = makeStateTexture();
@@ -294,7 +294,7 @@ Result<void> ParticleSystem::step(float dt) {
     runStep(dt, now);
     freeDead(now);
     if (time_ - epoch_ >= epoch_seconds_) {
-        setEpochForward();
+        advanceEpoch();
     }
     drawn_extent_ = allocator_.extent();
     return {};
@@ -369,7 +369,7 @@ void ParticleSystem::freeDead(float now) {
     died_ += dead_.size();
 }
 
-void ParticleSystem::setEpochForward() {
+void ParticleSystem::advanceEpoch() {
     const double epochs = std::floor((time_ - epoch_) / epoch_seconds_);
     const auto shift = static_cast<float>(epochs * epoch_seconds_);
     epoch_ += static_cast<double>(shift);

@@ -191,7 +191,7 @@ class ParticleSystem {
     /// Compiles the program for the current settings, unless it is already compiled.
     [[nodiscard]] Result<void> compileStep();
     [[nodiscard]] float clockOf(double time) const { return static_cast<float>(time - epoch_); }
-    void setEpochForward();
+    void advanceEpoch();
     void runBirths(float dt);
     void runStep(float dt, float now);
     void freeDead(float now);

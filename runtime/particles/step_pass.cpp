@@ -45,7 +45,7 @@ Result<StepPass> StepPass::create(StepVariant variant, const StepShader& shader)
     defineIf(variant.sweep, "RELIEF_SWEEP " + std::to_string(kSweepPieces));
     defineIf(variant.radius, "RELIEF_RADIUS");
     defineIf(variant.masks, "RELIEF_MASKS");
-    bool materials = variant.collider != nullptr && variant.collider->materialsRespond();
+    bool materials = variant.collider != nullptr && variant.collider->materialsAffectReaction();
     for (const StepFeature* feature : variant.features) {
         defines += feature->defines();
         materials = materials || feature->readsMaterials();

@@ -9,7 +9,7 @@
 
 namespace relief {
 
-Result<StepPath> chosenPath(StepPath wanted) {
+Result<StepPath> resolvePath(StepPath wanted) {
     if (wanted == StepPath::kCompute && !hasCompute()) {
         return fail(ErrorCode::kUnsupported,
                     "compute shaders need OpenGL 4.3 or OpenGL ES 3.1, and this context has " +

@@ -17,6 +17,6 @@ enum class StepPath : std::uint8_t {
 
 /// Returns kFragment or kCompute for the current context.
 /// Errors: kUnsupported (kCompute requested without compute shaders).
-[[nodiscard]] Result<StepPath> chosenPath(StepPath wanted);
+[[nodiscard]] Result<StepPath> resolvePath(StepPath wanted);
 
 }  // namespace relief

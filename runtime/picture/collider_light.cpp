@@ -117,7 +117,7 @@ Result<void> ColliderLight::createPrograms() {
 }
 
 Result<void> ColliderLight::createTextures() {
-    forgetGlErrors();
+    clearGlErrors();
     constexpr GLsizei kCoarseSide = kSunSide / kCoarseStride;
     coarse_ = makeTexture2D(GL_R32F, kCoarseSide, kCoarseSide, GL_RED, GL_FLOAT);
     sun_map_ = makeTexture2D(GL_R32F, kSunSide, kSunSide, GL_RED, GL_FLOAT);
@@ -172,7 +172,7 @@ float ColliderLight::sunBias() const {
 void ColliderLight::attach(const GlProgram& program, int unit) const {
     program.use();
     program.set("u_sun_map", unit);
-    program.set("u_sky_share", unit + 1);
+    program.set("u_sky_fraction", unit + 1);
     const glm::vec3 sun = sunDirection();
     const glm::vec3 across = sun_across_ / sun_texel_;
     const glm::vec3 along = sun_along_ / sun_texel_;

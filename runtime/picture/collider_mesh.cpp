@@ -13,7 +13,7 @@ namespace relief {
 Result<ColliderMesh> ColliderMesh::create(const PictureMesh& mesh) {
     RELIEF_TRY(checkContext());
     const PassState state;
-    forgetGlErrors();
+    clearGlErrors();
     ColliderMesh out;
     out.program_ = RELIEF_TRY(makeProgram("picture/mesh.vert", "picture/mesh.frag"));
     out.buffers_ = RELIEF_TRY(MeshBuffers::create(mesh));
@@ -29,7 +29,7 @@ Result<ColliderMesh::View> ColliderMesh::view(const Camera& camera, GLsizei widt
     const PassState state;
     RELIEF_TRY(checkTextureSize(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height),
                                 "the picture of the mesh", "choose a smaller size"));
-    forgetGlErrors();
+    clearGlErrors();
     View view;
     view.normal = makeTexture2D(GL_RGBA16F, width, height, GL_RGBA, GL_HALF_FLOAT);
     view.depth = makeTexture2D(GL_DEPTH_COMPONENT32F, width, height, GL_DEPTH_COMPONENT, GL_FLOAT);

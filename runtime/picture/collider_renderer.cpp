@@ -88,7 +88,7 @@ Result<void> ColliderRenderer::trace(const Camera& camera, const ColliderStyle& 
                                      GLsizei height) {
     RELIEF_TRY(checkTextureSize(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height),
                                 "the collider's pictures", kSmallerPicture));
-    forgetGlErrors();
+    clearGlErrors();
     color_ = makeTexture2D(GL_RGBA16F, width, height, GL_RGBA, GL_HALF_FLOAT);
     depth_ = makeTexture2D(GL_DEPTH_COMPONENT32F, width, height, GL_DEPTH_COMPONENT, GL_FLOAT);
     RELIEF_TRY(checkAllocated("the collider's picture", kSmallerPicture));
@@ -119,7 +119,7 @@ Result<void> ColliderRenderer::trace(const Camera& camera, const ColliderStyle& 
 Result<void> ColliderRenderer::traceCoarse(GLsizei width, GLsizei height, GlTexture& coarse) {
     const GLsizei coarse_width = (width + kCoarseStride - 1) / kCoarseStride;
     const GLsizei coarse_height = (height + kCoarseStride - 1) / kCoarseStride;
-    forgetGlErrors();
+    clearGlErrors();
     coarse = makeTexture2D(GL_R32F, coarse_width, coarse_height, GL_RED, GL_FLOAT);
     RELIEF_TRY(checkAllocated("the collider's coarse picture", kSmallerPicture));
     const std::array<GLuint, 1> colors{coarse.name()};

@@ -112,7 +112,7 @@ Result<RadixSort> RadixSort::create(std::uint32_t capacity, std::uint32_t width)
     RELIEF_TRY(checkStorage(capacity));
     const StorageUnits storage;
     RadixSort sort;
-    forgetGlErrors();
+    clearGlErrors();
     const auto allocated = [&] {
         return checkAllocated("sorting " + std::to_string(capacity) + " particles",
                               "choose a smaller capacity");
@@ -204,7 +204,7 @@ Result<DepthSorter> DepthSorter::create(std::uint32_t capacity, StepPath path) {
                                 "choose a smaller capacity"));
     const PassState state;
     DepthSorter sorter(capacity);
-    const StepPath chosen = RELIEF_TRY(chosenPath(path));
+    const StepPath chosen = RELIEF_TRY(resolvePath(path));
     if (chosen == StepPath::kCompute) {
         auto radix = RadixSort::create(capacity, kWidth);
         if (radix) {
@@ -224,7 +224,7 @@ Result<DepthSorter> DepthSorter::create(std::uint32_t capacity, StepPath path) {
 
 Result<void> DepthSorter::createTextures() {
     const std::uint32_t rows = std::max(regionFor(capacity_) / kWidth, 1U);
-    forgetGlErrors();
+    clearGlErrors();
     for (int i = 0; i < 2; ++i) {
         order_[i] = makeTexture2D(GL_RG32UI, static_cast<GLsizei>(kWidth), static_cast<GLsizei>(rows),
                                   GL_RG_INTEGER, GL_UNSIGNED_INT);

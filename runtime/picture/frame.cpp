@@ -34,7 +34,7 @@ Result<Frame> Frame::create(std::uint32_t width, std::uint32_t height) {
     frame.factor_ = 2 * std::max(width, height) <= limit && pixels <= kSmoothPixelsMax ? 2 : 1;
 
     const PassState state;
-    forgetGlErrors();
+    clearGlErrors();
     const RenderTarget large = frame.target();
     frame.color_ = makeTexture2D(GL_RGBA16F, large.width, large.height, GL_RGBA, GL_HALF_FLOAT);
     frame.depth_ =

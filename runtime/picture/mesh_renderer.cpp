@@ -72,7 +72,7 @@ glm::mat4 parallelClip(const Bounds& box, const glm::vec3& towards) {
 Result<MeshRenderer> MeshRenderer::create(std::span<const PictureMesh> meshes) {
     RELIEF_TRY(checkContext());
     const PassState state;
-    forgetGlErrors();
+    clearGlErrors();
     MeshRenderer renderer;
     for (const PictureMesh& mesh : meshes) {
         MeshBuffers buffers = RELIEF_TRY(MeshBuffers::create(mesh));
@@ -111,7 +111,7 @@ Result<void> MeshRenderer::setPositions(std::size_t mesh, std::span<const glm::v
     }
     MovingMesh moving(to.shape);
     moving.setPositions(positions);
-    forgetGlErrors();
+    clearGlErrors();
     MeshBuffers buffers = RELIEF_TRY(MeshBuffers::create(moving.mesh()));
     RELIEF_TRY(checkAllocated("the meshes of a picture", "choose smaller ones"));
     to.moving = std::move(moving);
@@ -129,7 +129,7 @@ Result<void> MeshRenderer::resize(GLsizei width, GLsizei height) {
     }
     RELIEF_TRY(checkTextureSize(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height),
                                 "a picture's pixels", kSmallerPicture));
-    forgetGlErrors();
+    clearGlErrors();
     width_ = 0;
     color_ = makeTexture2D(GL_RGBA8, width, height, GL_RGBA, GL_UNSIGNED_BYTE);
     normal_ = makeTexture2D(GL_RGBA16F, width, height, GL_RGBA, GL_HALF_FLOAT);
@@ -141,9 +141,9 @@ Result<void> MeshRenderer::resize(GLsizei width, GLsizei height) {
     return {};
 }
 
-void MeshRenderer::drawPlaces(const GlProgram& program, std::span<const MeshPlace> places, bool still,
+void MeshRenderer::drawPlaces(const GlProgram& program, std::span<const MeshInstance> places, bool still,
                               bool moving) const {
-    for (const MeshPlace& place : places) {
+    for (const MeshInstance& place : places) {
         if (place.moves ? !moving : !still) {
             continue;
         }
@@ -154,7 +154,7 @@ void MeshRenderer::drawPlaces(const GlProgram& program, std::span<const MeshPlac
     }
 }
 
-void MeshRenderer::drawMap(const ParallelMap& map, std::span<const MeshPlace> places, bool moving) const {
+void MeshRenderer::drawMap(const ParallelMap& map, std::span<const MeshInstance> places, bool moving) const {
     glBindFramebuffer(GL_FRAMEBUFFER, map.framebuffer.name());
     glViewport(0, 0, kMapSide, kMapSide);
     const GLfloat far = 1.0F;
@@ -164,7 +164,7 @@ void MeshRenderer::drawMap(const ParallelMap& map, std::span<const MeshPlace> pl
     drawPlaces(depth_program_, places, true, moving);
 }
 
-void MeshRenderer::drawPrints(std::span<const MeshPlace> places, float units_per_meter) {
+void MeshRenderer::drawPrints(std::span<const MeshInstance> places, float units_per_meter) {
     glDisable(GL_DEPTH_TEST);
     glBindFramebuffer(GL_FRAMEBUFFER, prints_target_.name());
     glViewport(0, 0, kPrintSide, kPrintSide);
@@ -179,8 +179,8 @@ void MeshRenderer::drawPrints(std::span<const MeshPlace> places, float units_per
     glEnable(GL_DEPTH_TEST);
 }
 
-Result<void> MeshRenderer::checkPlaces(std::span<const MeshPlace> places) const {
-    for (const MeshPlace& place : places) {
+Result<void> MeshRenderer::checkPlaces(std::span<const MeshInstance> places) const {
+    for (const MeshInstance& place : places) {
         if (place.mesh >= meshes_.size()) {
             return fail(ErrorCode::kUsage, "there is no mesh " + std::to_string(place.mesh) +
                                                "; the number of meshes is " + std::to_string(meshes_.size()));
@@ -189,7 +189,7 @@ Result<void> MeshRenderer::checkPlaces(std::span<const MeshPlace> places) const 
     return {};
 }
 
-void MeshRenderer::drawZenith(std::span<const MeshPlace> places, const Bounds& around) {
+void MeshRenderer::drawZenith(std::span<const MeshInstance> places, const Bounds& around) {
     zenith_.clip = parallelClip(around, glm::vec3(0.0F, 1.0F, 0.0F));
     drawMap(zenith_, places, false);
     if (!(around_ == around)) {
@@ -199,7 +199,7 @@ void MeshRenderer::drawZenith(std::span<const MeshPlace> places, const Bounds& a
     }
 }
 
-Result<void> MeshRenderer::press(std::span<const MeshPlace> places, float units_per_meter,
+Result<void> MeshRenderer::press(std::span<const MeshInstance> places, float units_per_meter,
                                  const Bounds& around) {
     RELIEF_TRY(checkPlaces(places));
     const PassState state;
@@ -212,7 +212,7 @@ Result<void> MeshRenderer::press(std::span<const MeshPlace> places, float units_
 }
 
 Result<void> MeshRenderer::draw(const CameraMatrices& camera, const MeshStyle& style,
-                                std::span<const MeshPlace> places, const Bounds& around,
+                                std::span<const MeshInstance> places, const Bounds& around,
                                 const RenderTarget& target) {
     RELIEF_TRY(checkPlaces(places));
     const PassState state;

@@ -34,7 +34,7 @@ struct MeshStyle {
 };
 
 /// An instance of a mesh.
-struct MeshPlace {
+struct MeshInstance {
     std::uint32_t mesh = 0;  ///< index of a mesh passed to create()
     Pose pose;
     /// Rain and snow pass through it, and it leaves footprints in snow. For characters.
@@ -60,12 +60,12 @@ class MeshRenderer {
     /// \param around  the part of the world with shadows, shelter and footprints; finite and not empty.
     /// Errors: kUnsupported, kLimit (target size, out of memory), kUsage (no such mesh).
     [[nodiscard]] Result<void> draw(const CameraMatrices& camera, const MeshStyle& style,
-                                    std::span<const MeshPlace> places, const Bounds& around,
+                                    std::span<const MeshInstance> places, const Bounds& around,
                                     const RenderTarget& target);
 
     /// Adds footprints of moving meshes without drawing, for the time between two pictures.
     /// \param units_per_meter  as in MeshStyle. \param around  as in draw(). Errors: kUsage (no such mesh).
-    [[nodiscard]] Result<void> press(std::span<const MeshPlace> places, float units_per_meter,
+    [[nodiscard]] Result<void> press(std::span<const MeshInstance> places, float units_per_meter,
                                      const Bounds& around);
 
     /// Returns the window depths of the last draw(): a texture as large as the target and not attached to it. Empty
@@ -86,13 +86,13 @@ class MeshRenderer {
     };
 
     [[nodiscard]] Result<void> resize(GLsizei width, GLsizei height);
-    void drawPlaces(const GlProgram& program, std::span<const MeshPlace> places, bool still,
+    void drawPlaces(const GlProgram& program, std::span<const MeshInstance> places, bool still,
                     bool moving) const;
-    void drawMap(const ParallelMap& map, std::span<const MeshPlace> places, bool moving) const;
-    [[nodiscard]] Result<void> checkPlaces(std::span<const MeshPlace> places) const;
+    void drawMap(const ParallelMap& map, std::span<const MeshInstance> places, bool moving) const;
+    [[nodiscard]] Result<void> checkPlaces(std::span<const MeshInstance> places) const;
     /// Draws the map of resting meshes from above. Clears the footprints if `around` has changed.
-    void drawZenith(std::span<const MeshPlace> places, const Bounds& around);
-    void drawPrints(std::span<const MeshPlace> places, float units_per_meter);
+    void drawZenith(std::span<const MeshInstance> places, const Bounds& around);
+    void drawPrints(std::span<const MeshInstance> places, float units_per_meter);
 
     std::vector<Mesh> meshes_;
     GlProgram surface_program_;

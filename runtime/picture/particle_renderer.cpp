@@ -89,7 +89,7 @@ Result<ParticleRenderer> ParticleRenderer::create(const std::optional<ColliderVi
     for (const Sprite sprite : {Sprite::kPoint, Sprite::kQuad}) {
         [[maybe_unused]] const GlProgram* made = RELIEF_TRY(renderer.programFor({.sprite = sprite}));
     }
-    if (RELIEF_TRY(chosenPath(path)) == StepPath::kCompute) {
+    if (RELIEF_TRY(resolvePath(path)) == StepPath::kCompute) {
         renderer.needs_tiles_ = path == StepPath::kCompute;
         auto tiles = TilePainter::create();
         if (tiles || renderer.needs_tiles_) {
@@ -97,7 +97,7 @@ Result<ParticleRenderer> ParticleRenderer::create(const std::optional<ColliderVi
         }
     }
     renderer.no_attributes_ = makeVertexArray();
-    forgetGlErrors();
+    clearGlErrors();
     const std::array<GLubyte, 4> zero{};
     renderer.nothing_ = makeTexture2D(GL_RGBA8, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, zero.data());
     constexpr std::array<std::uint32_t, 2> kNoRank{};
@@ -140,7 +140,7 @@ Result<void> ParticleRenderer::uploadLooks(const ParticleStyle& style) {
     auto packed = RELIEF_TRY(
         packLooks(style.looks, {style.diameter, style.color, style.opacity, style.fade_in, style.fade_out}));
     if (!looks_ || packed != packed_) {
-        forgetGlErrors();
+        clearGlErrors();
         packed_ = std::move(packed);
         looks_ = makeTexture2D(GL_RGBA32F, static_cast<GLsizei>(packed_.width),
                                static_cast<GLsizei>(packed_.texels.size() / packed_.width), GL_RGBA, GL_FLOAT,

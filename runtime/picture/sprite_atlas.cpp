@@ -64,7 +64,7 @@ Result<SpriteAtlas> SpriteAtlas::create(std::span<const std::uint8_t> rgba, std:
                                            " cells; choose numbers that divide its sides");
     }
     const PassState state;
-    forgetGlErrors();
+    clearGlErrors();
     SpriteAtlas atlas;
     atlas.columns_ = static_cast<int>(columns);
     atlas.rows_ = static_cast<int>(rows);

@@ -42,7 +42,7 @@ std::uint32_t entriesFor(std::uint32_t sprites) {
 static_assert(kEntriesPerSprite * TilePainter::kSpritesMax < 0xffffff);  // limit of tile_scan.comp
 
 /// Returns whether the depth range is the default 0…1, with clipping at the near and far planes.
-bool depthIsUsual() {
+bool hasDefaultDepthRange() {
     std::array<GLfloat, 2> range{0.0F, 1.0F};
     glGetFloatv(GL_DEPTH_RANGE, range.data());
     bool usual = range == std::array<GLfloat, 2>{0.0F, 1.0F};
@@ -92,7 +92,7 @@ bool isReadable(GLuint texture) {
     if (glIsTexture(texture) == GL_FALSE) {
         return false;
     }
-    forgetGlErrors();
+    clearGlErrors();
     useTexture(TilePainter::kHidesUnit, texture);
     GLint mode = GL_DEPTH_COMPONENT;
     glGetTexParameteriv(GL_TEXTURE_2D, GL_DEPTH_STENCIL_TEXTURE_MODE, &mode);
@@ -139,7 +139,7 @@ Result<const TilePainter::Programs*> TilePainter::makePrograms(const std::string
 
 bool TilePainter::prepare(std::uint32_t sprites, const RenderTarget& target) {
     const auto tiles = [](GLsizei pixels) { return ceilDiv(static_cast<std::uint32_t>(pixels), kTileSide); };
-    if (sprites == 0 || sprites > kSpritesMax || !depthIsUsual() ||
+    if (sprites == 0 || sprites > kSpritesMax || !hasDefaultDepthRange() ||
         std::uint64_t{tiles(target.width)} * tiles(target.height) > std::uint64_t{kTilesMax}) {
         return false;
     }
@@ -171,7 +171,7 @@ bool TilePainter::makeRoom(std::uint32_t sprites) {
     }
     const auto make = [](std::uint64_t bytes) { return StorageUnits::make(static_cast<GLsizeiptr>(bytes)); };
     const StorageUnits storage;
-    forgetGlErrors();
+    clearGlErrors();
     room_ = 0;
     sprite_buffer_ = make(room * kSpriteBytes);
     for (GlBuffer& buffer : entry_buffers_) {
@@ -197,7 +197,7 @@ bool TilePainter::makeLayer(const RenderTarget& target) {
     const auto width = static_cast<std::uint32_t>(target.width);
     const auto height = static_cast<std::uint32_t>(target.height);
     if (!layer_ || width > layer_width_ || height > layer_height_) {
-        forgetGlErrors();
+        clearGlErrors();
         layer_width_ = std::max(width, layer_width_);
         layer_height_ = std::max(height, layer_height_);
         layer_ = {};

@@ -40,7 +40,7 @@ Result<Scene> openScene(const fs::path& input, const fs::path& root) {
         scene.world = input;
         return scene;
     }
-    RELIEF_TRY(refuseMeshName(input));
+    RELIEF_TRY(rejectMeshName(input));
     return fail(
         ErrorCode::kUsage,
         quotedPath(input) + " is not a scene, collider or world; use a .toml, .relief or world.json file");
@@ -130,7 +130,7 @@ Result<void> checkMaterials(const Scene& scene, const LoadedScene& of) {
     MaterialResponses known({});
     for (const auto* colliders : {&of.world_colliders, &of.colliders}) {
         for (const auto& collider : *colliders) {
-            known.see(collider->materials);
+            known.recordNames(collider->materials);
         }
     }
     const auto check = [&](const std::string& place, const std::string& key,

@@ -53,10 +53,10 @@ Result<std::vector<glm::uvec3>> partOf(const NamedMesh& named, const SceneEmitte
         }
     }
     if (!has_group) {
-        return invalidInput("emitter.group: " + noSuchPart("group or object", emitter.group, groups));
+        return invalidInput("emitter.group: " + partNotFound("group or object", emitter.group, groups));
     }
     if (!has_material) {
-        return invalidInput("emitter.material: " + noSuchPart("material", emitter.material, materials));
+        return invalidInput("emitter.material: " + partNotFound("material", emitter.material, materials));
     }
     return kept;
 }

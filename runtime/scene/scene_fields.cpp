@@ -141,7 +141,7 @@ void fields(FieldVisitor& visit, ScenePlay& play) {
 void fields(FieldVisitor& visit, SceneMaterialColor& material) {
     visit("name", material.name,
           {"Material of the animated mesh, as listed by relief info", {}, {}, {}, kRequired});
-    visit("color", material.color, {"Colour in pictures", "[r, g, b]", kShareRange, {}, kRequired});
+    visit("color", material.color, {"Colour in pictures", "[r, g, b]", kFractionRange, {}, kRequired});
 }
 
 void fields(FieldVisitor& visit, SceneCollider& c) {

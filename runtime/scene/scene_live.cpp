@@ -47,7 +47,7 @@ Result<LiveMesh> loadLiveMesh(const SceneCollider& from) {
                   live.wavelength.value_or(0.5F * box.longestSide())};
     box.min -= std::abs(live.amplitude);
     box.max += std::abs(live.amplitude);
-    auto frames = liveFrames(box, from.resolution);
+    auto frames = liveMaps(box, from.resolution);
     if (!frames) {
         return fail(ErrorCode::kInvalidInput, place + ": " + frames.error().message);
     }
@@ -91,7 +91,7 @@ Result<PlayedMesh> loadPlayedMesh(const SceneCollider& from, std::shared_ptr<con
     RELIEF_TRY(changeClip(played, from));
     played.box_size = played.play.bounds_scale * extent.box_size;
     played.frames = RELIEF_TRY(
-        withPrefix(from.origin + ": collider.play", animatedFrames(played.box_size, played.play.resolution)));
+        withPrefix(from.origin + ": collider.play", animatedMaps(played.box_size, played.play.resolution)));
     played.frames.bounds = extent.box;
     return played;
 }

@@ -208,8 +208,8 @@ Result<DrawnMeshes> loadDrawnMeshes(const LoadedScene& loaded) {
     return out;
 }
 
-std::vector<MeshPlace> meshPlaces(const LoadedScene& loaded, const DrawnMeshes& meshes, double seconds) {
-    std::vector<MeshPlace> places;
+std::vector<MeshInstance> meshPlaces(const LoadedScene& loaded, const DrawnMeshes& meshes, double seconds) {
+    std::vector<MeshInstance> places;
     for (const SceneMesh& mesh : meshes.places) {
         places.push_back({mesh.mesh, poseAt(loaded.scene.colliders[mesh.collider], seconds),
                           mesh.motion == MeshMotion::kPlayed});

@@ -46,8 +46,8 @@ struct DrawnMeshes {
 [[nodiscard]] Result<DrawnMeshes> loadDrawnMeshes(const LoadedScene& loaded);
 
 /// Returns the instances at a time in seconds. Animated instances leave footprints in snow.
-[[nodiscard]] std::vector<MeshPlace> meshPlaces(const LoadedScene& loaded, const DrawnMeshes& meshes,
-                                                double seconds);
+[[nodiscard]] std::vector<MeshInstance> meshPlaces(const LoadedScene& loaded, const DrawnMeshes& meshes,
+                                                   double seconds);
 
 /// Returns the style at a time in seconds.
 [[nodiscard]] MeshStyle meshStyle(const Scene& scene, double seconds);

@@ -53,14 +53,14 @@ bool StreamPlan::advance(std::size_t pairs) {
     return true;
 }
 
-bool StreamPlan::look(std::span<const PointOfInterest> points, std::size_t pairs) {
+bool StreamPlan::measureSome(std::span<const PointOfInterest> points, std::size_t pairs) {
     if (next_ == 0 || next_ == bodies_.size()) {
         begin(points);
     }
     return advance(pairs);
 }
 
-void StreamPlan::lookAtAll(std::span<const PointOfInterest> points) {
+void StreamPlan::measureAll(std::span<const PointOfInterest> points) {
     begin(points);
     static_cast<void>(advance(std::numeric_limits<std::size_t>::max()));
 }

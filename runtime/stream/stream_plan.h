@@ -38,14 +38,14 @@ class StreamPlan {
     /// starts over with the points passed to it.
     /// \param pairs  approximate number of body-point pairs to measure in this call.
     /// \return whether wanted() was updated.
-    bool look(std::span<const PointOfInterest> points, std::size_t pairs);
+    bool measureSome(std::span<const PointOfInterest> points, std::size_t pairs);
     /// Measures all bodies at once.
-    void lookAtAll(std::span<const PointOfInterest> points);
+    void measureAll(std::span<const PointOfInterest> points);
 
     /// Returns the colliders in order of priority: by the distance of their nearest body, in radii of the point of
     /// interest.
     [[nodiscard]] std::span<const std::uint32_t> wanted() const { return wanted_; }
-    /// Returns the distance that orders a wanted collider; valid until the next look().
+    /// Returns the distance that orders a wanted collider; valid until the next measureSome().
     [[nodiscard]] float nearest(std::uint32_t collider) const { return nearest_[collider]; }
 
   private:

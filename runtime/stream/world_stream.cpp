@@ -132,7 +132,7 @@ struct WorldStream::State {
     void choose();
     void request();
     void take(ColliderSource::Arrival arrival);
-    void giveUp(std::size_t collider, const std::string& warning);
+    void markFailed(std::size_t collider, const std::string& warning);
     /// Returns whether the collider's texels fit if all unwanted colliders are evicted.
     [[nodiscard]] bool hasRoom(const Streamed& collider) const;
     /// Allocates a range for the collider's texels. Evicts unwanted colliders, the least recently wanted first.
@@ -193,7 +193,7 @@ void WorldStream::State::request() {
     }
 }
 
-void WorldStream::State::giveUp(std::size_t index, const std::string& warning) {
+void WorldStream::State::markFailed(std::size_t index, const std::string& warning) {
     colliders[index].failed = true;
     colliders[index].requested = false;
     warnings.push_back(warning + "; its coarse collider remains in use");
@@ -202,10 +202,10 @@ void WorldStream::State::giveUp(std::size_t index, const std::string& warning) {
 void WorldStream::State::take(ColliderSource::Arrival arrival) {
     --under_way;
     if (!arrival.loaded) {
-        giveUp(arrival.collider, arrival.loaded.error().message);
+        markFailed(arrival.collider, arrival.loaded.error().message);
     } else if (!isStreamable(*arrival.loaded) ||
                arrival.loaded->texelBytes() != kTexelSize * colliders[arrival.collider].texels) {
-        giveUp(arrival.collider, names[arrival.collider] + " is not the collider named by the world");
+        markFailed(arrival.collider, names[arrival.collider] + " is not the collider named by the world");
     } else {
         arrived.push_back({arrival.collider, *std::move(arrival.loaded)});
     }
@@ -273,7 +273,7 @@ void WorldStream::State::finishUpload() {
         !exchanged) {
         ranges.give(*collider.place, collider.texels);
         collider.place.reset();
-        giveUp(first.collider, names[first.collider] + ": " + exchanged.error().message);
+        markFailed(first.collider, names[first.collider] + ": " + exchanged.error().message);
     } else {
         collider.present = true;
     }
@@ -301,7 +301,7 @@ Result<std::unique_ptr<WorldStream>> WorldStream::create(const World& world,
     }
     RELIEF_TRY(checkContext());
     const std::uint64_t most =
-        std::max<std::uint64_t>(WorldTextures::texelsMost(), coarse_bytes / kTexelSize) -
+        std::max<std::uint64_t>(WorldTextures::maxTexels(), coarse_bytes / kTexelSize) -
         coarse_bytes / kTexelSize;
     const auto room = static_cast<std::size_t>(
         std::min({std::uint64_t{texels}, (options.gpu_bytes - coarse_bytes) / kTexelSize, most}));
@@ -322,9 +322,9 @@ Result<std::unique_ptr<WorldStream>> WorldStream::create(const World& world,
               .spare = room < texels ? room / 8 : 0});
     for (std::size_t i = 0; i < state->colliders.size(); ++i) {
         if (state->colliders[i].texels > room) {
-            state->giveUp(i, state->names[i] + " needs " +
-                                 std::to_string(kTexelSize * state->colliders[i].texels) +
-                                 " bytes of GPU memory; the maximum is " + std::to_string(kTexelSize * room));
+            state->markFailed(
+                i, state->names[i] + " needs " + std::to_string(kTexelSize * state->colliders[i].texels) +
+                       " bytes of GPU memory; the maximum is " + std::to_string(kTexelSize * room));
         }
     }
     return std::unique_ptr<WorldStream>(new WorldStream(std::move(state)));
@@ -369,7 +369,7 @@ void WorldStream::setPoses(std::span<const Pose> poses) {
 Result<void> WorldStream::update(std::span<const PointOfInterest> points) {
     RELIEF_TRY(checkPoints(points));
     State& state = *state_;
-    if (state.plan.look(points, kPairsPerUpdate)) {
+    if (state.plan.measureSome(points, kPairsPerUpdate)) {
         state.choose();
     }
     while (std::optional<ColliderSource::Arrival> arrival = state.source->take()) {
@@ -382,7 +382,7 @@ Result<void> WorldStream::update(std::span<const PointOfInterest> points) {
 Result<void> WorldStream::finish(std::span<const PointOfInterest> points) {
     RELIEF_TRY(checkPoints(points));
     State& state = *state_;
-    state.plan.lookAtAll(points);
+    state.plan.measureAll(points);
     state.choose();
     while (true) {
         RELIEF_TRY(state.upload(std::numeric_limits<std::uint64_t>::max()));

@@ -96,7 +96,7 @@ uint reliefCellHash(ivec3 cell) {
 
 // Returns false if a ball about p cannot touch the oriented box of a placed body; for other bodies, the cell test
 // suffices.
-bool reliefMeetsBox(int body, vec3 p, float radius) {
+bool reliefTouchesBox(int body, vec3 p, float radius) {
     bool meets = true;
 #if RELIEF_PLACED
     if (reliefHas(reliefMapInfo(body), RELIEF_ENCLOSES)) {
@@ -142,7 +142,7 @@ ivec4 reliefNextBodies(inout ReliefSearch search, vec3 p, float radius) {
         }
         int body = int(entry.x);
         bool holds = entry.y == search.hash && body >= 0;
-        found = holds && reliefMeetsBox(body, p, radius) ? ivec4(body, found.xyz) : found;
+        found = holds && reliefTouchesBox(body, p, radius) ? ivec4(body, found.xyz) : found;
     }
     return found;
 }

@@ -17,7 +17,7 @@ enum EventFlag : std::int32_t {
 inline constexpr int kEventFlags = 8;
 inline constexpr int kEventDirections = 6;
 /// Each count sums this many counts of the level below; kEventLevels levels suffice for the largest system.
-inline constexpr int kEventsCounted = 64;
+inline constexpr int kEventsPerCount = 64;
 inline constexpr int kEventLevels = 4;
 /// Maximum event lists per step: counts have one component for each.
 inline constexpr int kEventLists = 4;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sums RELIEF_EVENTS_COUNTED consecutive entries for each list: particles with a matching event or, with
+// Sums RELIEF_EVENTS_PER_COUNT consecutive entries for each list: particles with a matching event or, with
 // RELIEF_EVENT_SUMS, counts.
 #if defined(RELIEF_EVENT_SUMS)
 uniform highp sampler2D u_counts;
@@ -26,8 +26,8 @@ vec4 countOf(ivec2 texel) {
 
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
-    int first = (at.y * RELIEF_EVENTS_WIDTH + at.x) * RELIEF_EVENTS_COUNTED;
-    int end = min(first + RELIEF_EVENTS_COUNTED, u_count);
+    int first = (at.y * RELIEF_EVENTS_WIDTH + at.x) * RELIEF_EVENTS_PER_COUNT;
+    int end = min(first + RELIEF_EVENTS_PER_COUNT, u_count);
     vec4 count = vec4(0.0);
     for (int i = first; i < end; ++i) {
         count += countOf(ivec2(i % u_width, i / u_width));

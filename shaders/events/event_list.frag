@@ -30,7 +30,7 @@ layout(location = 3) out vec4 o_identity;
 // on return, relative to the returned entry. of: 1 in the component of the list.
 int descended(highp sampler2D level, vec4 of, int first, inout float k) {
     int i = first;
-    for (; i < first + RELIEF_EVENTS_COUNTED; ++i) {
+    for (; i < first + RELIEF_EVENTS_PER_COUNT; ++i) {
         float count = dot(texelFetch(level, texelOf(i, RELIEF_EVENTS_WIDTH), 0), of);
         if (k < count) {
             break;
@@ -42,7 +42,7 @@ int descended(highp sampler2D level, vec4 of, int first, inout float k) {
 
 int indexOf(int list, int first, float k) {
     int i = first;
-    for (; i < first + RELIEF_EVENTS_COUNTED; ++i) {
+    for (; i < first + RELIEF_EVENTS_PER_COUNT; ++i) {
         ivec2 texel = texelOf(i, u_width);
         if (countsIn(list, texel, texelFetch(u_event_surface, texel, 0))) {
             if (k < 1.0) {
@@ -73,9 +73,9 @@ void main() {
         return;
     }
     int first = descended(u_count_3, of, 0, k);
-    first = descended(u_count_2, of, first * RELIEF_EVENTS_COUNTED, k);
-    first = descended(u_count_1, of, first * RELIEF_EVENTS_COUNTED, k);
-    int index = indexOf(list, first * RELIEF_EVENTS_COUNTED, k);
+    first = descended(u_count_2, of, first * RELIEF_EVENTS_PER_COUNT, k);
+    first = descended(u_count_1, of, first * RELIEF_EVENTS_PER_COUNT, k);
+    int index = indexOf(list, first * RELIEF_EVENTS_PER_COUNT, k);
     ivec2 texel = texelOf(index, u_width);
 
     vec4 surface = texelFetch(u_event_surface, texel, 0);

@@ -27,7 +27,7 @@ enum class Contact : std::uint8_t {
 
 /// The state texture stores the fraction of lifetime lost as the fractional part of the contact, in at least 7 bits for
 /// 65,536 bodies. Values of this size and above mean the whole lifetime.
-inline constexpr float kLostMost = 0.9921875F;
+inline constexpr float kLostMax = 0.9921875F;
 
 /// Dead particles: their height, out of sight, and their collision count.
 inline constexpr float kDeadHeight = -1e30F;

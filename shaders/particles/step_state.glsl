@@ -7,7 +7,7 @@
 //                        w       contact in the last step (constants.h): RELIEF_CONTACT_NONE, _COLLIDED, _CAUGHT (and
 //                                pushed out); permanently at rest: _STOPPED on the floor, _STOPPED + 1 + b on body b.
 //                                The fractional part is the fraction of the lifetime lost to materials;
-//                                RELIEF_LOST_MOST: all of it
+//                                RELIEF_LOST_MAX: all of it
 //     birth texture      x       time of birth   } seconds on the clock of u_now
 //                        y       time of death   }
 //                        z       type
@@ -48,7 +48,7 @@ State stateAt(ivec2 texel) {
     float contact = floor(velocity.w);
 #if defined(RELIEF_MATERIAL_LOSS)
     g_lost = velocity.w - contact;
-    g_lost = g_lost >= RELIEF_LOST_MOST ? 1.0 : g_lost;
+    g_lost = g_lost >= RELIEF_LOST_MAX ? 1.0 : g_lost;
 #endif
     return State(position.xyz, velocity.xyz, position.w, contact);
 }
@@ -66,7 +66,7 @@ void writeState(State before, State after) {
     o_position = vec4(after.position, after.collisions);
     o_velocity = vec4(after.velocity, after.contact);
 #if defined(RELIEF_MATERIAL_LOSS)
-    o_velocity.w += min(g_lost, RELIEF_LOST_MOST);
+    o_velocity.w += min(g_lost, RELIEF_LOST_MAX);
 #endif
 }
 

@@ -63,7 +63,7 @@ float fractalNoise(vec3 p) {
 
 // Returns the fraction of a disc around p, with a world-space radius, that is unoccluded in a parallel map; 1 outside
 // the map.
-float openShare(highp sampler2D map, mat4 clip, vec3 p, float radius, float bias, inout uint seed) {
+float openFraction(highp sampler2D map, mat4 clip, vec3 p, float radius, float bias, inout uint seed) {
     vec3 at = 0.5 * (clip * vec4(p, 1.0)).xyz + 0.5;
     vec2 reach = (0.5 * radius) * vec2(length(vec3(clip[0].x, clip[1].x, clip[2].x)), length(vec3(clip[0].y, clip[1].y, clip[2].y)));
     float depth_bias = 0.5 * bias * length(vec3(clip[0].z, clip[1].z, clip[2].z));
@@ -86,7 +86,7 @@ vec3 skyColor(vec3 d) {
 
 // Returns the fraction of the sky that nearby surfaces leave visible, from the picture's own depths: rays around the
 // normal count as unoccluded if their end is in front of the surface visible there.
-float cornerShare(vec3 p, vec3 n, float t, inout uint seed) {
+float cornerFraction(vec3 p, vec3 n, float t, inout uint seed) {
     float open = 0.0;
     float turn = noise(seed);
     for (int i = 0; i < CORNER_TAPS; ++i) {
@@ -127,7 +127,7 @@ void main() {
         float grain = fractalNoise(1.7 * q);
         albedo *= 0.86 + 0.28 * grain;
 
-        float shelter = openShare(u_zenith_depth, u_zenith_clip, p + (0.03 * u_meter) * n, 0.25 * u_meter, 0.05 * u_meter, seed);
+        float shelter = openFraction(u_zenith_depth, u_zenith_clip, p + (0.03 * u_meter) * n, 0.25 * u_meter, 0.05 * u_meter, seed);
         vec2 on_map = 0.5 * (u_zenith_clip * vec4(p, 1.0)).xy + 0.5;
         float on_it = all(greaterThanEqual(on_map, vec2(0.0))) && all(lessThan(on_map, vec2(1.0))) ? 1.0 : 0.0;
         float texel = 1.0 / float(textureSize(u_prints, 0).x);
@@ -154,9 +154,9 @@ void main() {
         albedo *= mix(1.0, 0.68, wet);
 
         float facing = dot(shaded, u_sun);
-        float sun = facing > 0.0 && u_sunlight > 0.0 ? openShare(u_sun_depth, u_sun_clip, p + (0.02 * u_meter) * n, 0.05 * u_meter, u_meter * (0.03 + 0.05 * (1.0 - facing)), seed) : 0.0;
-        float overhead = openShare(u_zenith_depth, u_zenith_clip, p + (0.1 * u_meter) * n, 2.5 * u_meter, 0.3 * u_meter, seed);
-        float open = cornerShare(p + 0.002 * t * n, n, t, seed);
+        float sun = facing > 0.0 && u_sunlight > 0.0 ? openFraction(u_sun_depth, u_sun_clip, p + (0.02 * u_meter) * n, 0.05 * u_meter, u_meter * (0.03 + 0.05 * (1.0 - facing)), seed) : 0.0;
+        float overhead = openFraction(u_zenith_depth, u_zenith_clip, p + (0.1 * u_meter) * n, 2.5 * u_meter, 0.3 * u_meter, seed);
+        float open = cornerFraction(p + 0.002 * t * n, n, t, seed);
         open *= open;
         vec3 sky = mix(FLOOR_COLOR, SKY_COLOR, 0.5 + 0.5 * shaded.y) * mix(1.9, 1.05, u_sunlight);
         sky *= open * mix(0.45, 1.0, overhead);

@@ -5,11 +5,11 @@
 //!include picture/sky.glsl
 
 uniform highp sampler2D u_sun_map;    // distance of the collider from the map's plane; RELIEF_NO_SHADE: no surface
-uniform highp sampler3D u_sky_share;  // 0…1
+uniform highp sampler3D u_sky_fraction;  // 0…1
 uniform vec4 u_sun_rows[3];           // object space to texels of the map, and to the distance from its plane
 uniform float u_sun_bias;             // object units: surfaces closer to the point than this do not shade it
 uniform float u_sun_cone;             // texels that the sun's disc covers at distance 1
-uniform vec3 u_sky_shift;             // object space to 0…1 of u_sky_share: scale · (p - shift)
+uniform vec3 u_sky_shift;             // object space to 0…1 of u_sky_fraction: scale · (p - shift)
 uniform vec3 u_sky_scale;
 
 const vec2 GOLDEN = vec2(-0.73736888, -0.67549029);  // cosine and sine of the golden angle between samples
@@ -28,7 +28,7 @@ struct ParticleLight {
 //             p
 //
 // `turn` and `jitter`, 0…1, vary between particles and average out the error of using few texels.
-float sunShare(vec3 p, float turn, float jitter) {
+float sunFraction(vec3 p, float turn, float jitter) {
     vec2 at = vec2(dot(u_sun_rows[0], vec4(p, 1.0)), dot(u_sun_rows[1], vec4(p, 1.0)));
     float depth = dot(u_sun_rows[2], vec4(p, 1.0));
     int side = textureSize(u_sun_map, 0).x;
@@ -66,5 +66,5 @@ float sunShare(vec3 p, float turn, float jitter) {
 }
 
 ParticleLight particleLight(vec3 p, float turn, float jitter) {
-    return ParticleLight(sunShare(p, turn, jitter), textureLod(u_sky_share, u_sky_scale * (p - u_sky_shift), 0.0).r);
+    return ParticleLight(sunFraction(p, turn, jitter), textureLod(u_sky_fraction, u_sky_scale * (p - u_sky_shift), 0.0).r);
 }

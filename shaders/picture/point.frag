@@ -30,7 +30,7 @@ void main() {
 #endif
     float shown = shading.opacity;
     if (u_soft > 0.0) {
-        shown *= softShare(texelFetch(u_behind, ivec2(gl_FragCoord.xy), 0).r, gl_FragCoord.z);
+        shown *= softFraction(texelFetch(u_behind, ivec2(gl_FragCoord.xy), 0).r, gl_FragCoord.z);
     }
     o_color = paintOf(shading, at, radius, body, shown);
     if (o_color.a == 0.0) {

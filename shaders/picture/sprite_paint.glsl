@@ -49,7 +49,7 @@ float distanceOf(float depth) {
 }
 
 // Returns the fraction of a sprite, with its front at window depth `depth`, that remains visible in front of `behind`.
-float softShare(float behind, float depth) {
+float softFraction(float behind, float depth) {
     return clamp((distanceOf(behind) - distanceOf(depth)) / u_soft, 0.0, 1.0);
 }
 

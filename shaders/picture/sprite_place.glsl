@@ -7,7 +7,7 @@ uniform vec2 u_depth;             // window depth of view distance t: x + y / t
 // Returns the distance of a sprite's front as a fraction of that of its centre. Depth uses the front, so that sprites
 // on a surface are not half hidden by it; the position in the picture uses the centre. A large sprite's front does not
 // pass the near plane before its centre does.
-float nearerShare(float size, float distance) {
+float nearerFraction(float size, float distance) {
     float near = -u_depth.y / u_depth.x;
     return max(1.0 - 0.5 * size / distance, clamp(1.01 * near / distance, 0.05, 1.0));
 }
@@ -15,7 +15,7 @@ float nearerShare(float size, float distance) {
 // Returns the clip-space position of the centre, at the depth of the front.
 vec4 placeOf(Sprite sprite) {
     vec4 place = u_projection * vec4(sprite.center, 1.0);
-    float nearer = nearerShare(sprite.size, sprite.distance);
+    float nearer = nearerFraction(sprite.size, sprite.distance);
     vec4 front = u_projection * vec4(sprite.center * nearer, 1.0);
     place.z = front.z / front.w * place.w;
     return place;

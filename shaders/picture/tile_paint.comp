@@ -85,7 +85,7 @@ void main() {
 #else
             vec4 body = bodyAt(at, radius, shading.per_edge);
 #endif
-            float shown = shading.opacity * (u_soft > 0.0 ? softShare(behind, place.w) : 1.0);
+            float shown = shading.opacity * (u_soft > 0.0 ? softFraction(behind, place.w) : 1.0);
             vec4 paint = paintOf(shading, at, radius, body, shown);
             sum += clear * paint;
             clear *= u_adds ? 1.0 : 1.0 - paint.a;

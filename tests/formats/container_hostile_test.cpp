@@ -403,7 +403,7 @@ void expectPayloadFaults() {
                         test::fixChecksums(b);
                     };
                 })),
-                kBytesBehind);
+                kBytesAfterPayload);
     expectIssue(fileOf(with([&](auto& r) { r.bytes = [&](Bytes& b) { b[first - 1] = std::byte{1}; }; })),
                 kPadding, 0);
 }

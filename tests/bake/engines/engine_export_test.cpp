@@ -66,7 +66,7 @@ TEST(EngineExport, BodiesOfALevelGiveTheDistancesOfTheWorld) {
     const std::vector<EngineFile> files = required(engineFiles(level, "level", Engine::kC));
     const std::vector<std::byte>& texels = fileNamed(files, "level.texels").bytes;
     std::vector<EngineBody> bodies(level.world.bodies.size());
-    ASSERT_EQ(fileNamed(files, "level.bodies").bytes.size(), 2 * kBodiesInRow * sizeof(EngineBody));
+    ASSERT_EQ(fileNamed(files, "level.bodies").bytes.size(), 2 * kBodiesPerRow * sizeof(EngineBody));
     std::memcpy(bodies.data(), fileNamed(files, "level.bodies").bytes.data(),
                 bodies.size() * sizeof(EngineBody));
     std::vector<std::uint32_t> cells(fileNamed(files, "level.cells").bytes.size() / 4);

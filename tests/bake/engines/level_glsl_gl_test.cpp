@@ -77,7 +77,7 @@ TEST_P(LevelGlslGlTest, GivesTheDistancesOfTheWorld) {
     int touching = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const float* motion = &motions[4 * i];
-        const float gap = gapToBalls(level, points[i]);
+        const float gap = distanceToBalls(level, points[i]);
         const bool hit = motion[3] < 0.0F;
         // Away from the surface, the plane of a cell is nearer than the ball.
         EXPECT_TRUE(hit || gap > 0.2F) << gap;

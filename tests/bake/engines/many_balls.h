@@ -61,7 +61,7 @@ inline float depthIn(const LoadedWorld& level, const glm::vec3& p) {
 }
 
 /// Returns the exact distance of the nearest ball, negative inside; ignores that the balls are faceted.
-inline float gapToBalls(const LoadedWorld& level, const glm::vec3& p) {
+inline float distanceToBalls(const LoadedWorld& level, const glm::vec3& p) {
     float gap = kFarOutside;
     for (const WorldBody& body : level.world.bodies) {
         const Pose pose = poseOf(body);

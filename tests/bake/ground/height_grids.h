@@ -68,7 +68,7 @@ class RawHeights : public testing::Test {
         GroundOptions options;
         options.heights = heights;
         options.folder = into;
-        return bakeGroundOf(map, options);
+        return bakeHeightMap(map, options);
     }
     /// \param into  folder of a world; if empty, bakes one container
     [[nodiscard]] GroundResult bake(const char* name, const HeightsSpec& heights,

@@ -307,7 +307,7 @@ TEST_F(HeightMaps, LikelierRawFormatIsSuggested) {
         const std::string settings =
             "width=65,type=" + type + ",order=" + order + (type == "uint16" ? ",low=0,high=65535" : "");
         return toString(
-            HeightMap::open(write("g.raw", bytes), parseHeightsSpec(settings).value())->likelierFormat());
+            HeightMap::open(write("g.raw", bytes), parseHeightsSpec(settings).value())->betterFormat());
     };
     const std::array<std::string, 2> orders = {"little", "big"};
     for (const std::string& order : orders) {
@@ -356,7 +356,7 @@ TEST_F(HeightMaps, LikelierRawFormatIsSuggested) {
     const auto small = std::as_bytes(std::span(samples));
     EXPECT_EQ(toString(HeightMap::open(write("g.raw", {small.begin(), small.end()}),
                                        parseHeightsSpec("width=66,type=float32").value())
-                           ->likelierFormat()),
+                           ->betterFormat()),
               "type=uint16");
 }
 
@@ -379,7 +379,7 @@ TEST_F(HeightMaps, LikelierFormatOfLowlandIsSuggested) {
         const bool swap = settings.find("written=big") == 0;
         return toString(HeightMap::open(write("g.raw", swap ? big : std::vector(bytes.begin(), bytes.end())),
                                         parseHeightsSpec(settings.substr(swap ? 12 : 0)).value())
-                            ->likelierFormat());
+                            ->betterFormat());
     };
     const std::string uint16 = "low=0,high=65535";
     for (const auto& [low, high] : {std::pair(0, 5), {0, 100}, {0, 255}, {0, 300}, {1030, 1200}}) {
@@ -429,7 +429,7 @@ TEST_F(HeightMaps, OutlierSampleIsReported) {
         for (const float sample : samples) {
             range.add(sample);
         }
-        const std::optional<LoneSample> found = range.lone();
+        const std::optional<OutlierSample> found = range.lone();
         return found
                    ? std::string(found->lowest ? "low " : "high ") + std::to_string(std::lround(found->gap)) +
                          (found->sample == found->last ? "" : " of several")

@@ -12,7 +12,7 @@
 #include "bake/import/animated_import.h"
 #include "bake/import/level.h"
 #include "bake/import/mesh_import.h"
-#include "bake/import/source_marks.h"
+#include "bake/import/source_properties.h"
 #include "tests/bake/import/import_meshes.h"
 #include "tests/temporary_folder.h"
 
@@ -289,7 +289,7 @@ TEST(ImportHidden, VisibleGeometryIsKept) {
 
 TEST(ImportHidden, KeepReadsHiddenGeometry) {
     ImportOptions keep;
-    keep.hidden = HiddenAs::kKeep;
+    keep.hidden = HiddenMode::kKeep;
     std::vector<std::pair<std::string, std::string>> files = hiddenFiles();
     files.emplace_back("levels.fbx", levelsFbx());
     for (const auto& [name, text] : files) {
@@ -392,7 +392,7 @@ TEST(ImportHidden, CyclicLevelsOfDetailAreRejected) {
     };
     const std::string words = "nodes[0] is a lower level of detail of itself (MSFT_lod)";
     ImportOptions keep;
-    keep.hidden = HiddenAs::kKeep;
+    keep.hidden = HiddenMode::kKeep;
     const auto kept = importText(
         "kept.gltf", tetrahedronGltf({.nodes = node("1") + "," + node("0"), .roots = "0,1"}), keep);
     ASSERT_TRUE(kept) << kept.error().message;
@@ -427,7 +427,7 @@ TEST(ImportHidden, LongFbxStringsAreNotCopied) {
     file.resize(kSize);
     file += string(0, "") + string(0, "");
     const std::clock_t start = std::clock();
-    EXPECT_FALSE(markedFbx(std::as_bytes(std::span(file))));
+    EXPECT_FALSE(patchedFbx(std::as_bytes(std::span(file))));
     EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 1.0);
 }
 

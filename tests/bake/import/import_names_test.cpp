@@ -108,14 +108,14 @@ TEST(ImportNames, HostileNamesAreSanitized) {
     const std::string clean = "a\xef\xbf\xbd" + std::string("b\xef\xbf\xbd[31m");
     expectMarks(
         "h.gltf", text,
-        {{{clean}, {1, 1, 0, 0, 0, 0}}, {{std::string(kAskedNameBytesMax, 'y')}, {0, 0, 1, 1, 0, 0}}});
-    expectUnknown("h.gltf", text, {std::string(kAskedNameBytesMax, 'z')}, "its names: ");
+        {{{clean}, {1, 1, 0, 0, 0, 0}}, {{std::string(kSelectedNameBytesMax, 'y')}, {0, 0, 1, 1, 0, 0}}});
+    expectUnknown("h.gltf", text, {std::string(kSelectedNameBytesMax, 'z')}, "its names: ");
     std::string many;
     for (int i = 0; i < 3000; ++i) {
         many += "g group" + std::to_string(i) + std::string(100, 'n') + "\nf 1 2 3\n";
     }
     expectUnknown("m.obj", obj(many), {"x"}, " and more");
-    const Names crowd(kAskedNamesMax + 1, "paint");
+    const Names crowd(kSelectedNamesMax + 1, "paint");
     EXPECT_EQ(importTextInWorker("h.gltf", text, asking(crowd)).error().code, ErrorCode::kLimit);
 }
 
@@ -280,7 +280,7 @@ void expectRead(const std::vector<Expected>& cases) {
 TEST(ImportParts, EveryCountHasAWarning) {
     const auto warning = [](const MeshParts& parts) {
         Lines warnings;
-        warnOfParts(parts, warnings);
+        warnAboutParts(parts, warnings);
         return warnings;
     };
     EXPECT_EQ(warning({.polygons = 1, .vertices = 3}), Lines());
@@ -290,11 +290,10 @@ TEST(ImportParts, EveryCountHasAWarning) {
     // A tenth of the vertices can be loose. Vertices of lines are not loose.
     EXPECT_EQ(warning({.polygons = 9, .vertices = 100, .unused = 90, .loose = 10}), Lines());
     EXPECT_EQ(warning({.polygons = 9, .vertices = 100, .unused = 11, .loose = 11}).size(), 1U);
-    EXPECT_FALSE(partsRefusal({.polygons = 1, .lines = 1}));
-    EXPECT_FALSE(partsRefusal({}));
-    EXPECT_EQ(partsRefusal({.points = 2}), "no triangles, but 2 points; export the surface as polygons");
-    EXPECT_TRUE(
-        partsRefusal({.vertices = 1, .unused = 1, .loose = 1})->starts_with("1 vertex but no faces; "));
+    EXPECT_FALSE(partsError({.polygons = 1, .lines = 1}));
+    EXPECT_FALSE(partsError({}));
+    EXPECT_EQ(partsError({.points = 2}), "no triangles, but 2 points; export the surface as polygons");
+    EXPECT_TRUE(partsError({.vertices = 1, .unused = 1, .loose = 1})->starts_with("1 vertex but no faces; "));
 }
 
 TEST(ImportParts, ObjStatementsAreCounted) {

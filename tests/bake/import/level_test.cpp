@@ -9,7 +9,7 @@
 #include "bake/import/import_source.h"
 #include "bake/import/level.h"
 #include "bake/import/mesh_import.h"
-#include "bake/import/source_marks.h"
+#include "bake/import/source_properties.h"
 #include "tests/bake/import/import_meshes.h"
 #include "tests/temporary_folder.h"
 
@@ -273,7 +273,7 @@ TEST(ImportUnits, EveryUpAxisIsARotation) {
         SCOPED_TRACE(name);
         const std::optional<UpAxis> up = fromWord<UpAxis>(name);
         ASSERT_TRUE(up);
-        const glm::dmat3 turn = turnUpwards(*up);
+        const glm::dmat3 turn = rotationToUp(*up);
         const int axis = (name[1] | 0x20) - 'x';
         EXPECT_EQ(turn[axis], glm::dvec3(0, name[0] == '-' ? -1 : 1, 0));
         EXPECT_EQ(glm::transpose(turn) * turn, glm::dmat3(1.0));
@@ -492,9 +492,9 @@ TEST(ImportUnits, FbxUnitsAreReadFromTextAndBinary) {
 TEST(ImportUnits, UpAxisOfLeftHandedFiles) {
     SourceFrame left;
     left.mirrored = true;
-    EXPECT_EQ(changeOf(left, "", UpAxis::kPlusZ).turn, turnUpwards(UpAxis::kMinusZ));
-    EXPECT_EQ(changeOf(left, "", UpAxis::kMinusZ).turn, turnUpwards(UpAxis::kPlusZ));
-    EXPECT_EQ(changeOf(left, "", UpAxis::kPlusX).turn, turnUpwards(UpAxis::kPlusX));
+    EXPECT_EQ(changeOf(left, "", UpAxis::kPlusZ).turn, rotationToUp(UpAxis::kMinusZ));
+    EXPECT_EQ(changeOf(left, "", UpAxis::kMinusZ).turn, rotationToUp(UpAxis::kPlusZ));
+    EXPECT_EQ(changeOf(left, "", UpAxis::kPlusX).turn, rotationToUp(UpAxis::kPlusX));
     EXPECT_EQ(changeOf(left, "", std::nullopt).turn, glm::dmat3(1.0));
 }
 

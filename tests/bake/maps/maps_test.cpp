@@ -35,7 +35,7 @@ TEST(BudgetSearch, KeepsTheTargetWithFewExtraBytes) {
     const MeshQuery query = queryOf(makeTorusMesh(1.0, 0.4, 64, 32));
     BudgetSearchOptions options = optionsFor(kPercent);
     std::size_t told = 0;
-    options.tried = [&](const BudgetTry&) { ++told; };
+    options.tried = [&](const BudgetTrial&) { ++told; };
     const BudgetSearchResult found = required(bakeForError(query, query, options));
     EXPECT_LE(found.chosen.wrong_percent, kPercent);
     EXPECT_EQ(found.chosen.bytes, found.baked.collider.texelBytes());
@@ -46,7 +46,7 @@ TEST(BudgetSearch, KeepsTheTargetWithFewExtraBytes) {
     EXPECT_EQ(measureField(truth, fieldOf(found.baked.collider)).near.total(), found.chosen.wrong_percent);
     // The search tried a budget at most a tenth smaller, which misses the target.
     bool narrow = false;
-    for (const BudgetTry& made : found.tries) {
+    for (const BudgetTrial& made : found.tries) {
         EXPECT_GE(made.budget, 32'000U);
         const double of_chosen = static_cast<double>(made.budget) / static_cast<double>(found.chosen.budget);
         narrow = narrow || (made.wrong_percent > kPercent && of_chosen < 1.0 && of_chosen > 1.0 / 1.1);
@@ -81,15 +81,15 @@ TEST(BudgetSearch, ReportsTheBestIfTheTargetIsUnreachable) {
     const MeshQuery query = queryOf(makeTorusMesh(1.0, 0.4, 64, 32));
     BudgetSearchOptions options = optionsFor(0.0);
     options.budget_max = 50'000;
-    std::vector<BudgetTry> tries;
-    options.tried = [&](const BudgetTry& made) { tries.push_back(made); };
+    std::vector<BudgetTrial> tries;
+    options.tried = [&](const BudgetTrial& made) { tries.push_back(made); };
     const Result<BudgetSearchResult> found = bakeForError(query, query, options);
     ASSERT_FALSE(found);
     EXPECT_EQ(found.error().code, ErrorCode::kDifference);
     ASSERT_EQ(tries.size(), 2U);
     EXPECT_EQ(tries[1].budget, 50'000U) << "the limit itself must be tried";
     // The best budget is not always the largest: rounding can favour fewer texels.
-    const BudgetTry& best = tries[0].wrong_percent <= tries[1].wrong_percent ? tries[0] : tries[1];
+    const BudgetTrial& best = tries[0].wrong_percent <= tries[1].wrong_percent ? tries[0] : tries[1];
     EXPECT_NE(found.error().message.find(std::to_string(best.bytes) + " bytes"), std::string::npos)
         << found.error().message;
     // A limit below the usual start is the only budget.
@@ -182,7 +182,7 @@ TEST(BakeBunny, NearestSurfaceIsTheNearestTriangle) {
          "front-back:dir=-z,decode=plane,depth=unorm16"},
         240);
     for (const double sigma : {0.005, 0.05}) {
-        const TruthSamples samples = sampleTruth(query, {.samples = 20'000, .sigma_share = sigma});
+        const TruthSamples samples = sampleTruth(query, {.samples = 20'000, .sigma_fraction = sigma});
         const double off = sigma * samples.longest_side;
         const FieldAccuracy votes = measureField(samples, fieldOf(collider));
         const FieldAccuracy found = measureField(samples, nearestFieldOf(collider));

@@ -192,7 +192,8 @@ BakeResult baked(const TriangleMesh& mesh, const Format& format, std::optional<u
 
 bool isWithinItsShare(const Collider& collider) {
     return static_cast<double>(collider.materials.bytes()) <=
-           std::max(kMaterialsShare * static_cast<double>(collider.texelBytes()), double{kMaterialsBytesMin});
+           std::max(kMaterialsFractionMax * static_cast<double>(collider.texelBytes()),
+                    double{kMaterialsBytesMin});
 }
 
 TEST(MaterialTree, ContactsHaveTheRightMaterialInEveryFormat) {
@@ -228,7 +229,7 @@ TEST(MaterialSamples, NeighborMaterialsMatchBruteForce) {
             const glm::dvec3 off = closestOnTriangle(p, a, b, c) - glm::dvec3(p);
             least = labels[i] == label ? least : std::min(least, std::sqrt(dot(off, off)));
         }
-        ASSERT_EQ(query.otherWithin(p, radius, labels, label), least <= radius) << k;
+        ASSERT_EQ(query.hasOtherLabelWithin(p, radius, labels, label), least <= radius) << k;
         near += least <= radius ? 1 : 0;
     }
     EXPECT_GT(near, 300);
@@ -259,7 +260,7 @@ TEST(MaterialTree, SingleMaterialNeedsNoTree) {
     request.no_check = true;
     const TriangleMesh named = halves("a", "b");
     const Collider kept = bake(request, {}, named)->baked.collider;
-    request.materials = MaterialsAs::kDrop;
+    request.materials = MaterialMode::kDrop;
     const Collider none = bake(request, {}, named)->baked.collider;
     EXPECT_EQ(kept.materials.list.size(), 2U);
     EXPECT_NEAR(double{kept.materials.list[0].area_fraction}, 0.5, 1e-6);
@@ -267,7 +268,7 @@ TEST(MaterialTree, SingleMaterialNeedsNoTree) {
     EXPECT_EQ(kept.maps, none.maps);
     // On request, a single material is also kept: levels distinguish meshes by material name.
     plain.surface_names = {{0, "node", "stone"}};
-    request.materials = MaterialsAs::kKeep;
+    request.materials = MaterialMode::kKeep;
     const Collider single = bake(request, {}, plain)->baked.collider;
     ASSERT_EQ(single.materials.list.size(), 1U);
     EXPECT_EQ(single.materials.list[0].name, "stone");

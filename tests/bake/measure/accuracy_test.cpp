@@ -93,9 +93,9 @@ TEST(MeshQuery, RaysAndSegmentsHitABox) {
     const MeshQuery query = queryOf(makeBoxMesh({0, 0, 0}, {1, 1, 1}));
     EXPECT_NEAR(query.firstHit({0.1, 0.2, 5.0}, {0.0, 0.0, -2.0}).value().along, 2.0, 1e-6);
     EXPECT_FALSE(query.firstHit({0.1, 0.2, 5.0}, {0.0, 0.0, 2.0}));
-    EXPECT_FALSE(query.segmentIsFree({0.1, 0.2, 5.0}, {0.1, 0.2, 0.0}));
-    EXPECT_TRUE(query.segmentIsFree({0.1, 0.2, 5.0}, {0.1, 0.2, 1.001}));
-    EXPECT_TRUE(query.segmentIsFree({0.1, 0.2, 0.9}, {0.1, 0.2, -0.9}));
+    EXPECT_FALSE(query.isSegmentFree({0.1, 0.2, 5.0}, {0.1, 0.2, 0.0}));
+    EXPECT_TRUE(query.isSegmentFree({0.1, 0.2, 5.0}, {0.1, 0.2, 1.001}));
+    EXPECT_TRUE(query.isSegmentFree({0.1, 0.2, 0.9}, {0.1, 0.2, -0.9}));
 }
 
 // --- accuracy ---
@@ -151,7 +151,7 @@ TEST_F(AccuracyOfASphere, ExactFieldHasNoErrors) {
 }
 
 TEST_F(AccuracyOfASphere, ShiftedFieldHasTheExpectedErrors) {
-    const double sigma = samples().options.sigma_share * samples().longest_side;
+    const double sigma = samples().options.sigma_fraction * samples().longest_side;
     const auto below = [&](double r) { return 100.0 * radiusBelow(r, kRadius, sigma); };
     for (const double shift : {0.5 * sigma, 2.0 * sigma, -sigma}) {
         const FieldAccuracy accuracy = measureField(samples(), grown(shift));
@@ -426,7 +426,7 @@ TEST(Accuracy, NearPointsMatchTheFullTruth) {
     const Field smaller_ball = [](const glm::vec3& p) {
         return std::optional(FieldValue{glm::length(p) - 0.99F, glm::vec3(0.0F)});
     };
-    const WrongShare wrong = measureNear(near, smaller_ball);
+    const WrongPercent wrong = measureNear(near, smaller_ball);
     EXPECT_EQ(wrong.total(), measureField(all, smaller_ball).near.total());
     EXPECT_GT(wrong.false_outside, 10.0);
     EXPECT_EQ(wrong.false_inside, 0.0);
@@ -437,7 +437,7 @@ ShapeOptions shellOf(double thickness) {
 }
 
 /// The fraction of points that a solid classifies wrongly.
-WrongShare wrongIn(const MeshQuery& solid, const std::vector<TruthPoint>& points) {
+WrongPercent wrongIn(const MeshQuery& solid, const std::vector<TruthPoint>& points) {
     return measureNear(points, [&](const glm::vec3& p) {
         return FieldValue{solid.inside(p) ? -1.0F : 1.0F, {}};
     });

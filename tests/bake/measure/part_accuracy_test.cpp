@@ -250,7 +250,7 @@ TEST(PartAccuracy, ShellIsWrongBeyondItsThickness) {
 
     const ShapedMesh by_default = shaped(mesh, {ShapeAs::kAuto, kThick, {}, true});
     EXPECT_DOUBLE_EQ(by_default.parts.parts[1].thickness, kThick);
-    EXPECT_NEAR(by_default.parts.parts[1].right_thickness, 0.01, 1e-6);
+    EXPECT_NEAR(by_default.parts.parts[1].target_thickness, 0.01, 1e-6);
     const PartsAccuracy thick = measured(by_default, baked, fine);
     EXPECT_EQ(thick.countOf(PartVerdict::kLost), 1U);
     EXPECT_EQ(thick.parts.front().part, 1U);

@@ -110,17 +110,18 @@ TEST(SurfaceParts, OutliersAreFarAndSmall) {
     const SurfacePart body = part(glm::vec3(-5.0F), glm::vec3(5.0F), 600.0);
     const SurfacePart knob = part(glm::vec3(5.0F), glm::vec3(6.0F), 0.1);
     const SurfacePart stray = part(glm::vec3(1e6F, 0.0F, 0.0F), glm::vec3(1e6F, 1.0F, 1.0F), 0.5);
-    const OutlierParts found = straysOf({stray, body, knob});
+    const OutlierParts found = findOutlierParts({stray, body, knob});
     EXPECT_EQ(found.parts, std::vector<std::uint32_t>({0}));
     EXPECT_EQ(found.rest.max, glm::vec3(6.0F));
 
-    EXPECT_TRUE(straysOf({body, knob}).parts.empty());
-    EXPECT_TRUE(straysOf({body}).parts.empty());
-    EXPECT_TRUE(straysOf({}).parts.empty());
+    EXPECT_TRUE(findOutlierParts({body, knob}).parts.empty());
+    EXPECT_TRUE(findOutlierParts({body}).parts.empty());
+    EXPECT_TRUE(findOutlierParts({}).parts.empty());
     // Two boxes 100 km apart are a scene of two boxes, not outliers.
-    EXPECT_TRUE(straysOf({body, part(glm::vec3(1e5F), glm::vec3(1e5F + 10.0F), 600.0)}).parts.empty());
+    EXPECT_TRUE(
+        findOutlierParts({body, part(glm::vec3(1e5F), glm::vec3(1e5F + 10.0F), 600.0)}).parts.empty());
     // A small part within one body length belongs to the body.
-    EXPECT_TRUE(straysOf({body, part(glm::vec3(12.0F), glm::vec3(13.0F), 0.1)}).parts.empty());
+    EXPECT_TRUE(findOutlierParts({body, part(glm::vec3(12.0F), glm::vec3(13.0F), 0.1)}).parts.empty());
 }
 
 TEST(SurfaceParts, LabelsSplitPieces) {

@@ -15,7 +15,7 @@
 namespace relief::test {
 namespace {
 
-WrongShare wrongNear(const TriangleMesh& mesh, const Collider& collider) {
+WrongPercent wrongNear(const TriangleMesh& mesh, const Collider& collider) {
     const MeshQuery query = queryOf(mesh);
     return measureField(sampleTruth(query, {.samples = 30'000}), fieldOf(collider)).near;
 }
@@ -174,8 +174,8 @@ TEST(FittedMap, SupportingPlanesRarelyLosePoints) {
          {"front-back:dir=-x,size=52", "front-back:dir=-y,size=52", "front-back:dir=-z,size=52"}) {
         specs.push_back(required(parseMapSpec(text)));
     }
-    const WrongShare fitted = wrongNear(mesh, bakeMaps(mesh, specs));
-    const WrongShare centred = wrongNear(mesh, bakeMaps(mesh, specs, Quality::kFast));
+    const WrongPercent fitted = wrongNear(mesh, bakeMaps(mesh, specs));
+    const WrongPercent centred = wrongNear(mesh, bakeMaps(mesh, specs, Quality::kFast));
     EXPECT_LT(fitted.false_outside, 0.5 * centred.false_outside);
     EXPECT_LT(fitted.total(), centred.total());
 }

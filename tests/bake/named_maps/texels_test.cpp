@@ -241,7 +241,7 @@ TEST(ScanConverter, RayThroughSharedEdgeKeepsItsSide) {
         // A cube map centred on the first column's side. Its rays through the same edge test only two of the six faces.
         View cube = scanViewOf(mesh, "cube:size=6,compare=less,box=-2/-1.5/-1.5/2/2.5/2.5");
         cube.centre_on_surface = true;
-        ASSERT_TRUE(mayStartInside(scene, cube, RayEnd::kNear));
+        ASSERT_TRUE(centreMayBeInSolid(scene, cube, RayEnd::kNear));
         std::vector<Hit> face(36);
         ScanConverter(scene, cube).scan({0, 0, 6}, face, {});
         for (const std::uint32_t x : {2U, 3U}) {

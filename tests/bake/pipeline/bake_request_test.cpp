@@ -20,10 +20,10 @@ namespace {
 /// \param text  a command line without quotes; %XX is an escaped byte
 RecordedBake recorded(std::string_view text) {
     std::vector<RecordedOption> options;
-    for (std::string_view word = takeWord(text); !word.empty(); word = takeWord(text)) {
+    for (std::string_view word = popWord(text); !word.empty(); word = popWord(text)) {
         std::string name(word.starts_with("--") ? word.substr(2) : word);
         std::ranges::replace(name, '-', '_');
-        std::string value(takeWord(text));
+        std::string value(popWord(text));
         for (std::size_t at = value.find('%'); at != std::string::npos; at = value.find('%', at + 1)) {
             value.replace(at, 3, 1, static_cast<char>(std::stoi(value.substr(at + 1, 2), nullptr, 16)));
         }
@@ -160,10 +160,10 @@ TEST(RecordedBake, IsOneShellCommand) {
     EXPECT_TRUE(recorded(named).understood);
     EXPECT_EQ(wordsOf(named), " --as solid --as 'glass '\\''top'\\'';=shell' --as wheel=auto --as -x=shell");
     std::string many;
-    for (std::size_t i = 0; i < 2 * kAskedNamesMax; ++i) {
+    for (std::size_t i = 0; i < 2 * kSelectedNamesMax; ++i) {
         many += " --as n" + std::to_string(i) + "=solid";
     }
-    EXPECT_EQ(recorded(many).request.as.size(), kAskedNamesMax);
+    EXPECT_EQ(recorded(many).request.as.size(), kSelectedNamesMax);
 }
 
 // In a container and as text.
@@ -185,7 +185,7 @@ TEST(RecordedBake, NamesRoundTrip) {
     request.map = {"cube:size=8"};
     BakeResult baked = required(bake(request, {}, makeBoxMesh({0, 0, 0}, {1, 1, 1})));
     Collider& collider = baked.baked.collider;
-    for (const std::string& word : asWords(report)) {
+    for (const std::string& word : asOptionWords(report)) {
         collider.provenance.options.push_back({"as", word});
     }
     const Collider back = required(readContainer(required(writeContainer(collider))));
@@ -198,7 +198,7 @@ TEST(RecordedBake, NamesRoundTrip) {
 }
 
 TEST(RecordedBake, RecordsWhetherVoidsAreFilled) {
-    const auto checkedVoids = [](std::optional<VoidsAs> voids, bool forget) {
+    const auto checkedVoids = [](std::optional<VoidMode> voids, bool forget) {
         BakeRequest request;
         request.budget = 20'000;
         request.thickness = Thickness{0.06, false};
@@ -214,7 +214,7 @@ TEST(RecordedBake, RecordsWhetherVoidsAreFilled) {
         return required(check(check_request, std::move(collider), makeRooms())).shape.voids;
     };
     EXPECT_EQ(checkedVoids({}, false), 1U);
-    EXPECT_EQ(checkedVoids(VoidsAs::kKeep, false), 0U);
+    EXPECT_EQ(checkedVoids(VoidMode::kKeep, false), 0U);
     EXPECT_EQ(checkedVoids({}, true), 0U);  // baked by an older version
 }
 

@@ -71,10 +71,10 @@ TEST(RecipeReport, SharedWarningIsReportedOnce) {
 TEST(RecipeReport, MissingUnitIsReportedOnce) {
     const auto told = [](const std::string& name, float side) {
         return baked(name, 1,
-                     {name + ".obj: " + *forgottenUnit({glm::vec3(0.0F), glm::vec3(side)}),
+                     {name + ".obj: " + *missingUnitText({glm::vec3(0.0F), glm::vec3(side)}),
                       name + ".obj: " + std::to_string(int(side)) + " % is wrong"});
     };
-    const std::string unit = *forgottenUnit({glm::vec3(0.0F), glm::vec3(1800.0F)});
+    const std::string unit = *missingUnitText({glm::vec3(0.0F), glm::vec3(1800.0F)});
     EXPECT_EQ(warningLines({told("a", 1800.0F), told("b", 200.0F), told("c", 300.0F)}),
               (std::vector<std::string>{"3 assets (a.relief, b.relief, c.relief): first of several: " + unit,
                                         "a.relief: 1800 % is wrong", "b.relief: 200 % is wrong",
@@ -85,7 +85,7 @@ TEST(RecipeReport, MissingUnitIsReportedOnce) {
 TEST(RecipeReport, LevelWarningsWithDifferentNumbersAreReportedOnce) {
     const std::vector<std::string> chair = {"chair: 5.1 % wrong with 4.1 kB"};
     const std::vector<std::string> lamp = {"lamp: 12 % wrong with 5 kB", "lamp: open"};
-    const std::vector<OwnWarnings> all = {{"chair", "chair", chair}, {"lamp", "lamp", lamp}};
+    const std::vector<OwnerWarnings> all = {{"chair", "chair", chair}, {"lamp", "lamp", lamp}};
     EXPECT_EQ(warningLines(all, "meshes", true),
               (std::vector<std::string>{"2 meshes (chair, lamp): first of several: 5.1 % wrong with 4.1 kB",
                                         "lamp: open"}));

@@ -99,7 +99,7 @@ TEST(SealedVoid, IsFilled) {
 TEST(SealedVoid, HasNoWindowAndCanStayHollow) {
     EXPECT_TRUE(isFull(makeRooms()));
     EXPECT_FALSE(isFull(makeRooms(0.08)));
-    EXPECT_FALSE(isFull(makeRooms(), {.voids = VoidsAs::kKeep}));
+    EXPECT_FALSE(isFull(makeRooms(), {.voids = VoidMode::kKeep}));
     EXPECT_FALSE(isFull(makeRooms(), {.as = ShapeAs::kShell}));
 }
 
@@ -153,11 +153,11 @@ TEST(NamedShape, NamesClassifyParts) {
     EXPECT_TRUE(inside(told, tub));
     EXPECT_FALSE(inside(told, block));
     EXPECT_TRUE(inside(told, {4.98F, 0.2F, 0.3F}));
-    EXPECT_EQ(asWords(told.report), (std::vector<std::string>{"tub=solid", "block=shell"}));
+    EXPECT_EQ(asOptionWords(told.report), (std::vector<std::string>{"tub=solid", "block=shell"}));
     // Unnamed parts use the default.
     const ShapedMesh rest = shapedByName(makeTwoBoxes(), {{"tub", ShapeAs::kAuto}}, ShapeAs::kShell);
     expectKinds(rest.report, 0, 0, 2, 0);
-    EXPECT_EQ(asWords(rest.report), (std::vector<std::string>{"shell", "tub=auto"}));
+    EXPECT_EQ(asOptionWords(rest.report), (std::vector<std::string>{"shell", "tub=auto"}));
 }
 
 TEST(NamedShape, NamedWallIsCutFromItsSurface) {
@@ -256,7 +256,7 @@ TEST(ShapeOptions, ParseFromTheCommandLine) {
                             {"caf\xc3\xa9\xef\xbf\xbd", ShapeAs::kShell}};
     EXPECT_EQ(options.named, expected);
     EXPECT_EQ(parseShapeOptions({})->as, ShapeAs::kAuto);
-    const std::string longest(kAskedNameBytesMax, 'x');
+    const std::string longest(kSelectedNameBytesMax, 'x');
     EXPECT_TRUE(parseShapeOptions({longest + "=solid"}));
     using Words = std::vector<std::string>;
     const Words once = {"", "sheet", "=solid", "a=", "a=sheet", "solid=a", longest + "x=solid", "\n"};
@@ -271,7 +271,7 @@ TEST(ShapeOptions, ParseFromTheCommandLine) {
         EXPECT_EQ(wrong.error().message.find('\n'), std::string::npos);
     }
     std::vector<std::string> many;
-    for (std::size_t i = 0; i <= kAskedNamesMax; ++i) {
+    for (std::size_t i = 0; i <= kSelectedNamesMax; ++i) {
         many.push_back("n" + std::to_string(i) + "=solid");
     }
     EXPECT_EQ(parseShapeOptions(many).error().code, ErrorCode::kLimit);

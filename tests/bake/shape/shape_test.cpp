@@ -156,7 +156,7 @@ TEST(Shape, SolidIsUnchanged) {
     const ShapedMesh shape = shaped(ball);
     expectKinds(shape.report, 1, 0, 0, 0);
     EXPECT_TRUE(shape.mesh->triangles == ball.triangles && shape.mesh->positions == ball.positions);
-    EXPECT_TRUE(asWords(shape.report).empty() && !thicknessOf(shape.report));
+    EXPECT_TRUE(asOptionWords(shape.report).empty() && !thicknessOf(shape.report));
     // A missing triangle is a hole.
     const ShapedMesh holed =
         shaped(finished(ball.positions, {ball.triangles.begin() + 1, ball.triangles.end()}));
@@ -493,7 +493,7 @@ TEST(Shape, TwoSidedSheetIsOneSheet) {
     const TriangleMesh plane = makePlane(0.0F, 4);
     const ShapedMesh shape = shaped(joined({plane, reversed(plane)}));
     expectKinds(shape.report, 0, 0, 1, 0);
-    EXPECT_EQ(formText(thicknessOf(shape.report).value()), "0.05");
+    EXPECT_EQ(thicknessText(thicknessOf(shape.report).value()), "0.05");
     EXPECT_EQ(shape.report.coincident_triangles, plane.triangles.size());
     const MeshQuery query = queryOf(shape.mesh);
     EXPECT_TRUE(query.inside({0.1F, 0.02F, 0.2F}));

@@ -22,9 +22,9 @@ TEST(SizeReport, BoxHasItsUnit) {
 }
 
 TEST(SizeReport, MissingUnitIsSuggestedWithTheResultingSizes) {
-    EXPECT_FALSE(forgottenUnit(box(99, 99, 99)));
-    EXPECT_FALSE(forgottenUnit(Bounds()));
-    const auto person = forgottenUnit(box(50, 180, 30));
+    EXPECT_FALSE(missingUnitText(box(99, 99, 99)));
+    EXPECT_FALSE(missingUnitText(Bounds()));
+    const auto person = missingUnitText(box(50, 180, 30));
     ASSERT_TRUE(person);
     EXPECT_NE(person->find("with --unit cm 0.5 x 1.8 x 0.3 m, with --unit mm 0.05 x 0.18 x 0.03 m"),
               std::string::npos)
@@ -38,7 +38,7 @@ TEST(PartCure, NamedMapsNeedResolutionNotBudget) {
     collider.bounds = {glm::vec3(-2.0F), glm::vec3(2.0F)};
     SurfacePart rod;
     rod.bounds = {glm::vec3(0.0F), {1.0F, 0.046875F, 0.046875F}};
-    EXPECT_EQ(partCure(rod, collider),
+    EXPECT_EQ(partFix(rod, collider),
               "its texels are 0.062 wide; texels of 0.016 need --resolution 256 (--map: size=256), or a "
               "separate bake of this part");
 }
@@ -52,7 +52,7 @@ TEST(PartCure, PatchesNeedTheOptionOfTheirBake) {
     rod.bounds = {glm::vec3(0.0F), {1.0F, 0.3F, 0.3F}};
     const auto cure = [&](std::vector<RecordedOption> options) {
         collider.provenance.options = std::move(options);
-        return partCure(rod, collider);
+        return partFix(rod, collider);
     };
     EXPECT_NE(cure({{"map", "patches:budget=4000"}, {"budget", "4000"}}).find("try --budget 0.1MB, or"),
               std::string::npos);

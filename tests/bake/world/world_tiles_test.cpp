@@ -241,12 +241,12 @@ TEST_F(WorldTiles, OnlyChangesAreBakedDeterministically) {
 }
 
 TEST(TilesMost, KeepsWorldsWithinTheLimits) {
-    EXPECT_EQ(tilesMost(1, 1), 64U);
-    EXPECT_EQ(tilesMost(64, 64), 64U);
-    EXPECT_EQ(tilesMost(65, 65), 32U);
-    EXPECT_EQ(tilesMost(kWorldCollidersMax, kWorldCollidersMax), 1U);
-    EXPECT_EQ(tilesMost(2, kWorldBodiesMax), 1U);
-    EXPECT_EQ(tilesMost(2, 10'000), 4U);
+    EXPECT_EQ(maxTiles(1, 1), 64U);
+    EXPECT_EQ(maxTiles(64, 64), 64U);
+    EXPECT_EQ(maxTiles(65, 65), 32U);
+    EXPECT_EQ(maxTiles(kWorldCollidersMax, kWorldCollidersMax), 1U);
+    EXPECT_EQ(maxTiles(2, kWorldBodiesMax), 1U);
+    EXPECT_EQ(maxTiles(2, 10'000), 4U);
 }
 
 }  // namespace

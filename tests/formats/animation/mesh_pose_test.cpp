@@ -251,7 +251,7 @@ TEST(MeshParts, GroupsAndMaterialsByName) {
     for (int i = 0; i < 30; ++i) {
         many.push_back("name " + std::to_string(i));
     }
-    const std::string listed = noSuchPart("group", "x", many);
+    const std::string listed = partNotFound("group", "x", many);
     EXPECT_NE(listed.find("'name 19', …"), std::string::npos) << listed;
     EXPECT_EQ(listed.find("name 20"), std::string::npos) << listed;
 }

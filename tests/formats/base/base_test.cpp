@@ -106,11 +106,11 @@ TEST(Split, KeepsEmptyParts) {
 
 TEST(Words, TakesLinesAndWords) {
     std::string_view text = "a b\r\n\n \tlast";
-    EXPECT_EQ(takeLine(text), "a b");
-    EXPECT_EQ(takeLine(text), "");
-    EXPECT_EQ(takeWord(text), "last");
-    EXPECT_EQ(takeWord(text), "");
-    EXPECT_EQ(takeLine(text), "");
+    EXPECT_EQ(popLine(text), "a b");
+    EXPECT_EQ(popLine(text), "");
+    EXPECT_EQ(popWord(text), "last");
+    EXPECT_EQ(popWord(text), "");
+    EXPECT_EQ(popLine(text), "");
     EXPECT_EQ(lowerCase("\xc3\x84.OBJ-Z@[z"), "\xc3\x84.obj-z@[z");
     EXPECT_EQ(oneCleanLine(" a\nb\x1b \xff\t"), "a b  \xef\xbf\xbd");
     EXPECT_EQ(parseDouble("+1e300"), 1e300);

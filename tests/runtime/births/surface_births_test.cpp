@@ -222,14 +222,14 @@ TEST(EmitterSurface, EmittersThrowAlongTheNormalAndAddTheSurfaceVelocity) {
     EXPECT_TRUE(emitter.isDue(0.1));
     EXPECT_EQ(emitter.emit(0.1, 1000, births), 0U);
     ASSERT_EQ(births.size(), 300U);
-    ASSERT_EQ(emitter.placeVelocities().size(), births.size());
+    ASSERT_EQ(emitter.birthSurfaceVelocities().size(), births.size());
     EmitterMotion motion;
     // Scaled and rotated like its body, whose own velocity is added.
     const glm::quat quarter = glm::angleAxis(float(kPi) / 2, glm::vec3(0, 1, 0));
     motion.body = {{0.0, {{0, 0, 0}, quarter, 3.0F}}, {1.0, {{0, 5, 0}, quarter, 3.0F}}};
     motion.inherit = 0.5F;
     const std::vector<Birth> own = births;
-    carry(motion, 0.5, births, emitter.placeVelocities());
+    carry(motion, 0.5, births, emitter.birthSurfaceVelocities());
     for (std::size_t i = 0; i < births.size(); ++i) {
         EXPECT_NEAR(glm::length(own[i].velocity), 2.0F, 1e-5F);
         const glm::vec3 at_end = own[i].position + own[i].age * glm::vec3(1, 0, 2);

@@ -109,7 +109,7 @@ inline Result<std::vector<FieldSample>> FieldQuery::evaluate(std::span<const glm
             std::copy_n(&batch[i].x, 3, &texels[4 * i]);
         }
 
-        forgetGlErrors();
+        clearGlErrors();
         const GlTexture input = makeTexture2D(GL_RGBA32F, kWidth, height, GL_RGBA, GL_FLOAT, texels.data());
         const GlTexture normal_distance = makeTexture2D(GL_RGBA32F, kWidth, height, GL_RGBA, GL_FLOAT);
         const GlTexture map = makeTexture2D(GL_RGBA32F, kWidth, height, GL_RGBA, GL_FLOAT);

@@ -260,7 +260,7 @@ class GlFaultTest : public GlTest {
     std::vector<Work> smallWork() {
         const PictureMesh mesh = tetrahedron();
         const auto live = [=]() -> Result<LiveCollider> {
-            Collider frames = RELIEF_TRY(liveFrames({glm::vec3(0.0F), glm::vec3(1.0F)}, 32));
+            Collider frames = RELIEF_TRY(liveMaps({glm::vec3(0.0F), glm::vec3(1.0F)}, 32));
             return LiveCollider::create(mesh.positions, trianglesOf(mesh), std::move(frames));
         };
         const auto wobble = [=] {
@@ -386,7 +386,7 @@ TEST_P(GlFaultTest, ReadBacksReportAReset) {
 // A lost context may return errors forever.
 TEST_P(GlFaultTest, EndlessErrorsTerminate) {
     const Replaced errors(epoxy_glGetError, &endlessError);
-    forgetGlErrors();
+    clearGlErrors();
     expectFails(outcome(WorldTextures::create(collider_)), ErrorCode::kFailure, "0x0507");
 }
 

@@ -21,7 +21,7 @@ inline AnimatedMesh tubeWithMaterials(const char* lower, const char* upper) {
 
 /// Its maps at rest are empty, because animated colliders draw their own.
 inline Collider animatedContainer(const AnimatedMesh& mesh) {
-    Collider collider = *animatedFrames(poseExtent(mesh).box_size, 16);
+    Collider collider = *animatedMaps(poseExtent(mesh).box_size, 16);
     for (DepthMap& map : collider.maps) {
         map.texels.resize(map.texelBytes());
     }

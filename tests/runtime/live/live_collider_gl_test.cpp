@@ -66,7 +66,7 @@ class LiveColliderGlTest : public CollisionTest {
   protected:
     void makeLive(const AnimatedMesh& mesh, const Bounds& box, std::uint32_t resolution,
                   const Pose& pose = {}) {
-        auto live = LiveCollider::create(mesh.positions, mesh.triangles, liveFrames(box, resolution).value());
+        auto live = LiveCollider::create(mesh.positions, mesh.triangles, liveMaps(box, resolution).value());
         ASSERT_TRUE(live) << live.error().message;
         live_.emplace(std::move(*live));
         const ColliderBody body{.collider = &live_->frames(), .pose = pose, .live = true};
@@ -304,7 +304,7 @@ TEST_P(LiveColliderGlTest, PositionsMayComeFromACallerBuffer) {
 // A live body beside a static one, with another layout and with the same: each has the field that it has on its own.
 TEST_P(LiveColliderGlTest, WorksBesideStaticBodies) {
     const AnimatedMesh mesh = sphere(0.3F);
-    auto live = LiveCollider::create(mesh.positions, mesh.triangles, liveFrames(cube(0.5F), 64).value());
+    auto live = LiveCollider::create(mesh.positions, mesh.triangles, liveMaps(cube(0.5F), 64).value());
     ASSERT_TRUE(live) << live.error().message;
     const Collider half = analytic::frontBackCollider(analytic::sphere({0, 0, 0}, 0.25), 48);
     Collider single;
@@ -351,12 +351,12 @@ TEST_P(LiveArgumentsGlTest, MisuseIsRejected) {
     EXPECT_FALSE(live_->setPositions(std::span(plate.positions).first(3)));
     EXPECT_FALSE(live_->setPositions(GLuint{0}));
     EXPECT_FALSE(LiveCollider::create(plate.positions, plate.triangles, {}));
-    Collider other = *liveFrames(cube(0.5F), 32);
+    Collider other = *liveMaps(cube(0.5F), 32);
     other.maps[1].format = MapFormat::kFrontBackHalf;
     EXPECT_FALSE(LiveCollider::create(plate.positions, plate.triangles, other));
-    EXPECT_FALSE(liveFrames(cube(0.5F), 2));
-    EXPECT_FALSE(liveFrames({}, 64));
-    EXPECT_FALSE(liveFrames({glm::vec3(1.0F), glm::vec3(1.0F)}, 64));
+    EXPECT_FALSE(liveMaps(cube(0.5F), 2));
+    EXPECT_FALSE(liveMaps({}, 64));
+    EXPECT_FALSE(liveMaps({glm::vec3(1.0F), glm::vec3(1.0F)}, 64));
 }
 
 }  // namespace

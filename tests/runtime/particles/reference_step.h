@@ -45,11 +45,11 @@ inline float dot(const glm::vec3& a, const glm::vec3& b) {
 }
 
 /// Tolerance of decisions: texels for borders, fractions of a volume for its ends and for votes.
-inline constexpr float kTexelHair = 1e-3F;
-inline constexpr float kVolumeHair = 1e-6F;
+inline constexpr float kTexelTolerance = 1e-3F;
+inline constexpr float kVolumeTolerance = 1e-6F;
 
 inline bool isAmbiguous(const Collider& collider, const glm::vec3& p) {
-    const auto nearInteger = [](float x) { return std::abs(x - std::round(x)) < kTexelHair; };
+    const auto nearInteger = [](float x) { return std::abs(x - std::round(x)) < kTexelTolerance; };
     for (const DepthMap& map : collider.maps) {
         const glm::vec3 q = map.object_to_map.apply(p);
         if (map.projection() == Projection::kCube) {
@@ -57,8 +57,8 @@ inline bool isAmbiguous(const Collider& collider, const glm::vec3& p) {
             const CubeCoordinates at = cubeCoordinates(q);
             const auto size = static_cast<float>(map.width);
             for (int i = 0; i < 3; ++i) {
-                if (std::abs(a[i] - a[(i + 1) % 3]) < kVolumeHair * 10.0F ||
-                    std::abs(a[i] - 1.0F) < kVolumeHair) {
+                if (std::abs(a[i] - a[(i + 1) % 3]) < kVolumeTolerance * 10.0F ||
+                    std::abs(a[i] - 1.0F) < kVolumeTolerance) {
                     return true;
                 }
             }
@@ -66,12 +66,12 @@ inline bool isAmbiguous(const Collider& collider, const glm::vec3& p) {
                 return true;
             }
         } else if (nearInteger(q.x * static_cast<float>(map.width)) ||
-                   nearInteger(q.y * static_cast<float>(map.height)) || std::abs(q.z) < kVolumeHair ||
-                   std::abs(q.z - 1.0F) < kVolumeHair) {
+                   nearInteger(q.y * static_cast<float>(map.height)) || std::abs(q.z) < kVolumeTolerance ||
+                   std::abs(q.z - 1.0F) < kVolumeTolerance) {
             return true;
         }
         const std::optional<Vote> v = vote(map, p);
-        if (v && std::abs(v->distance) < 4.0F * kVolumeHair * collider.bounds.longestSide()) {
+        if (v && std::abs(v->distance) < 4.0F * kVolumeTolerance * collider.bounds.longestSide()) {
             return true;
         }
     }
@@ -106,7 +106,7 @@ inline ReferenceSolid solidAt(const ReferenceSettings& settings, const glm::vec3
     for (const ReferenceSolid& one : all) {
         best = one.distance < best.distance ? one : best;
     }
-    const float hair = kVolumeHair * (2.0F + std::abs(settings.ground.value_or(0.0F)));
+    const float hair = kVolumeTolerance * (2.0F + std::abs(settings.ground.value_or(0.0F)));
     for (const ReferenceSolid& one : all) {
         if (rivals != nullptr && std::abs(one.distance - best.distance) < hair) {
             ++*rivals;
@@ -144,7 +144,7 @@ inline ReferenceState referenceStep(const ReferenceSettings& settings, const glm
                         isAmbiguous(*body.collider, toObject(body.before, p));
     }
     if (settings.ground) {
-        const float hair = kVolumeHair * (2.0F + std::abs(*settings.ground));
+        const float hair = kVolumeTolerance * (2.0F + std::abs(*settings.ground));
         out.ambiguous = out.ambiguous || std::abs(p_star.y - *settings.ground) < hair ||
                         std::abs(p.y - *settings.ground) < hair;
     }

@@ -403,7 +403,7 @@ TEST_P(ColliderLightGlTest, LightFollowsDeformingBodies) {
     box.add(glm::vec3(-1.2F, -0.3F, -0.7F));
     box.add(glm::vec3(1.2F, 0.3F, 0.7F));
     LiveCollider live = required(
-        LiveCollider::create(slab(0.3F).positions, slab(0.3F).triangles, required(liveFrames(box, 128))));
+        LiveCollider::create(slab(0.3F).positions, slab(0.3F).triangles, required(liveMaps(box, 128))));
     ColliderBody body;
     body.collider = &live.frames();
     body.live = true;

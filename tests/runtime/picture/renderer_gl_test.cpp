@@ -277,13 +277,13 @@ class MeshRendererGlTest : public GlTest {
         camera_.far_plane = 200.0F;
     }
 
-    void draw(const MeshStyle& style, const std::vector<MeshPlace>& places) {
+    void draw(const MeshStyle& style, const std::vector<MeshInstance>& places) {
         const auto drawn =
             renderer_.draw({camera_, frame_.target().aspect()}, style, places, around_, frame_.target());
         ASSERT_TRUE(drawn) << drawn.error().message;
         rgb_ = frame_.read();
     }
-    [[nodiscard]] std::vector<MeshPlace> meadow() const { return {{0, {}, false}, {1, {}, false}}; }
+    [[nodiscard]] std::vector<MeshInstance> meadow() const { return {{0, {}, false}, {1, {}, false}}; }
 
     /// The mean of 3 × 3 pixels around a point of the world.
     [[nodiscard]] MeanRgb at(const glm::vec3& p) const {
@@ -377,7 +377,7 @@ TEST_P(MeshRendererGlTest, FeetLeavePrintsOnlyInSnow) {
     const glm::vec3 lifted(3.0F, 0.3F, 3.5F);
     const glm::vec3 untouched(4.5F, 0.0F, 1.0F);
     const glm::vec3 away(-3.0F, 5.0F, 1.0F);
-    std::vector<MeshPlace> places = meadow();
+    std::vector<MeshInstance> places = meadow();
     places.push_back({2, {pressed, {1.0F, 0.0F, 0.0F, 0.0F}, 1.0F}, true});
     ASSERT_TRUE(renderer_.press(places, 1.0F, around_));  // before the first picture
     for (const glm::vec3& place : {open_, lifted, away}) {
@@ -425,7 +425,7 @@ TEST_P(MeshRendererGlTest, VerticesMove) {
 }
 
 TEST_P(MeshRendererGlTest, InvalidMeshesAreErrors) {
-    const std::vector<MeshPlace> places{{3, {}, false}};
+    const std::vector<MeshInstance> places{{3, {}, false}};
     EXPECT_EQ(renderer_.draw({camera_, 1.0F}, {}, places, around_, frame_.target()).error().code,
               ErrorCode::kUsage);
     std::vector<PictureMesh> meshes{box({0, 0, 0}, {1, 1, 1}, kRoofRed)};

@@ -326,7 +326,7 @@ TEST_F(DrawnMeshesTest, MeshesAreReadOnceAndDrawnForEachBody) {
     ASSERT_EQ(meshes->places.size(), 4U);
     EXPECT_FALSE(meshes->floor) << "the scene has no ground";
     EXPECT_EQ(meshes->places[2].mesh, meshes->places[3].mesh) << "door and gate share a mesh";
-    const std::vector<MeshPlace> places = meshPlaces(scene, *meshes, 0.0);
+    const std::vector<MeshInstance> places = meshPlaces(scene, *meshes, 0.0);
     EXPECT_EQ(places[0].pose.position, glm::vec3(0.0F, 5.0F, 0.0F));
     EXPECT_EQ(places[2].pose, scene.scene.colliders[2].pose);
     EXPECT_FALSE(places[2].moves);

@@ -50,7 +50,7 @@ TEST(StreamPlan, RequestsBodiesInRangeNearestFirst) {
     StreamPlan plan(bodies, kColliders);
     const std::vector<PointOfInterest> points = {{{10.0F, -5.0F, 0.0F}, 12.0F},
                                                  {{-30.0F, 0.0F, 20.0F}, 25.0F}};
-    plan.lookAtAll(points);
+    plan.measureAll(points);
     std::vector<float> nearest(kColliders, 1e9F);
     for (const StreamBody& body : bodies) {
         for (const PointOfInterest& point : points) {
@@ -81,22 +81,22 @@ TEST(StreamPlan, PartialUpdatesMatchAFullUpdate) {
     StreamPlan parts(bodies, kColliders);
     const std::vector<PointOfInterest> points = {{{0.0F, 0.0F, 0.0F}, 20.0F}, {{-30.0F, 0.0F, 20.0F}, 5.0F}};
     const std::vector<PointOfInterest> later = {{{90.0F, 0.0F, 0.0F}, 20.0F}};
-    whole.lookAtAll(points);
+    whole.measureAll(points);
     ASSERT_FALSE(whole.wanted().empty());
     int looks = 1;
-    bool fresh = parts.look(points, 100);
+    bool fresh = parts.measureSome(points, 100);
     while (!fresh) {
         EXPECT_TRUE(parts.wanted().empty());
-        fresh = parts.look(later, 100);
+        fresh = parts.measureSome(later, 100);
         ++looks;
     }
     EXPECT_EQ(looks, 6) << "300 bodies, 50 at a time";
     EXPECT_TRUE(std::ranges::equal(parts.wanted(), whole.wanted()));
-    while (!parts.look(later, 100)) {
+    while (!parts.measureSome(later, 100)) {
     }
-    whole.lookAtAll(later);
+    whole.measureAll(later);
     EXPECT_TRUE(std::ranges::equal(parts.wanted(), whole.wanted()));
-    EXPECT_TRUE(parts.look({}, 1'000'000));
+    EXPECT_TRUE(parts.measureSome({}, 1'000'000));
     EXPECT_TRUE(parts.wanted().empty()) << "nothing is wanted without points";
 }
 

@@ -17,13 +17,13 @@
 
 namespace relief {
 
-/// Marks the names of LodGroup nodes in the result of markedFbx(), as a suffix. It has the length of "LodGroup".
+/// Marks the names of LodGroup nodes in the result of patchedFbx(), as a suffix. It has the length of "LodGroup".
 inline constexpr std::string_view kLodGroupMark = "\x02LodGrp\x02";
 
 /// Patches an FBX document, binary or text, without changing its length, so that assimp exposes hidden nodes and levels
 /// of detail. Visibility becomes numeric metadata ("Visibility", "Visibility Inheritance"), and the names of LodGroup
 /// nodes get the suffix kLodGroupMark. \return nullopt if the document needs no patch.
-[[nodiscard]] std::optional<std::vector<std::byte>> markedFbx(std::span<const std::byte> document);
+[[nodiscard]] std::optional<std::vector<std::byte>> patchedFbx(std::span<const std::byte> document);
 
 /// Whether curves animate the visibility of nodes in an FBX document.
 [[nodiscard]] bool fbxAnimatesVisibility(std::span<const std::byte> document);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/import/source_marks.h"
+#include "bake/import/source_properties.h"
 
 #include <algorithm>
 #include <cmath>
@@ -311,8 +311,8 @@ void addHidden3ds(std::string_view text, std::uint16_t parent, const std::string
 
 /// Parses the whole text, ignoring surrounding white space, as a finite number.
 std::optional<double> finiteNumber(std::string_view text) {
-    const std::string_view word = takeWord(text);
-    const std::optional<double> value = takeWord(text).empty() ? parseDouble(word) : std::nullopt;
+    const std::string_view word = popWord(text);
+    const std::optional<double> value = popWord(text).empty() ? parseDouble(word) : std::nullopt;
     return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
@@ -336,7 +336,7 @@ FbxUnit binaryUnit(std::string_view text) {
 
 }  // namespace
 
-std::optional<std::vector<std::byte>> markedFbx(std::span<const std::byte> document) {
+std::optional<std::vector<std::byte>> patchedFbx(std::span<const std::byte> document) {
     std::string text(textOf(document));
     const bool typed = typeAsNumber(text, "Visibility");
     const bool inherits = typeAsNumber(text, "Visibility Inheritance");
@@ -380,7 +380,7 @@ std::optional<FbxUnit> fbxUnit(std::span<const std::byte> document) {
     if (isBinary(text)) {
         return binaryUnit(rest);
     }
-    rest = takeLine(rest);
+    rest = popLine(rest);
     rest.remove_prefix(std::min(rest.find_first_not_of(", \t"), rest.size()));
     return FbxUnit{cleanUtf8(trimmed(rest).substr(0, kQuotedMax)), finiteNumber(rest)};
 }
@@ -401,7 +401,7 @@ SourceFrame colladaFrame(std::span<const std::byte> document) {
                            "' metres, which is not a length";
     }
     std::string_view rest = asset.child("up_axis").child_value();
-    const std::string_view axis = takeWord(rest);
+    const std::string_view axis = popWord(rest);
     if (axis == "X_UP" || axis == "Z_UP") {
         frame.up = axis == "X_UP" ? UpAxis::kPlusX : UpAxis::kPlusZ;
     } else if (!axis.empty() && axis != "Y_UP") {
