@@ -39,7 +39,7 @@ enum class Compare : std::uint8_t { kLess = 0, kGreater = 1, kBoth = 2 };
 
 [[nodiscard]] const char* compareName(Compare compare);  ///< "less", "greater" or "both"
 
-/// How a texel becomes a vote: the distance along the ray to a surface that faces the viewer (as in the paper), or the
+/// How a texel becomes a vote: the distance along the ray to the stored depth (the paper: Kolb et al. 2004), or the
 /// distance to the plane through the surface point at the texel's centre. Encoders of planes use plane.h.
 enum class Decode : std::uint8_t { kProjected = 0, kPlane = 1 };
 
@@ -62,8 +62,8 @@ struct Affine {
 /// useful depth. For walls seen edge-on, writers store a plane that faces the viewer instead.
 inline constexpr float kPlaneCosineMin = 1.0F / 32.0F;
 
-/// Writers also rasterize surfaces up to this fraction of the depth range outside the volume, with clamped depths.
-/// Rounding then never drops a surface that lies in a face of the volume.
+/// Writers also rasterize surfaces that miss the volume by at most this fraction of its depth range, and clamp the
+/// depths. Rounding then never drops a surface that lies in a face of the volume.
 inline constexpr double kDepthSlack = 1e-6;
 
 /// If the |cosine| between a triangle's normal and the ray is at most this, writers clamp depths to the range of the

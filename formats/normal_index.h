@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Encodes unit vectors in two bytes: the L1 (octahedral) parametrisation of the paper, section 4.2, equation 3.
+// Encodes unit vectors in two bytes: the L1 (octahedral) parametrisation of Kolb et al. 2004, section 4.2, equation 3.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ struct NormalIndex {
 /// Returns the unit vector of an index. Defined for every pair of bytes; never NaN.
 [[nodiscard]] glm::vec3 decodeNormal(NormalIndex index);
 
-/// Returns decodeNormal() of all packed indices; computed on the first call because a bake decodes millions.
+/// Returns a table of decodeNormal() by packed index, because a bake decodes millions. Computed on the first call.
 [[nodiscard]] const std::array<glm::vec3, 65536>& decodedNormals();
 
 /// Returns the index with the lowest s and t of the four that surround a vector in the square. The other three are one

@@ -9,8 +9,8 @@
 
 namespace relief {
 
-/// The ray through the centre of a texel, in object space. A surface point is origin + depth · direction, for every
-/// compare and both surfaces. The direction is not normalized.
+/// The ray through the centre of a texel, in object space. A surface point is origin + depth · direction, for the
+/// nearest and the farthest surface. The direction is not normalized.
 struct TexelRay {
     glm::dvec3 origin;     ///< point at depth 0: on the near plane; for a cube, its centre
     glm::dvec3 direction;  ///< object units per unit of depth
@@ -19,7 +19,7 @@ struct TexelRay {
 };
 
 /// Returns the ray through the centre of a texel.
-/// \param map   a valid frame (validate.h); texels may be missing.
+/// \param map   must pass validateFrame(); `texels` may be empty.
 /// \param face  0 for an orthographic map.
 [[nodiscard]] TexelRay texelRay(const DepthMap& map, std::uint32_t face, std::uint32_t x, std::uint32_t y);
 

@@ -183,8 +183,8 @@ void addBake(CLI::App& app, Action& action) {
         withDetails("Bake a level into this folder: a collider for each distinct mesh, and world.json, "
                     "which places them",
                     "Each distinct mesh is baked once, however many nodes place it. A repeated run "
-                    "skips meshes that are up to date. It excludes options that choose maps, such as --map, "
-                    "--holes keep and --max-error; all other options apply to every mesh."))
+                    "skips meshes that are up to date. Options that choose maps, such as --map, --holes keep "
+                    "and --max-error, are excluded; all others apply to every mesh."))
         ->valueText("DIR")
         ->excludes("--recipe");
     addKeyDetails(verb);

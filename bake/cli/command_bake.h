@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `relief bake` bakes one mesh; with --heights, a height map; with --world, a level or ground tiles into a folder; with
-// --recipe, the assets of a file. Each of the four has its own source file.
+// --recipe, all assets that the recipe lists. Each of the four has its own source file.
 #pragma once
 
 #include <cstdint>
@@ -49,7 +49,7 @@ struct BakeCommand {
 /// Writes the file of --depfile, if there is one. Errors: those of writeDepfile.
 [[nodiscard]] Result<void> writeDepfile(const BakeCommand& command, const std::string& target,
                                         const std::vector<InputFile>& inputs);
-/// Prints a report: as JSON to standard output, or as text to standard error, unless --quiet is set.
+/// Prints a report: as JSON to standard output, or (unless --quiet is set) as text to standard error.
 /// \param text  called only if the text is printed
 [[nodiscard]] Result<void> printReport(const BakeCommand& command, FieldRef json,
                                        const std::function<std::string()>& text);

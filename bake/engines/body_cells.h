@@ -23,8 +23,8 @@ static_assert(sizeof(EngineBody) == 112);
 /// Bodies in a row of their texture.
 inline constexpr std::size_t kBodiesPerRow = 256;
 
-/// Returns a grid over the boxes of the bodies. Each box is widened by half a cell, so that balls find all bodies near
-/// them. The grid consists of 32-bit words:
+/// Returns a grid over the boxes of the bodies. Each cell lists the bodies whose boxes are within half a cell of it.
+/// The grid consists of 32-bit words:
 /// - the numbers of cells along x, y and z; the number of entries;
 /// - as floats, the minimum corner, and the edge of a cell;
 /// - the index of the first entry of each cell, x fastest, and of the end;

@@ -76,7 +76,7 @@ std::string readPairs(std::string_view text, HeightsSpec& spec) {
 
 }  // namespace
 
-bool parseThickness(std::string_view word, HeightsOffset& offset) {
+bool parseText(std::string_view word, HeightsOffset& offset) {
     const std::vector<std::string_view> parts = split(word, '/');
     if (parts.size() != 3) {
         return false;
@@ -91,7 +91,7 @@ bool parseThickness(std::string_view word, HeightsOffset& offset) {
     return true;
 }
 
-std::string thicknessText(const HeightsOffset& offset) {
+std::string fieldText(const HeightsOffset& offset) {
     return numberWord(offset.at.x) + "/" + numberWord(offset.at.y) + "/" + numberWord(offset.at.z);
 }
 
@@ -133,23 +133,23 @@ void fields(FieldVisitor& visit, HeightsSpec& spec) {
           {.help = "Distance between samples, in metres",
            .range = {1e-6, 1e6},
            .must = "a length from 0.000001 to 1000000"});
-    visit("low", spec.low, number("Height of sample 0 in metres; only for unsigned samples"));
+    visit("low", spec.low, number("Height of value 0 in metres; only for unsigned samples"));
     visit("high", spec.high,
           number("Height of the largest sample, 65535 or 255, in metres; only for unsigned samples"));
     visit("hole", spec.hole,
           {.help = "Value that marks a hole, as stored in the file",
            .range = within(kHoleMax),
-           .fallback = "NaN of floats, -32768 of .hgt, the transparent colour of PNG, otherwise none",
+           .fallback = "NaN in floats, -32768 in .hgt, the transparent colour in PNG, otherwise none",
            .must = "a finite number"});
     visit("width", spec.width,
           {.help = "Samples in each row of a raw file",
            .range = {2.0, double{kHeightsSideMax}},
            .fallback = "the side of a square"});
     visit("type", spec.type,
-          {.help = "Type of raw samples; int16 and float32 are metres", .fallback = "uint16; int16 of .hgt"});
-    visit("order", spec.order, {.help = "Byte order of raw samples", .fallback = "little; big of .hgt"});
+          {.help = "Type of raw samples; int16 and float32 are metres", .fallback = "uint16; int16 in .hgt"});
+    visit("order", spec.order, {.help = "Byte order of raw samples", .fallback = "little; big in .hgt"});
     visit("offset", spec.offset,
-          {.help = "Position of the first sample at height 0, in metres",
+          {.help = "Position of height 0 at the first sample, in metres",
            .value = "X/Y/Z",
            .must = "three numbers x/y/z from -1e9 to 1e9"});
     visit("tile", spec.tile,

@@ -6,7 +6,7 @@
 //     low=-10,high=90,width=2048,hole=0  raw samples of 16 bits, little-endian
 //     spacing=30,type=int16,order=big    raw samples in metres, big-endian, as in .hgt files
 //
-// Columns of samples run along +x, rows along +z, and heights along +y, as in glTF. The surface is bilinear between
+// Column numbers grow along +x, row numbers along +z, and heights along +y, as in glTF. The surface is bilinear between
 // four samples, and the ground below it is solid. A square with a hole at a corner has no ground.
 #pragma once
 
@@ -29,8 +29,8 @@ struct HeightsOffset {
     glm::dvec3 at{0.0};
     friend bool operator==(const HeightsOffset&, const HeightsOffset&) = default;
 };
-[[nodiscard]] bool parseThickness(std::string_view word, HeightsOffset& offset);
-[[nodiscard]] std::string thicknessText(const HeightsOffset& offset);
+[[nodiscard]] bool parseText(std::string_view word, HeightsOffset& offset);
+[[nodiscard]] std::string fieldText(const HeightsOffset& offset);
 
 /// The type of raw samples. Signed integers and floats are metres.
 enum class SampleType : std::uint8_t { kUint16, kInt16, kFloat32 };

@@ -242,7 +242,7 @@ Result<void> enterSeccomp(int folder, int result) {
 
 Result<void> enterSandbox(const SandboxLimits& limits, int folder, int result) {
     if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) {
-        return cannot("request to end with its parent");
+        return cannot("set its parent-death signal");
     }
 #ifndef RELIEF_SANITIZED  // the sanitizers' shadow memory needs terabytes of address space
     const std::uint64_t taken = addressSpace();

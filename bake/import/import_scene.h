@@ -70,7 +70,7 @@ struct SceneNode {
     Shown is_shown = Shown::kYes;
     bool posed = false;                ///< its parts are in scene space, regardless of transforms
     std::vector<std::string> names{};  ///< for --as; they select the node and all its descendants
-    std::string shown{};               ///< SurfaceName::node; the next two members are for SurfaceName, too
+    std::string shown{};  ///< becomes SurfaceName::node; the next two members also go into SurfaceName
     std::optional<SurfaceResponse> response{};
     std::optional<std::uint32_t> index{};  ///< nullopt: each placement counts as a separate node
     std::vector<std::uint32_t> parts{};

@@ -233,16 +233,16 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
                       "but has more errors than patches of the same size. --map excludes --paper, --budget, "
                       "--texel and --max-error."});
     visit("decode", request.decode,
-          {.help = "Default of the key decode of --map; the paper uses projected",
+          {.help = "Default of decode= in --map; the paper uses projected",
            .fallback = "plane",
            .details = "plane measures the distance to a plane that is fitted to the whole texel. projected "
                       "measures along the ray, to a flat texel."});
     visit("depth", request.depth,
-          {.help = "Default of the key depth of --map front-back; the paper uses half",
+          {.help = "Default of depth= in --map front-back; the paper uses half",
            .fallback = "unorm16",
            .details = "unorm16 is 16-bit fixed point; half is half floats."});
     visit("paper", request.paper,
-          {.help = "Bake the maps of the original paper: front-back along -x, -y and -z, and a cube",
+          {.help = "Bake the maps of Kolb et al. 2004: front-back along -x, -y and -z, and a cube",
            .details = "The maps have the keys depth=half and decode=projected."});
     visit("resolution", request.resolution,
           {.help = "Texels along each side of a map whose size is not set",
@@ -257,7 +257,7 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
            .fallback = "1MB",
            .recorded = true,
            .details = "The file is a few hundred bytes larger, or smaller with --compress. With --max-error "
-                      "and --texel, the budget is an upper limit. With --world, it is shared by all "
+                      "or --texel, the budget is an upper limit. With --world, it is shared by all "
                       "colliders, and its default is 16MB."});
     visit(
         "texel", request.texel,
@@ -287,9 +287,9 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
            .fallback = "normal",
            .recorded = true,
            .details = "fast fits each plane to 1 ray per texel, normal to 16 and best to 36. Higher settings "
-                      "also try more lines and cells for patches."});
+                      "sample patches finer and try more cells."});
     visit("prefer", request.prefer,
-          {.help = "Classify doubtful space for the fewest errors, as inside, or as outside",
+          {.help = "Side given to doubtful space; neither causes the fewest errors",
            .fallback = "neither",
            .recorded = true,
            .details = "inside keeps particles out of walls, outside keeps free space free. Each removes most "
@@ -345,8 +345,9 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
          .recorded = true,
          .details =
              "The runtime poses the collider. Three front-back maps along the axes, with --resolution texels "
-             "a side, store its rest pose. Besides the options of its output, only --clips, --resolution, "
-             "--quality, --prefer, --unit, --up and limits apply."});
+             "a side, store its rest pose. Only --clips, --resolution, --quality, --prefer, --unit, --up and "
+             "the "
+             "options of the groups Output and Limits also apply."});
     visit("clips", request.clips,
           {.help = "With --animated: add the animations of this glTF file, matched by node name; repeatable",
            .value = "FILE"});
@@ -355,10 +356,10 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
                    "such as spacing=1,low=0,high=500",
            .value = "SPEC",
            .recorded = true,
-           .details = "Heights go along +y, columns along +x and rows along +z. A PNG is grey, of 8 or 16 "
+           .details = "+x is the next column, +y up and +z the next row. A PNG is grey, of 8 or 16 "
                       "bits. An EXR image has one channel of heights in metres; NaN marks holes. Raw samples "
-                      "are files .raw, .r16 or .hgt. Squares with a hole at a corner have no ground. Besides "
-                      "the options of its output, only limits apply."});
+                      "are files .raw, .r16 or .hgt. Squares with a hole at a corner have no ground. Only "
+                      "--world and the options of the groups Output and Limits also apply."});
     visit("timeout", request.timeout,
           {.help = "Time limit of the whole bake, in seconds; beyond it, exit with code 6 and write nothing",
            .unit = "s",

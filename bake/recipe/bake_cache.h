@@ -40,8 +40,7 @@ using BakeCacheEntries = std::map<std::string, BakeCacheEntry>;
 /// Returns the XXH3-128 of a regular file; nullopt for anything else, or if it cannot be read.
 [[nodiscard]] std::optional<std::string> hashOfFile(const std::filesystem::path& path);
 
-/// Returns the hash of an input. For a folder, hashes the names in it, except those that start with a dot and files
-/// that bakes write.
+/// Returns the hash of an input. For a folder, hashes the names in it, except .*, *.relief and world.json.
 [[nodiscard]] std::optional<std::string> hashOfInput(const std::filesystem::path& path);
 
 /// Reads a cache file; nullopt if there is none. Does not follow a symbolic link at `path`.

@@ -27,14 +27,14 @@ constexpr double kThicknessFloat = 4e-6;
 
 }  // namespace
 
-bool parseThickness(std::string_view word, Thickness& thickness) {
+bool parseText(std::string_view word, Thickness& thickness) {
     thickness.by_part = word.starts_with(kByPart);
     const std::optional<float> length = parseFloat(word.substr(thickness.by_part ? kByPart.size() : 0));
     thickness.length = double{length.value_or(0.0F)};
     return length && *length >= 1e-15F && *length <= 1e15F;
 }
 
-std::string thicknessText(const Thickness& thickness) {
+std::string fieldText(const Thickness& thickness) {
     return std::string(thickness.by_part ? kByPart : "") + shortest(static_cast<float>(thickness.length));
 }
 

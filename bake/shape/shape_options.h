@@ -29,8 +29,8 @@ struct Thickness {
     double length = 0.0;  ///< object units, above 0
     bool by_part = false;
 };
-[[nodiscard]] bool parseThickness(std::string_view word, Thickness& thickness);
-[[nodiscard]] std::string thicknessText(const Thickness& thickness);
+[[nodiscard]] bool parseText(std::string_view word, Thickness& thickness);
+[[nodiscard]] std::string fieldText(const Thickness& thickness);
 
 /// The interpretation of triangles with a name, identified by TriangleMesh::marks.
 struct NamedShape {

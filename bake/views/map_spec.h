@@ -35,7 +35,7 @@ inline constexpr std::array kMapKeys = std::to_array<MapKey>({
     {"texel", "patches", "texel length as in --texel; budget is then an upper limit"},
     {"dir", "float, fixed8, front-back", "view direction: +x, -x, +y, -y, +z, -z or a vector a/b/c"},
     {"up", "float, fixed8, front-back", "up direction of the image, as in dir"},
-    {"size", "all but patches", "texels: N, or WxH for all but cube"},
+    {"size", "all but patches", "texels: N, or WxH if not a cube"},
     {"compare", "float, fixed8, cube",
      "less (default) keeps the nearest surface, greater the farthest; a cube whose centre is inside the mesh "
      "defaults to greater"},

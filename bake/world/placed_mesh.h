@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh of a level at the pose of a node: the truth of a check.
+// A mesh at the pose of a level's node, for the truth of checks.
 #pragma once
 
 #include <glm/geometric.hpp>

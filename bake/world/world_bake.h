@@ -52,9 +52,9 @@ struct WorldWatcher {
 /// Checks that no option for single meshes is set. Errors: kUsage.
 [[nodiscard]] Result<void> checkWorldRequest(const BakeRequest& request);
 
-/// Returns the request for one mesh of a level. Removes from `as` the names without triangles in the mesh, and renumbers
-/// the marks of the mesh.
-/// \param mesh  its marks are indices into `names`.
+/// Returns the request for one mesh of a level. Leaves out --as options whose names mark no triangle of the mesh, and
+/// renumbers its marks.
+/// \param mesh  with marks for `names`.
 [[nodiscard]] BakeRequest requestOf(const BakeRequest& request, const std::vector<std::string>& names,
                                     TriangleMesh& mesh);
 

@@ -71,7 +71,7 @@ struct FieldWord {
     char text[kSize];
     constexpr FieldWord(const char (&word)[kSize]) { std::copy_n(word, kSize, text); }  // NOLINT: implicit
 };
-/// The valid values of a text field, or of a number spelled in digits: `.words = kWords<"less", "greater">`.
+/// The valid values of a text, number or bool field, as strings: `.words = kWords<"less", "greater">`.
 template <FieldWord... kWord>
 inline constexpr std::array<std::string_view, sizeof...(kWord)> kWords{kWord.text...};
 
@@ -103,8 +103,8 @@ struct FieldInfo {
     FieldRules rules = {};
     std::span<const std::string_view> words = {};  ///< see kWords; empty: any
     std::string_view pattern = {};  ///< regular expression for text, in JSON Schema syntax; empty: any
-    FieldRange items = kFromZero;   ///< number of elements that a vector may have
-    /// Omit the field from JSON if it is unset, empty, out of range, or none of the keys in `needs` is present.
+    FieldRange items = kFromZero;   ///< number of elements of a JSON array
+    /// Omit the field from JSON if it is unset, empty or out of range, or if no key in `needs` is present.
     bool left_out = false;
     std::string_view value = {};  ///< placeholder in --help: "SECONDS"; empty: derived from the type
     /// A valid value for messages: "a length above 0"; empty: derived from type and range.
@@ -157,12 +157,12 @@ inline constexpr bool kIsForm = false;
 template <template <class...> class Form, class... Parts>
 inline constexpr bool kIsForm<Form, Form<Parts...>> = true;
 
-/// A type with its own text form provides parseThickness(word, value), which returns false if the word is not valid, and
-/// thicknessText(value).
+/// A type with its own text form provides parseText(word, value), which returns false if the word is not valid, and
+/// fieldText(value).
 template <class T>
 concept WithForm = requires(std::string_view word, T& value) {
-    { parseThickness(word, value) } -> std::same_as<bool>;
-    { thicknessText(value) } -> std::same_as<std::string>;
+    { parseText(word, value) } -> std::same_as<bool>;
+    { fieldText(value) } -> std::same_as<std::string>;
 };
 
 /// Functions of a type with its own file format. Specialize it beside the type.
@@ -258,9 +258,9 @@ constexpr FieldType describe() {
     }
     if constexpr (WithForm<T>) {
         type.read_form = [](std::string_view word, void* value) {
-            return parseThickness(word, *static_cast<T*>(value));
+            return parseText(word, *static_cast<T*>(value));
         };
-        type.form_text = [](const void* value) { return thicknessText(*static_cast<const T*>(value)); };
+        type.form_text = [](const void* value) { return fieldText(*static_cast<const T*>(value)); };
     } else if constexpr (std::same_as<T, bool>) {
         type.form = FieldForm::kBool;
     } else if constexpr (std::is_floating_point_v<T>) {
@@ -327,7 +327,7 @@ constexpr FieldType describe() {
         }
     } else {
         static_assert(kFieldCustom<T> != nullptr,
-                      "declare fields(), or parseThickness() and thicknessText(), before this use");
+                      "declare fields(), or parseText() and fieldText(), before this use");
     }
     return type;
 }

@@ -39,7 +39,7 @@ class TextScanner {
     [[nodiscard]] std::string_view rest() const;
 
   private:
-    /// Returns the length of the line ending at `at`, or 0.
+    /// Returns the length of the line break at `at`, or 0.
     [[nodiscard]] std::size_t lineEnd(const char* at) const;
     /// Returns the length of a line continuation, from the backslash to the start of the next line, or 0.
     [[nodiscard]] std::size_t joint(const char* at) const;
@@ -57,7 +57,7 @@ class TextScanner {
 /// quoting.
 class CsvReader {
   public:
-    /// A line returns at most one field more than this, to show that it has too many; a hostile line could have millions.
+    /// fields() has at most one more than this, to show that a line has too many; a hostile line could have millions.
     static constexpr std::size_t kFieldsMax = 8;
 
     /// \param text  borrowed; line() and fields() point into it.

@@ -19,7 +19,7 @@ constexpr int kFirstUnit = 3;  // texture units after those of the state
 Result<RivalStep> RivalStep::create(Rival rival, const BenchScene& scene, StepPath path) {
     const auto old = [](const Birth& birth) { return birth.age != 0.0F; };
     if (scene.births.size() % kWidth != 0 || std::ranges::any_of(scene.births, old)) {
-        return fail(ErrorCode::kUsage, "a rival's step needs complete rows of births with age 0");
+        return fail(ErrorCode::kUsage, "RivalStep needs a multiple of 1024 births, all of age 0");
     }
     const PassState state;
     RivalStep made;

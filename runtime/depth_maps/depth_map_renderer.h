@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Renders front-back plane maps with 16-bit depths on the GPU from a moving mesh. Texels follow formats/README.md. They
-// match those of `relief bake`, which casts one ray through the centre of each texel, to within one unit in the last
-// place of the depth.
+// Renders a moving mesh on the GPU to front-back maps with 16-bit depths, decoded as planes. Texels follow
+// formats/README.md. They match those of `relief bake`, which casts one ray through the centre of each texel, to within
+// one unit in the last place of the depth.
 //
-// The rasteriser only determines the triangle that a texel's ray hits. The plane is computed from the triangle itself
+// The rasteriser only determines the triangle that a texel's ray hits. A texel's plane is computed from that triangle
 // because rasterisers snap vertices to a grid of 1/256 pixel. Texels with an edge near their centre may get the
-// adjacent triangle, or the surface behind a silhouette. The plane is rounded outwards to the next depth code. If it
-// is too steep to be stored, the texel stores a plane that faces the viewer. Silhouettes between texel centres are
+// adjacent triangle, or the surface behind a silhouette. The plane is rounded outwards to the next depth code. If it is
+// too steep to be stored, the texel stores a plane that faces the viewer. Silhouettes between texel centres are
 // missing; only the ray caster searches for them.
 #pragma once
 
@@ -28,8 +28,8 @@ class DepthMapRenderer {
     [[nodiscard]] static Result<DepthMapRenderer> create(std::uint32_t width, std::uint32_t height);
 
     /// Renders a whole map, from texel (0, 0), over the previous one.
-    /// \param map  valid (formats/validate.h), MapFormat::kFrontBackFixed and Decode::kPlane, within the size given to
-    /// create(); texels may be missing. If `encloses` is set, its rays start in free space. Otherwise, a surface hit
+    /// \param map  must pass validateFrame(); MapFormat::kFrontBackFixed and Decode::kPlane, within the size given to
+    /// create(); `texels` may be empty. If `encloses` is set, its rays start in free space. Otherwise, a surface hit
     /// from its inner side leaves the texel empty.
     void render(GpuMesh& mesh, const DepthMap& map) const;
     /// Like render(), inside a PassState of the caller.

@@ -204,7 +204,7 @@ struct GlContext::Impl {
                         "there is no " + name + ": EGL has " + std::to_string(devices.size()) +
                             (devices.empty()       ? "; omit the device"
                              : devices.size() == 1 ? ", device 0"
-                                                   : ", 0 to " + std::to_string(devices.size() - 1)) +
+                                                   : " (0-" + std::to_string(devices.size() - 1) + ")") +
                             (devices.empty() ? "" : "; 'eglinfo -B' lists them"));
         }
         const std::string problem = open(deviceDisplay(devices[index]));

@@ -150,7 +150,8 @@ Result<void> checkMesh(const PictureMesh& mesh) {
     for (const std::uint32_t v : mesh.triangles) {
         if (v >= mesh.positions.size()) {
             return fail(ErrorCode::kInvalidInput, "a triangle has vertex index " + std::to_string(v) +
-                                                      " of " + std::to_string(mesh.positions.size()));
+                                                      ", but there are " +
+                                                      std::to_string(mesh.positions.size()) + " vertices");
         }
     }
     for (const glm::vec3& p : mesh.positions) {

@@ -15,9 +15,9 @@
 
 namespace relief {
 
-/// Computes the sweep from the longest step and the fastest birth so far: half the thickness of the thinnest collider
-/// that such a step could pass through; 0 if there is no such collider. The sweep is longer if a step would otherwise
-/// need more than StepPass::kSweepPieces pieces. Ignores deforming colliders.
+/// Computes the maximum length of a step's pieces (ParticleSystem::setSweep()) from the longest step and the fastest
+/// birth so far: half the thickness of the thinnest collider that such a step could pass through, 0 if there is none;
+/// more if a step would otherwise need over StepPass::kSweepPieces pieces. Ignores deforming colliders.
 class SceneSweep {
   public:
     SceneSweep() = default;
@@ -36,8 +36,8 @@ class SceneSweep {
     void add(const Scene& scene, std::span<const Birth> births);
 
     /// Returns the sweep of a step: collision.sweep if the scene sets it.
-    /// \param warnings  receives one line, once, if particles can still pass through thin colliders: their number, the
-    ///                  thinnest, and the fix.
+    /// \param warnings  receives one line, once, if thin colliders can still be passed through: the number of these
+    ///                  colliders, the thinnest, and the fix.
     [[nodiscard]] float lengthFor(float dt, const Scene& scene, std::vector<std::string>& warnings);
 
   private:

@@ -21,8 +21,8 @@ namespace relief {
 /// on every machine; streamed worlds use their coarse containers.
 class TouchFilter {
   public:
-    /// \param loaded   provides the poses at the time of each birth; must outlive the filter. Poses may change only by
-    ///                 keys.
+    /// \param loaded   provides the poses at the time of each birth; must outlive the filter. Only PoseKeys may change
+    ///   poses.
     /// \param emitter  of that scene, with `touching`.
     TouchFilter(const LoadedScene& loaded, const SceneEmitter& emitter);
 

@@ -29,10 +29,10 @@ class ColliderSource {
     virtual void request(std::size_t collider) = 0;
     /// Returns the next collider that has arrived, or nullopt. Never waits.
     [[nodiscard]] virtual std::optional<Arrival> take() = 0;
-    /// Likewise, but waits while requests are pending. Sources that cannot wait return take().
+    /// Likewise, but waits for a pending request. Sources that cannot wait return take().
     [[nodiscard]] virtual std::optional<Arrival> wait() { return take(); }
-    /// Accepts a collider that is no longer needed, and frees it without blocking the caller: freeing megabytes takes a
-    /// fraction of a millisecond.
+    /// Frees a collider that is no longer needed, if possible in another thread: freeing megabytes takes a fraction of
+    /// a millisecond.
     virtual void release(Collider /*used*/) {}
 };
 

@@ -173,8 +173,9 @@ Result<int> changePlayer(Player& player, const char* text, const char* path, boo
     if (wanted.particles.capacity != now.particles.capacity ||
         wanted.time.integrator != now.time.integrator || wanted.colliders.size() != now.colliders.size() ||
         wanted.world != now.world) {
-        return fail(ErrorCode::kUsage,
-                    "colliders, capacity and integrator cannot change; create a new system");
+        return fail(
+            ErrorCode::kUsage,
+            "the world, number of colliders, capacity and integrator cannot change; create a new system");
     }
     if (wanted.stream.has_value() != now.stream.has_value() ||
         (now.stream && wanted.stream->memory != now.stream->memory)) {

@@ -493,7 +493,7 @@ TEST(Shape, TwoSidedSheetIsOneSheet) {
     const TriangleMesh plane = makePlane(0.0F, 4);
     const ShapedMesh shape = shaped(joined({plane, reversed(plane)}));
     expectKinds(shape.report, 0, 0, 1, 0);
-    EXPECT_EQ(thicknessText(thicknessOf(shape.report).value()), "0.05");
+    EXPECT_EQ(fieldText(thicknessOf(shape.report).value()), "0.05");
     EXPECT_EQ(shape.report.coincident_triangles, plane.triangles.size());
     const MeshQuery query = queryOf(shape.mesh);
     EXPECT_TRUE(query.inside({0.1F, 0.02F, 0.2F}));
