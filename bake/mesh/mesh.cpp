@@ -74,6 +74,18 @@ Bounds boundsOf(std::span<const glm::vec3> positions) {
     return bounds;
 }
 
+TriangleMesh meshOfSource(const TriangleMesh& source) {
+    TriangleMesh mesh;
+    mesh.name = source.name;
+    mesh.content_hash = source.content_hash;
+    mesh.unit = source.unit;
+    mesh.dropped_triangles = source.dropped_triangles;
+    mesh.dependencies = source.dependencies;
+    mesh.dependency_hashes = source.dependency_hashes;
+    mesh.warnings = source.warnings;
+    return mesh;
+}
+
 Result<TriangleMesh> finishMesh(TriangleMesh mesh) {
     if (mesh.triangles.size() > kTriangleMax) {
         return fail(ErrorCode::kLimit, mesh.name + ": " + std::to_string(mesh.triangles.size()) +

@@ -96,6 +96,10 @@ struct TriangleMesh {
     }
 };
 
+/// Returns a mesh without triangles for a new surface of the same source: with its name, hash, unit, dependencies, warnings
+/// and number of dropped triangles.
+[[nodiscard]] TriangleMesh meshOfSource(const TriangleMesh& source);
+
 /// Establishes the invariants of TriangleMesh: drops triangles without area, with their marks and labels, drops unused
 /// positions, and computes the bounds.
 /// \param mesh  has no marks or one per triangle, and no labels or one per triangle.

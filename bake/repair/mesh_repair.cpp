@@ -59,14 +59,7 @@ struct Soup {
 
 /// Converts the surface to a mesh with the source's name and hash.
 Result<TriangleMesh> meshOf(const TriangleMesh& source, const Soup& soup, const SurfaceMesh& surface) {
-    TriangleMesh mesh;
-    mesh.name = source.name;
-    mesh.content_hash = source.content_hash;
-    mesh.unit = source.unit;
-    mesh.dropped_triangles = source.dropped_triangles;
-    mesh.dependencies = source.dependencies;
-    mesh.dependency_hashes = source.dependency_hashes;
-    mesh.warnings = source.warnings;
+    TriangleMesh mesh = meshOfSource(source);
     std::vector<std::uint32_t> index(surface.number_of_vertices() + surface.number_of_removed_vertices(), 0);
     for (const SurfaceMesh::Vertex_index v : surface.vertices()) {
         index[v] = static_cast<std::uint32_t>(mesh.positions.size());

@@ -65,14 +65,7 @@ void SolidUnion::add(std::span<const glm::vec3> positions, std::span<const glm::
 }
 
 Result<PreparedMesh> SolidUnion::finish(double shell_thickness) {
-    TriangleMesh mesh;
-    mesh.name = source_.name;
-    mesh.content_hash = source_.content_hash;
-    mesh.unit = source_.unit;
-    mesh.dropped_triangles = source_.dropped_triangles;
-    mesh.dependencies = source_.dependencies;
-    mesh.dependency_hashes = source_.dependency_hashes;
-    mesh.warnings = source_.warnings;
+    TriangleMesh mesh = meshOfSource(source_);
     mesh.source_triangles = source_.sourceTriangles();
     mesh.positions = std::move(positions_);
     mesh.triangles = std::move(surface_.triangles);
