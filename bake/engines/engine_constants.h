@@ -23,7 +23,7 @@ inline constexpr std::size_t kEngineTexelsMax = std::size_t{kEngineTextureWidth}
 /// Errors: kUsage (several maps, or a map of another format).
 [[nodiscard]] Result<const DepthMap*> engineMap(const Collider& collider);
 
-/// Returns the constants of a collider in world space: the rows transform world space to map space.
+/// Returns the constants of a placed collider: `row` then transforms world space to map space.
 [[nodiscard]] PatchConstants placedConstants(PatchConstants constants, const Pose& pose);
 
 /// Appends zeros up to a whole row of a texture.

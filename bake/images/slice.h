@@ -77,8 +77,8 @@ struct VerdictSlice {
     }
 };
 
-/// Makes a slice through a place that cuts its surface: perpendicular to the axis with the smallest component of the
-/// normal.
+/// Makes a slice through `center` that cuts the surface: perpendicular to the axis with the smallest component of
+/// `normal`.
 [[nodiscard]] VerdictSlice verdictSlice(const glm::vec3& center, const glm::vec3& normal, double side);
 
 /// Draws a PNG: the verdicts, the true surface, a ring around the place, a scale and a legend. Equal slices give

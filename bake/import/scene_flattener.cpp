@@ -73,7 +73,7 @@ class NameMarks {
         if (known.empty()) {
             return fail(ErrorCode::kUsage, text + "; the file has no names: use --as without a name");
         }
-        text += text.ends_with("?") ? " Its names: " : "; its names: ";
+        text += text.ends_with("?") ? " Names: " : "; names: ";
         for (std::size_t i = 0; i < std::min(known.size(), kListedMax); ++i) {
             text += (i == 0 ? "'" : ", '") + cleanUtf8(known[i], kListedBytesMax) + "'";
         }

@@ -22,9 +22,9 @@ namespace relief {
 /// The hits of a view's rays.
 ///
 /// Depths are those of the triangles' planes in double precision. A ray through the edge of two triangles hits both,
-/// exactly: it cannot slip through. If triangles meet there or coincide, the order is: triangles that face the ray,
-/// then the one that faces it most, then the lowest index. For a ray that starts in the solid, the surface at which it
-/// leaves the solid comes first, because it may leave one solid and enter another at an edge where they touch.
+/// exactly: it cannot slip through. If triangles meet there or coincide, the one that faces the ray most wins; among
+/// equals, the lowest index. For a ray that starts in the solid, triangles that face away win over those that face it,
+/// because it may leave one solid and enter another at an edge where they touch.
 class ScanConverter {
   public:
     /// \param scene, view  borrowed; must outlive it.

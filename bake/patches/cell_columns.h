@@ -25,7 +25,7 @@ struct MeshCell {
     glm::dvec3 low{0.0};
     double size = 0.0;
     std::vector<std::uint32_t> triangles;  ///< those that meet the cube, in ascending order
-    BodyCounter bodies;                    ///< the bodies that contain kKnown
+    BodyCounter bodies;                    ///< the solids that contain kKnown
 
     [[nodiscard]] glm::dvec3 middle() const { return low + 0.5 * size; }
     [[nodiscard]] UnitTriangle inUnit(const TriangleMesh& mesh, std::uint32_t triangle) const;
@@ -69,8 +69,8 @@ struct CellPlane {
 
 /// A square of `across` × `across` lines through the unit cube along one frame, with the data that all cells share.
 /// Rows are ordered by v. A row interleaves its four quarters: the first line of each quarter, then the second of each,
-/// and so on. Fits can thus process four lines at once (lanes.h), which may lie in four different squares between
-/// heights.
+/// and so on. Fits can thus process four lines at once (lanes.h), even if each lies between different heights of the
+/// patch.
 class LineGrid {
   public:
     /// Distance from the side of the cube to the first line, in line spacings. Not 0.5, because models are built on

@@ -77,7 +77,7 @@ class PairFitter {
     [[nodiscard]] FittedPair fitOf(int rounds) const;
 
     const CellColumns& columns_;
-    ErrorCosts costs_;  // of the space between the surfaces
+    ErrorCosts costs_;  // here, inside: between the surfaces
     glm::dvec3 normal_;
     bool walls_ = true;
     double least_ = 0.0;
@@ -102,7 +102,7 @@ class PatchFitter {
     [[nodiscard]] double insideVolume() const { return inside_volume_; }
 
   private:
-    /// \param by_error  cleared if the misclassified length may differ from the height error within the cube.
+    /// \param by_error  cleared if |height − target| within the cube may not be the misclassified length.
     [[nodiscard]] HeightTarget targetOf(const CellColumn& column, bool& by_error) const;
     template <std::size_t kSide>
     [[nodiscard]] FittedPatch fitOf(int rounds) const;

@@ -26,8 +26,8 @@ struct Sheet {
     static constexpr std::uint32_t kNoTriangle = TriangleNeighbours::kNone;
 };
 
-/// Cosine between the normals of two triangles below which the shell is cut at their edge; a mitre would be longer than
-/// twice the shell's thickness.
+/// If the cosine between two triangles' normals is less, the shell is cut at their edge; a mitre would be longer than
+/// twice its thickness.
 inline constexpr double kFoldCosine = -0.5;
 
 /// Builds a sheet.
@@ -41,7 +41,7 @@ inline constexpr double kFoldCosine = -0.5;
 
 [[nodiscard]] glm::dvec3 unitNormal(const std::vector<glm::vec3>& positions, const glm::uvec3& t);
 
-/// Twice the projected areas of a sheet along each axis. Both are equal, up to the sign, for a height field.
+/// Twice a sheet's area projected along each axis. Along a height field's axis, |signed_area| equals area.
 struct Shadow {
     glm::dvec3 signed_area{0.0};  ///< triangles that face along the axis, minus those that face against it
     glm::dvec3 area{0.0};

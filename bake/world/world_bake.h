@@ -52,8 +52,8 @@ struct WorldWatcher {
 /// Checks that no option for single meshes is set. Errors: kUsage.
 [[nodiscard]] Result<void> checkWorldRequest(const BakeRequest& request);
 
-/// Returns the request for one mesh of a level. Leaves out --as options whose names mark no triangle of the mesh, and
-/// renumbers its marks.
+/// Returns the request for one mesh of a level. Leaves out --as options whose name marks no triangle, and renumbers
+/// mesh.marks to match.
 /// \param mesh  with marks for `names`.
 [[nodiscard]] BakeRequest requestOf(const BakeRequest& request, const std::vector<std::string>& names,
                                     TriangleMesh& mesh);

@@ -54,11 +54,10 @@ class PoseBounds {
     std::vector<glm::vec3> reach_;  // each morph target's largest displacement along each axis
 };
 
-/// The space that a mesh occupies, from samples of all clips 1/240 s apart plus a margin of 2 %. Clips of hours are
-/// sampled more coarsely.
+/// The space that a mesh occupies, from samples of all clips 1/240 s apart, or farther apart in long clips.
 struct PoseExtent {
     Bounds box;                ///< of all poses, object space
-    glm::vec3 box_size{0.0F};  ///< size of the smallest box that fits any single pose
+    glm::vec3 box_size{0.0F};  ///< largest size of a pose's box along each axis, plus 2 %
 };
 /// Uses the rest pose, where arms are often spread, only if there is no clip.
 [[nodiscard]] PoseExtent poseExtent(const AnimatedMesh& mesh);

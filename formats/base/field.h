@@ -18,9 +18,9 @@
 //
 // A visitor receives each field as a FieldRef, which carries its type (formats/base/field_type.h): numbers, bool, text,
 // paths, glm::vec3, enumerations with words, structs with their own fields(), and optionals, vectors and arrays of
-// these. If the file combines members that the struct separates, fields() visits a FieldSpan, FieldPair or other
-// adapter below. Rules between fields that FieldInfo cannot express belong in the struct's second function, check().
-// Report structs are only written: their fields() takes a const reference and may visit expressions as well as members.
+// these. If one value in a data file sets several members, fields() visits a FieldSpan, FieldPair or other adapter
+// below. Rules between fields that FieldInfo cannot express belong in the struct's second function, check(). Report
+// structs are only written: their fields() takes a const reference and may visit expressions as well as members.
 #pragma once
 
 #include <algorithm>

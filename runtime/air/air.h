@@ -31,7 +31,7 @@ struct Attractor {
 void fields(FieldVisitor& visit, Attractor& a);
 
 /// Accelerates particles around a straight line, right-handed about `axis`, with no radial or axial component. The
-/// strength is that of an attractor, with the distance measured from the line.
+/// magnitude follows the formula of Attractor, with distances from the line.
 struct Vortex {
     glm::vec3 center{0.0F};            ///< a point on the line, object units
     glm::vec3 axis{0.0F, 1.0F, 0.0F};  ///< direction of the line, nonzero, any length
@@ -66,10 +66,10 @@ struct AirSettings {
     friend bool operator==(const AirSettings&, const AirSettings&) = default;
 };
 
-/// Visits the scene tables of forces; wind and viscosity are in [forces].
+/// Visits the attractor, vortex and curl_noise tables of a scene.
 void fields(FieldVisitor& visit, AirSettings& air);
 
-/// Checks all settings. Errors: those of checkFlow; kUsage (a number out of range, too many fields).
+/// Checks all settings. Errors: those of checkFlow; kUsage (a number out of range, too many forces).
 [[nodiscard]] Result<void> checkAir(const AirSettings& air);
 
 /// Converts seconds since the start into the shader's time. Count them in a double. Do not use a particle system's own

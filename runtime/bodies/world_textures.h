@@ -3,7 +3,7 @@
 // (body_table.h), or a single collider in its own object space. Materials are stored in one more RGBA32UI texture
 // (material_table.h), which only steps read.
 //
-// The maps of a live body (runtime/live) have no texels at first. Each is rendered into a rectangle of its layout's
+// The maps of a live body (runtime/live) have no texels at first. Each is rendered into a rectangle of its format's
 // texture, below the packed texels. Each map also has a rectangle of the float texture (RGBA32F) for the motion of the
 // surface in each texel: the first half of its rows for the front, the second for the back.
 #pragma once
@@ -34,13 +34,13 @@ struct ColliderBody {
     /// ν, 0…1: (1 − ν) multiplies the particle's own factor on tangential speed.
     float friction = 0.0F;
     bool live = false;  ///< the collider's maps have no texels yet; they are rendered later
-    /// Bit of ParticleType::collides_with for this body, 0 to 7. nullopt: the index of the body, at most 7.
+    /// Bit of ParticleType::collides_with for this body, 0 to 7. nullopt: min(index of the body, 7).
     std::optional<std::uint32_t> group = {};
 };
 
 /// The place in the textures where a live map is rendered.
 struct LiveSlot {
-    const GlTexture* texels = nullptr;  ///< texture of its layout
+    const GlTexture* texels = nullptr;  ///< texture of its format
     GLint x = 0;                        ///< position of its texel (0, 0)
     GLint y = 0;
     const GlTexture* motion = nullptr;  ///< the float texture
@@ -85,8 +85,8 @@ class WorldTextures : public ShaderCollider {
     /// must not change. The cost grows with the number of bodies that have ever moved.
     void setPoses(std::span<const Pose> poses);
 
-    /// Returns one slot for each map of a live body, in order; empty for other bodies. The textures belong to this
-    /// object: call again after moving it.
+    /// Returns one slot for each map of a live body, in order; empty for other bodies. They point into this object;
+    /// call again after std::move.
     [[nodiscard]] std::vector<LiveSlot> liveSlots(std::size_t body) const;
     /// Call after the texels of a live body have changed.
     void noteLiveUpdate() { ++revision_; }

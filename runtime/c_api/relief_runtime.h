@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The C API of Relief: colliders on the CPU and the GPU, particles, and renderers of both.
+/* The C API of Relief: colliders on the CPU and the GPU, particles and their renderers.
  *
  * librelief.so exports only these functions; librelief_c.a contains the same ones. No C++ exception leaves them.
  *
@@ -13,8 +13,8 @@
  * handle of another type and an arbitrary value are errors. Free each handle once, with the free function of its type,
  * in any order: particles and renderers keep their textures alive. Freeing NULL does nothing. A NULL returned by a
  * failed call carries its error: relief_textures_create(relief_collider_load(path)) fails with the error of the load.
- * Some functions accept NULL, such as for the textures of particles. After a failed creation, they reject a NULL of that
- * type with the error of the creation, until the thread calls relief_error() or creates an object of that type.
+ * Some arguments may be NULL, such as the textures of particles. If creating an object of their type failed, NULL is
+ * rejected with that error until the thread calls relief_error() or creates an object of that type.
  *
  * OpenGL. Functions marked (GL) need a current OpenGL context on the calling thread: OpenGL 3.3, or OpenGL ES 3.0 with
  * renderable float textures. Use the same context for all objects that work together. The functions restore the GL
@@ -258,7 +258,7 @@ void relief_particles_free(relief_particles* particles);
 int relief_particles_set(relief_particles* particles, const relief_particles_options* options);
 /* Queues births for the next step and returns the number accepted. Needs no context. */
 size_t relief_particles_spawn(relief_particles* particles, const relief_birth* births, size_t count);
-/* Advances the particles. `seconds`: above 0, up to 1e9. Compiles a program if the colliders or types need another. */
+/* Advances the particles. `seconds`: above 0, up to 1e9. Compiles a program if colliders or options need another. */
 int relief_particles_step(relief_particles* particles, float seconds);
 relief_counts relief_particles_counts(const relief_particles* particles);
 /* Reads the particles back, which waits for the GPU. Writes at most `capacity` particles, in index order. Returns the
@@ -322,9 +322,9 @@ typedef struct relief_view {
     int32_t srgb;          /* 1: the framebuffer stores sRGB values, as a window does; 0: linear */
 } relief_view;
 
-/* Creates a renderer of particles that the collider shades. `textures` and `collider`: of the same collider, or both
- * NULL for no shading. For textures of a world, `collider` must be NULL; shading then covers the initial bounds of the
- * bodies. The collider may be freed afterwards. */
+/* Creates a renderer of particles on which the collider casts shadows. `textures` and `collider`: of the same collider,
+ * or both NULL for no shadows. For textures of a world, `collider` must be NULL; the shadows then cover the initial
+ * bounds of the bodies. The collider may be freed afterwards. */
 relief_renderer* relief_renderer_create(const relief_textures* textures, const relief_collider* collider);
 void relief_renderer_free(relief_renderer* renderer);
 /* Draws the particles over the framebuffer's contents, with its depth test. `options`: NULL for all 0. */

@@ -68,7 +68,7 @@ TEST(ImportNames, ObjNamesAreGroupsObjectsAndMaterials) {
                  {{"body", "glass"}, {1, 2, 2, 0}},
                  {{"glass", "body"}, {2, 2, 1, 0}}});
     expectUnknown("a.obj", text, {"body", "glas"},
-                  "'glas'; did you mean 'glass'? Its names: 'body', 'paint', 'glass', 'wheel', 'house'");
+                  "'glas'; did you mean 'glass'? Names: 'body', 'paint', 'glass', 'wheel', 'house'");
     expectUnknown("a.obj", text, {"Body"}, "'body'");
     // A group can have several names and can be continued.
     expectMarks("g.obj",
@@ -96,8 +96,8 @@ TEST(ImportNames, GltfNamesAreNodesMeshesAndMaterials) {
                  {{"near", "second"}, {0, 0, 2, 2, 2, 2}},
                  {{"second", "glass"}, {0, 2, 1, 2, 1, 2}},
                  {{"door-1"}, {1, 1, 1, 1, 1, 1}}});
-    expectUnknown("c.gltf", text, {"door"}, "Its names: ");
-    expectUnknown("s.stl", tetrahedronStl(), {"nothing"}, "its names: ");
+    expectUnknown("c.gltf", text, {"door"}, "Names: ");
+    expectUnknown("s.stl", tetrahedronStl(), {"nothing"}, "names: ");
     expectUnknown("p.ply", tetrahedronPly(), {"nothing"}, "the file has no names: use --as without a name");
 }
 
@@ -109,7 +109,7 @@ TEST(ImportNames, HostileNamesAreSanitized) {
     expectMarks(
         "h.gltf", text,
         {{{clean}, {1, 1, 0, 0, 0, 0}}, {{std::string(kSelectedNameBytesMax, 'y')}, {0, 0, 1, 1, 0, 0}}});
-    expectUnknown("h.gltf", text, {std::string(kSelectedNameBytesMax, 'z')}, "its names: ");
+    expectUnknown("h.gltf", text, {std::string(kSelectedNameBytesMax, 'z')}, "names: ");
     std::string many;
     for (int i = 0; i < 3000; ++i) {
         many += "g group" + std::to_string(i) + std::string(100, 'n') + "\nf 1 2 3\n";
