@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sparse distance volumes to compare with: bricks of 8-bit nodes near the surface, in a sparse grid as Unreal, PhysX
-// and newton bake them, or in an octree (Frisken 2000). They are as accurate as possible for their bytes.
+// Sparse distance volumes, baselines for colliders: bricks of 8-bit nodes near the surface, in a sparse grid as Unreal,
+// PhysX and Newton bake them, or in an octree (Frisken 2000). They are as accurate as possible for their bytes.
 //
 // - Cubes cover the tight box of the mesh. A cube that contains surface has a brick of `cells`³ voxels. Bricks share no
 //   nodes: each has (cells + 1)³, so that one filtered fetch reads it. Any other cube stores only the sign of the exact
 //   distance at its centre. A brick whose nodes have equal signs is stored as that sign.
-// - Nodes store exact distances, or are fitted to the exact distances at random points of the voxels that the surface
-//   crosses: by least squares, with the largest weights close to the surface.
+// - Nodes store exact distances, or a least-squares fit to the exact distances at random points of the voxels that the
+//   surface crosses. Points close to the surface have the largest weights.
 // - 8-bit codes for distances up to `band` voxels; larger distances are clamped.
 // - In an octree, the cubes with the largest displacement of the surface are split until the bytes are used up.
-// - Sizes are bytes on the GPU: the nodes and the index. The index has a texel per cube in a dense or two-level grid,
-//   whichever is smaller, or eight entries per split cube of an octree.
+// - Sizes are bytes on the GPU: the nodes and the index. The index is a dense or two-level grid of the cubes, whichever
+//   is smaller; for an octree, it has one entry per root and eight per split cube.
 // - Points beyond the box are outside; their distance to the box is added.
 #pragma once
 
@@ -42,7 +42,7 @@ class BrickVolume {
     [[nodiscard]] static BrickVolume withVoxels(const MeshQuery& query, const BrickLayout& layout,
                                                 double voxel);
 
-    /// Returns the field. Distances in cubes without a brick, and clamped distances, are ±band.
+    /// Returns the field. Distances in cubes without a brick, and clamped distances, are ±band voxels.
     [[nodiscard]] FieldValue at(const glm::vec3& p) const;
     [[nodiscard]] std::uint64_t nodeBytes() const { return codes_.size(); }
     [[nodiscard]] std::uint64_t indexBytes() const { return indexBytes(bricks()); }
@@ -82,9 +82,9 @@ class BrickVolume {
     double root_size_;  // object units
     glm::dvec3 origin_;
     glm::uvec3 roots_count_;
-    std::vector<Root> roots_;  // with surface, by cell
+    std::vector<Root> roots_;  // cubes that contain surface, sorted by cell
     std::vector<Cube> cubes_;  // groups of eight, x fastest
-    unsigned levels_ = 0;      // of splits
+    unsigned levels_ = 0;      // depth of the octree
     std::vector<std::int8_t> codes_;
 };
 

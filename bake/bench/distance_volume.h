@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dense distance volumes to compare with, as Unity, Unreal and Godot bake them. They are as accurate as possible for
-// their bytes, to make the comparison fair.
+// Dense distance volumes, baselines for colliders, as Unity, Unreal and Godot bake them. They are as accurate as
+// possible for their bytes, to make the comparison fair.
 //
-// - Nodes lie on a lattice over the tight box of the mesh. Voxels are cubes, as small as the budget allows for all
-//   nodes; headers and padding are not counted. If the sides of the box are not whole numbers of voxels, the lattice
+// - Nodes lie on a lattice over the tight box of the mesh. Voxels are the smallest cubes for which all nodes fit the
+//   budget; headers and padding are not counted. If the sides of the box are not whole numbers of voxels, the lattice
 //   may extend beyond the box on both sides, extend beyond one corner, or be stretched to fit. The best choice depends
-//   on the positions of flat faces: the caller measures all of them and uses the best.
-// - Every node stores the exact distance to the nearest triangle, with the same sign as the truth of the measurement.
+//   on the positions of flat faces: the caller measures all three and uses the best.
+// - Every node stores the exact distance to the nearest triangle, signed by MeshQuery::inside(), as in the truth.
 // - 16-bit signed normalised values. Their range is either the largest distance of any node, or a narrow band around
 //   the surface, where the resolution is finer; the caller measures both.
-// - Trilinear lookup in double precision; texture units of GPUs have 8-bit weights.
+// - The lookup is trilinear in double precision, although texture units of GPUs have 8-bit weights.
 // - Points beyond the box are outside, regardless of the border nodes; their distance to the box is added.
 #pragma once
 
@@ -55,7 +55,7 @@ struct Lattice {
     [[nodiscard]] std::uint64_t count() const { return std::uint64_t{nodes.x} * nodes.y * nodes.z; }
 };
 
-/// Returns the finest lattice over a box with at most `nodes_max` nodes, and at least eight.
+/// Returns the finest lattice over a box. It has at most `nodes_max` nodes, but at least eight.
 [[nodiscard]] Lattice makeLattice(const Bounds& box, std::uint64_t nodes_max, LatticeFit fit);
 
 /// Exact values of all nodes, x fastest, then y.
@@ -66,7 +66,7 @@ struct DistanceGrid {
 
 [[nodiscard]] DistanceGrid sampleDistances(const MeshQuery& query, const Lattice& lattice);
 
-/// A grid quantised to 16 bits, with the lookup of a texture unit.
+/// A grid quantised to 16 bits, with trilinear lookup.
 class DistanceVolume {
   public:
     /// \param range  object units: distances beyond ±range are clamped.
@@ -74,8 +74,8 @@ class DistanceVolume {
 
     /// Returns the range that clamps no value of the grid.
     [[nodiscard]] static double fullRange(const DistanceGrid& grid);
-    /// Returns the range of a narrow band: the distances up to `reach` from the surface, and all nodes of the voxels
-    /// there. The lookup has the same signs as with the full range, except for rounding.
+    /// Returns the range of a narrow band: `reach` plus a voxel's diagonal, which clamps no node of a voxel within
+    /// `reach` of the surface. The lookup has the same signs as with the full range, except for rounding.
     [[nodiscard]] static double bandRange(const DistanceGrid& grid, double reach);
 
     [[nodiscard]] FieldValue at(const glm::vec3& p) const;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The truth about shells, independent of the shells made by bake/shape: a point is inside if it is within half the
-// thickness of the imported surface. Only the sheets and their thickness are taken from the shape's report.
+// thickness of the imported surface. Only the sheets and their thickness come from bake/shape (ShapedMesh::parts).
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -28,10 +28,10 @@ class SheetTruth {
     /// within the thickness.
     [[nodiscard]] std::optional<bool> inside(const glm::vec3& p) const;
 
-    /// Samples points at normal offsets, up to the thickness, from area-weighted points of the sheets. Distances are
-    /// ±1. Points that are outside all sheets but inside the solid are omitted if the solid has other parts or voids.
-    /// The result does not depend on the number of threads.
-    /// \param solid  of the shaped mesh.
+    /// Draws area-weighted points of the sheets, and moves each along the normal by at most the thickness.
+    /// TruthPoint::distance is ±1, for the side. Omits points that are outside all sheets but inside the solid, if the
+    /// solid has other parts or voids. The result does not depend on the number of threads.
+    /// \param solid  query of the shaped mesh.
     [[nodiscard]] std::vector<TruthPoint> sample(const MeshQuery& solid,
                                                  const AccuracyOptions& options) const;
 
@@ -42,7 +42,7 @@ class SheetTruth {
         double area;  ///< cumulative, including all previous sheets
     };
     std::vector<Sheet> sheets_;
-    bool others_ = false;  ///< the solid has other parts than sheets
+    bool others_ = false;  ///< the solid has parts other than sheets, or voids
 };
 
 }  // namespace relief

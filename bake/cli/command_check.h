@@ -16,7 +16,7 @@ struct CheckCommand {
     std::vector<std::string> files;
     CheckRequest request;  ///< without a mesh, only the files are checked
     ContainerLimits limits;
-    std::string heights;             ///< HeightsSpec; empty: the settings of the bake
+    std::string heights;             ///< text of a HeightsSpec; empty: as recorded by the bake
     std::optional<float> within;     ///< world units
     std::optional<float> max_error;  ///< percent
     std::string html;                ///< the value of --page; empty: no page
@@ -32,8 +32,8 @@ struct CheckCommand {
 [[nodiscard]] bool isHeightMapFile(const std::string& file);
 
 /// \param file  the container or the world
-/// Errors: those of readColliderFile, loadWorld, recordedHeights and checkGround; kUsage; kUnsupported if neither the
-/// extension of --mesh nor the record of the ground names a height map; kDifference if max_error is exceeded.
+/// Errors: those of readColliderFile, loadWorld, recordedHeights and checkGround; kUsage; kUnsupported if --mesh has no
+/// extension of a height map and the provenance records no --heights; kDifference if max_error is exceeded.
 [[nodiscard]] Result<void> runGroundCheck(const CheckCommand& command, const std::string& file);
 
 }  // namespace relief

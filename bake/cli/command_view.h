@@ -15,7 +15,7 @@ namespace relief {
 
 /// Checks, before the long work, that a page can be made and written. \param html  the value of --page; empty: no page
 /// \return the player page for a world, otherwise empty
-/// Errors: kUsage; kUnsupported if there is no player; kInvalidInput if the player has no place for data; those of
+/// Errors: kUsage; kUnsupported if there is no player; kInvalidInput if the player is from another release; those of
 /// FileGuard.
 [[nodiscard]] Result<std::string> preflightPage(const std::string& file, const std::string& mesh,
                                                 const std::string& html, FileGuard& files);
@@ -35,7 +35,7 @@ namespace relief {
 /// Adds --mesh and the options that need it. \return --mesh
 OptionRef addMeshOptions(CLI::App& verb, CheckRequest& request);
 
-/// Logs warnings, and times with -v.
+/// Logs the warnings and, with -v, the durations of the check.
 void showCheckWarnings(const MeshCheck& check);
 
 }  // namespace relief

@@ -26,8 +26,8 @@ inline constexpr std::size_t kEngineTexelsMax = std::size_t{kEngineTextureWidth}
 /// Returns the constants of a placed collider: `row` then transforms world space to map space.
 [[nodiscard]] PatchConstants placedConstants(PatchConstants constants, const Pose& pose);
 
-/// Appends zeros up to a whole row of a texture.
-/// \param row  bytes.
+/// Pads texels with zeros to a whole number of texture rows.
+/// \param row  bytes per row.
 void fillRow(std::vector<std::byte>& texels, std::size_t row = kEngineTextureWidth * kPatchTexelBytes);
 
 }  // namespace relief

@@ -17,18 +17,18 @@ namespace relief {
 
 enum class Engine : std::uint8_t { kC, kGodot, kUnity, kUnreal, kThree, kPlaycanvas };
 
-/// By Engine.
+/// Names, indexed by Engine.
 inline constexpr std::array<std::string_view, 6> kEngineNames{"c",      "godot", "unity",
                                                               "unreal", "three", "playcanvas"};
 
 /// A file of an export.
 struct EngineFile {
-    std::string name;  ///< below the folder of the export, with `/`
+    std::string name;  ///< path below the export's folder, with `/`
     std::vector<std::byte> bytes;
 };
 
-/// Returns the data, the texts of the engine, and its page, RELIEF.md. Data: NAME.relief without compression for engines
-/// with a loader; NAME.texels and NAME.constants for C, Unity and Unreal.
+/// Returns the data, the engine's source files, and a guide, RELIEF.md. Data: uncompressed NAME.relief for engines with
+/// a loader; NAME.texels and NAME.constants for C, Unity and Unreal.
 /// \param name  of the collider, a file name without extension.
 /// Errors: those of engineMap() and writeContainer().
 [[nodiscard]] Result<std::vector<EngineFile>> engineFiles(const Collider& collider, std::string_view name,

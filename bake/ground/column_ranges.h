@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stores the samples from which a ground tree is built, and the range of heights in each cell of a quadtree over their
-// squares.
+// Stores the samples from which a ground tree is built, and height ranges in a quadtree over the squares between them.
+// A cell of the quadtree is called a column: it has the outline of a stack of cells of the ground tree.
 #pragma once
 
 #include <cstddef>
@@ -36,8 +36,7 @@ void add(ColumnRange& to, const ColumnRange& from);
 class ColumnRanges {
   public:
     /// Computes the ranges of all levels.
-    /// \param levels  number of levels; the first has columns of kLeafSquares, and each further one doubles their
-    /// width.
+    /// \param levels  number of levels. A column of level i is kLeafSquares · 2^i squares wide.
     /// \param grid    must outlive this object.
     ColumnRanges(const HeightGrid& grid, unsigned levels);
 
@@ -46,7 +45,7 @@ class ColumnRanges {
     [[nodiscard]] std::uint32_t depth(unsigned level) const { return levels_[level].depth; }
     /// Returns the range of a column; outside the grid, all squares are holes.
     [[nodiscard]] ColumnRange at(unsigned level, std::uint32_t x, std::uint32_t z) const;
-    /// Returns the range of side² squares, starting at (x, z). \param side  below kLeafSquares.
+    /// Returns the range of side² squares, starting at (x, z). \param side  at most kLeafSquares.
     [[nodiscard]] ColumnRange ofSquares(std::size_t x, std::size_t z, std::uint32_t side) const;
 
   private:

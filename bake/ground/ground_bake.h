@@ -36,7 +36,7 @@ struct GroundTile {
     std::optional<WorldFile> coarse;  ///< set if hasCoarse()
     std::uint64_t squares = 0;        ///< number of squares with ground
     std::uint64_t steep = 0;          ///< number of squares steeper than kSteepest, excluding the overlap
-    double error_max = 0.0;  ///< error of its heights, excluding steep squares, metres; 0: all are steep
+    double error_max = 0.0;  ///< largest height error, excluding steep squares, metres; 0: all are steep
     Bounds box;              ///< of its surface, in its own space
 };
 
@@ -44,7 +44,7 @@ struct GroundResult {
     std::uint32_t columns = 0;  ///< of the height map
     std::uint32_t rows = 0;
     HeightsSpec heights;                ///< settings, including those that the file's extension implies
-    std::vector<InputFile> inputs;      ///< the height map, for a request
+    std::vector<InputFile> inputs;      ///< the height map of a BakeRequest; otherwise empty
     std::vector<GroundTile> tiles;      ///< only tiles with ground, row by row
     std::vector<std::byte> container;   ///< set if there is no folder
     std::vector<std::string> removed;   ///< containers referenced only by the previous world

@@ -4,7 +4,7 @@
 //
 //        y  |        . outside      points near the surface: side, and distance to the
 //           |    .  /  \            collider's surface along y
-//           |\_____/ .  \___        points anywhere: side, down to the required solid depth,
+//           |\_____/ .  \___        points anywhere: side, within the depth that must be solid,
 //           |  . inside     |       including outside the edges and above holes
 //        ---+---------------+-- x
 #pragma once
@@ -59,7 +59,7 @@ struct GroundAccuracy {
     GroundNear near;
     std::optional<GroundNear> seams;  ///< within a leaf of a seam between tiles; nullopt: no seams
     std::uint64_t uniform_points = 0;
-    WrongPercent uniform;                 ///< including holes and the sides
+    WrongPercent uniform;                 ///< also above holes and beyond the edges
     std::vector<GroundWorstPlace> worst;  ///< ten places at least four leaves apart, worst first
     std::vector<std::string> warnings;    ///< one line each
     double seconds = 0.0;

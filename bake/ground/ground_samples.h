@@ -17,10 +17,10 @@ enum class GroundSample : std::uint8_t { kNear, kSeam, kAnywhere };
 class GroundStrata {
   public:
     GroundStrata(std::uint64_t squares, std::uint64_t samples, std::uint64_t seed, GroundSample kind);
-    /// Whether a square before this one remains to be drawn.
+    /// Whether a draw remains whose square is before `square`.
     [[nodiscard]] bool before(std::uint64_t square) const { return next_ < samples_ && square_ < square; }
     [[nodiscard]] std::uint64_t square() const { return square_; }
-    /// Position in the square and height of the current draw, each in [0, 1).
+    /// The current draw: x and z in its square, and height in its range, each in [0, 1).
     [[nodiscard]] const std::array<double, 3>& place() const { return place_; }
     void advance();
 
@@ -42,8 +42,8 @@ struct GroundNear {
     WrongPercent wrong;
     double mean = 0.0;  ///< positive upwards
     double mean_abs = 0.0;
-    double p99 = 0.0;  ///< 99 % of the points have a smaller absolute distance
-    double most = 0.0;
+    double p99 = 0.0;           ///< 99 % of the points have a smaller absolute distance
+    double most = 0.0;          ///< largest absolute distance
     std::uint64_t missing = 0;  ///< points without a surface within range; excluded from distances
 };
 

@@ -6,19 +6,19 @@
 //        +-------------------------------+
 //        |               |               |       outside      no record (likewise inside)
 //        |    outside    |_______________|__
-//        |            _..+-´     |   |   |       patches      4 squares, 5² heights of 8 bits over the leaf's own range
+//        |            _..+-´     |   |   |       patches      4² squares, 5² heights of 8 bits over the leaf's range
 //        |       _.-´|   |inside |___|___|
 //        |___.--´|___|___|_______|_______|       inside
 //
-// Several stacked cells may intersect a leaf's column of squares; these cells and the next cell below share its
-// heights. Distances are therefore those to the surface, down to one leaf side below it. A column that is partly
-// without ground, or too steep, is split into single squares of 2² heights.
+// The surface of a leaf's 4² squares may cross several stacked cells; these cells and the next cell below share its
+// heights. Distances are therefore measured to the surface itself, down to one leaf side below it. A column of cells
+// that is partly without ground, or too steep, is split into single squares of 2² heights.
 //
-// Every stored height is within half a step of its leaf from the sample. 255 steps span the range of the leaf's 25
-// samples plus a 512th of the leaf's side; this span is rounded up by at most a sixteenth. The same bound holds for the
-// surface, because both surfaces are bilinear between the samples. Neighbouring leaves differ by at most the sum of
-// their bounds. Squares that rise by more than kSteepest of their side are the exception: there the surface may be
-// displaced sideways by up to kAside of a square.
+// Every stored height differs from its sample by at most half a code step of its leaf. 255 steps span the range of the
+// leaf's 25 samples plus a 512th of the leaf's side; this span is rounded up by at most a sixteenth. The same bound
+// holds for the surface, because both surfaces are bilinear between the samples. Neighbouring leaves differ by at most
+// the sum of their bounds. Squares that rise by more than kSteepest times their side are the exception: there the
+// surface may be displaced sideways by up to kAside times the side.
 #pragma once
 
 #include <cstdint>
@@ -33,8 +33,8 @@
 
 namespace relief {
 
-/// Largest rise within a leaf that 8 bits can store, relative to its side. A plane of such single squares has a slope
-/// of 71° along a row, and 64° along a diagonal.
+/// Largest rise within a leaf that a patch can store, relative to the leaf's side. A plane with this rise per square
+/// has a slope of 71° along a row, or 64° along a diagonal.
 inline constexpr double kSteepest = 2.9;
 /// Maximum sideways displacement of the surface of a steeper square, relative to its side.
 inline constexpr double kAside = 0.15;
@@ -47,7 +47,7 @@ inline constexpr unsigned kLeafLevel = 4;
 struct GroundPlace {
     double spacing = 1.0;    ///< between samples, object units
     glm::dvec3 origin{0.0};  ///< position of the first sample at height 0, object space
-    /// The squares whose steepness is counted; where tiles overlap, each square belongs to one tile.
+    /// The squares to count in Ground::steep; if tiles overlap, each square is counted in one tile.
     glm::uvec2 first{0};
     glm::uvec2 squares{std::numeric_limits<std::uint32_t>::max()};
     /// Splits from a root down to a leaf; fewer for a coarse collider, which keeps the roots of the ground.
@@ -61,7 +61,7 @@ struct Ground {
     DepthMap map;
     Bounds bounds;            ///< of the surface, object space
     std::uint64_t steep = 0;  ///< counted squares that are steeper than kSteepest
-    double error_max = 0.0;   ///< half of the largest step of a leaf, object units; 0: all squares are steep
+    double error_max = 0.0;   ///< half of the largest code step, object units; 0: all squares are steep
 };
 
 /// Builds the tree. The ground extends below its lowest point by a twentieth of its longest side, or more, as for

@@ -33,7 +33,7 @@ inline constexpr std::uint64_t kHeightSamplesMax = std::uint64_t{1} << 28;
 struct BetterFormat {
     std::optional<SampleType> type = {};  ///< nullopt: as given
     std::optional<ByteOrder> order = {};  ///< nullopt: as given
-    bool eight_bits = false;              ///< the given settings may also be correct: 8-bit samples times 256
+    bool eight_bits = false;              ///< the given order may also be correct: 8-bit samples times 256
     /// No better setting was found, but the samples look like noise, or neighbours differ less with the other
     /// signedness.
     bool doubtful = false;
@@ -62,7 +62,7 @@ class SampleRange {
         insert(low_, sample);
         insert(high_, -sample);
     }
-    /// Returns the lone values, with the gap in sample units; nullopt unless there are more other values than lone ones.
+    /// Returns the outliers, with the gap in sample units; nullopt unless the other values outnumber them.
     [[nodiscard]] std::optional<OutlierSample> lone() const;
 
   private:
@@ -103,7 +103,7 @@ class HeightMap {
     [[nodiscard]] const std::string& hash() const { return hash_; }  ///< XXH3-128 of the file
     /// The settings, including those that a raw file's extension implies.
     [[nodiscard]] const HeightsSpec& spec() const { return spec_; }
-    /// The lone samples of the rows read so far, excluding holes.
+    /// The outliers among the samples read so far, excluding holes.
     [[nodiscard]] std::optional<OutlierSample> lone() const;
     /// Always empty for images.
     [[nodiscard]] BetterFormat betterFormat() const;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Samples of an image across an axis of object space: the plane of a slice, or the window of an orthographic view.
 //
-// The frame is that of orthographic maps (bake/views/view.h): +y is up; for views along ±y, ±z is up.
+// Images are oriented like orthographic maps (bake/views/view.h): +y is up, or ±z for views along ±y.
 //
 //     view            +x    -x    +y    -y    +z    -z
 //     to the right    +z    -z    +x    +x    -x    +x
@@ -44,7 +44,7 @@ struct AxisGrid {
     [[nodiscard]] std::size_t pixel(std::uint32_t x, std::uint32_t y) const {
         return std::size_t{height - 1 - y} * width + x;
     }
-    /// Returns an image of these samples with all channels zero, and with its camera and position as attributes.
+    /// Returns an image of these samples with zeros in all channels, a camera, and view, unit and bounds as attributes.
     /// \param near  position of the camera along the axis, object units.
     [[nodiscard]] ExrImage image(double near, const Collider& collider,
                                  const std::vector<std::string>& channels) const;

@@ -5,7 +5,7 @@
 // NBack.X NBack.Y NBack.Z contain the back surface. Z is in object units along the ray, from the near plane of an
 // orthographic map or from the centre of a cube. It is +inf, with a zero normal, if there is no surface. The top row is
 // the highest y of an orthographic map, and t = 0 of a cube's face, as in OpenGL and KTX2. String attributes document
-// this, with format, projection, compare and face. Patches have no view of their own; view_image.h draws them.
+// these rules and the map's format, projection, `compare` and face. Patches have no view; view_image.h draws them.
 #pragma once
 
 #include <cstdint>

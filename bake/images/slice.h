@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Planes through a collider, drawn as figures: its combined field, and whether it classifies the points around a place
-// correctly.
+// Draws planes through a collider as figures: the field of all its maps together, or whether the collider classifies
+// the points around a place correctly.
 #pragma once
 
 #include <cstddef>

@@ -9,7 +9,7 @@
 //     normal.X/Y/Z   of the field at the first surface: unit length, object space, outwards
 //
 // Depths are +inf and the normal is zero if the ray hits no surface. A depth is negative if the surface lies in front of
-// the near face. The top row is the highest of the frame (axis_grid.h). If the inside extends to the end of the box, the
+// the near face. Images are oriented as in axis_grid.h, top row first. If the inside extends to the end of the box, the
 // face of the box counts as the surface, with a normal towards the viewer.
 #pragma once
 
@@ -31,9 +31,9 @@ inline constexpr std::uint32_t kViewSizeMax = 4096;
 /// Draws a view of the bounds. Depths are exact to 1/1024 of a ray step; near a surface, a step is at most one cell of
 /// a patch.
 ///
-/// A wall or a gap may be missed if its thickness along the ray is below 1/64 of its cell plus 1/8 of the finest texel
-/// (finestTexel()) or, if longer, 1/16384 of the ray. The limit rises by 1/4 of the cell between the two
-/// surfaces of a pair of patches, and by one finest texel if the collider has several maps.
+/// A wall or a gap may be missed if its thickness along the ray is below 1/64 of its cell, plus the longer of 1/8 of
+/// the finest texel (finestTexel()) and 1/16384 of the ray. The limit is larger by 1/4 of the cell in a leaf with a
+/// pair of patches, and by one finest texel if the collider has several maps.
 ///
 /// The result does not depend on the number of threads.
 /// \param view  index of kDirectionNames. \param size  texels along the longer side; kViewSizeMin to kViewSizeMax.

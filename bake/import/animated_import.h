@@ -42,7 +42,7 @@ void addClip(AnimatedMesh& mesh, MeshClip clip, std::vector<std::string>& warnin
 
 /// Adds the clips of another mesh; nodes are matched by name.
 /// \param from      its vertices are ignored.
-/// \param warnings  receives the skipped channels, without the file name.
+/// \param warnings  receives lines about skipped channels and renamed clips, without the file name.
 /// Errors, without the file name: kInvalidInput (no node name matches, or there is no clip), kLimit.
 [[nodiscard]] Result<void> addClipsOf(const AnimatedMesh& from, AnimatedMesh& mesh,
                                       std::vector<std::string>& warnings);

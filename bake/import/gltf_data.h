@@ -57,7 +57,7 @@ class GltfValue {
     [[nodiscard]] Result<std::vector<GltfValue>> objects(const char* name) const;
     /// Resolves the index in `member` to an object of the document's `list`; nullopt if the member is missing.
     [[nodiscard]] Result<std::optional<GltfValue>> named(const char* member, const char* list) const;
-    /// Resolves the index in `member`. Also fails if it is missing.
+    /// Like named(), but fails if the member is missing.
     [[nodiscard]] Result<GltfValue> needed(const char* member, const char* list) const;
     /// Returns entry `index` of the document's `list`. \param member  the member that holds the index, for messages.
     [[nodiscard]] Result<GltfValue> at(std::uint64_t index, const char* list, const char* member) const;
@@ -90,7 +90,7 @@ struct GltfDocument {
 
 /// Decodes a data URI.
 /// \param uri  "data:…".
-/// Errors, without a place: kInvalidInput.
+/// Errors, without a place in the document: kInvalidInput.
 [[nodiscard]] Result<std::vector<std::byte>> dataUriBytes(std::string_view uri);
 
 struct GltfView {
@@ -104,7 +104,7 @@ class GltfBuffers {
     /// Borrows both arguments.
     GltfBuffers(const GltfChunks& chunks, ImportFiles& files) : chunks_(chunks), files_(files) {}
 
-    /// Returns the view that the member `bufferView` of `from` references. Errors: kInvalidInput, kUnsupported (a
+    /// Returns the view that the member `bufferView` of `from` references. Errors: kInvalidInput, kUnsupported (another
     /// compression).
     [[nodiscard]] Result<GltfView> view(const GltfValue& from);
 

@@ -51,12 +51,12 @@ struct GltfNode {
                                                                          const GltfNode& node,
                                                                          std::vector<std::string>& warnings);
 
-/// Checks version and extensions. \param warnings  receives unsupported optional extensions. Errors: kInvalidInput,
-/// kUnsupported.
+/// Checks the version and the required extensions. \param warnings  receives kAnimatedVisibility if it applies. Errors:
+/// kInvalidInput, kUnsupported.
 [[nodiscard]] Result<void> checkGltf(const GltfValue& document, std::vector<std::string>& warnings);
 
-/// Reads all nodes, in file order. Errors: kInvalidInput, also if the nodes do not form trees, or if a node is a
-/// lower level of detail of itself and such levels are skipped.
+/// Reads all nodes, in file order. Errors: kInvalidInput, also if the nodes do not form trees or, with
+/// HiddenMode::kSkip, if a node is a lower level of detail of itself.
 [[nodiscard]] Result<std::vector<GltfNode>> readGltfNodes(const GltfValue& document, HiddenMode hidden);
 
 /// Returns the root nodes of the default scene, or of the first one. Errors: kInvalidInput.
@@ -135,7 +135,7 @@ class GltfMeshes {
     [[nodiscard]] MeshParts counts(std::size_t meshes) const;
 
   private:
-    /// Identifies vertex data by its place, because exporters write many accessors for the same bytes.
+    /// Location of vertex data in the file. Accessors do not identify data: exporters write many for the same bytes.
     using Key = std::tuple<std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t, bool, std::uint64_t>;
     struct Vertices {
         std::vector<glm::vec3> positions;
@@ -163,8 +163,8 @@ class GltfMeshes {
     std::uint64_t vertex_count_ = 0;
 };
 
-/// Adds every animation that moves a node of the mesh, under a unique name. Skips animations of zero length and
-/// animations that move none of its nodes, with a warning.
+/// Adds every animation that moves a node of the mesh, under a unique name. Skips other animations and animations of
+/// zero length, with a warning.
 /// \param mesh   its nodes are complete.
 /// \param nodes  for each node of the file, the node of the mesh, or nullopt.
 /// Errors: kInvalidInput, kLimit, kUnsupported.

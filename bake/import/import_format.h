@@ -36,8 +36,8 @@ struct MeshFormat {
 /// Looks up a format. \param extension  in any case, without the dot. \return nullptr if unknown.
 [[nodiscard]] const MeshFormat* meshFormat(std::string_view extension);
 
-/// Returns the extension of the format whose signature the file starts with; nullopt if there is none, or if it matches
-/// `extension`.
+/// Returns the extension of the format whose signature the file starts with; nullopt if there is none, or if the file
+/// matches `extension`.
 /// \param extension  lower case, without the dot.
 [[nodiscard]] std::optional<std::string> otherFormat(std::string_view extension,
                                                      std::span<const std::byte> bytes);

@@ -32,6 +32,7 @@ inline constexpr std::array<std::string_view, 8> kLengthUnits{"m", "cm", "mm", "
 /// quarter turn about x for ±z, and a half turn about x for −y.
 [[nodiscard]] glm::dmat3 rotationToUp(UpAxis up);
 
+/// Length unit and axes of a source file.
 struct SourceFrame {
     std::optional<double> metres;  ///< per unit of the file
     std::optional<UpAxis> up;
@@ -42,7 +43,7 @@ struct SourceFrame {
     std::string up_fault{};
 };
 
-/// Fails if the frame is invalid in a part that the caller does not override.
+/// Fails if the file's unit or axis is invalid and the caller does not override it.
 /// Errors, without the file name: kInvalidInput, naming the option to use.
 [[nodiscard]] Result<void> checkFrame(const SourceFrame& source, std::string_view unit,
                                       std::optional<UpAxis> up);
@@ -55,7 +56,7 @@ struct FrameChange {
     std::vector<std::string> warnings;
 };
 
-/// Computes the conversion.
+/// Computes the conversion to metres and +Y up.
 /// \param unit  one of kLengthUnits, or "" for the file's unit.
 /// \param up    nullopt for the file's axis.
 [[nodiscard]] FrameChange changeOf(const SourceFrame& source, std::string_view unit,

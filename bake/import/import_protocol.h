@@ -8,7 +8,7 @@
 // fields() of ImportOptions. Each NAME is an entry of ImportOptions::names. The worker does not use standard input or
 // output.
 //
-// For an image, KIND is kImportImage, and one pipe serves as result and as kImportAliveFd. After the first byte, the
+// For an image, KIND is kImportImage; one pipe is both kImportResultFd and kImportAliveFd. After the first byte, the
 // pipe carries an ImageSize and then each row as floats; a u32 of 0 precedes each of these. Any other u32 is an
 // ErrorCode; the length of the error text (u32) and the text follow and end the stream. Byte order is native.
 //
@@ -77,7 +77,7 @@ inline constexpr int kImportExitErrno = 128;
 /// Writes the whole message. \param target  importMessageSize(raw) bytes.
 void writeImportMessage(const Result<TriangleMesh>& raw, std::span<std::byte> target);
 
-/// Reads and validates an untrusted message. Marks and labels are empty or have one entry per triangle.
+/// Reads and validates an untrusted message. TriangleMesh::marks and labels are empty or have one entry per triangle.
 /// finishMesh() validates indices and coordinates, and ImportSource::finish() validates the values of marks.
 /// \param bytes         must not change during the call.
 /// \param triangle_max  at most kTriangleMax. A message with more triangles, or with more than three times as many

@@ -18,14 +18,14 @@ namespace relief {
 ///
 /// The header OFF is optional and may have the prefixes ST, C and N. The counts of vertices, faces and, optionally,
 /// edges follow. Vertices and faces may span several lines. The rest of their last line, usually colours, is skipped.
-/// Several vertices or faces may share a line if this matches the counts in the header. Such faces have no colours, and
-/// such vertices have as many numbers after their coordinates as the prefixes require.
+/// Several vertices or faces may share a line if the counts in the header then match. Faces that share a line have no
+/// colours; vertices that share a line have as many numbers after their coordinates as the prefixes require.
 [[nodiscard]] Result<PolygonMesh> readOff(std::span<const std::byte> bytes);
 
 /// Reads STL, as text or binary.
 ///
 /// Text starts with a line that begins with "solid"; keywords are case-insensitive, and line breaks count as spaces. A
-/// file may contain several solids; a triangle gets the first word of its solid's name. Normals are ignored. A file
+/// file may contain several solids; each is a group named by the first word of its name. Normals are ignored. A file
 /// is binary, regardless of its first bytes, if it is at least as long as its header's triangle count requires. Bytes
 /// after the last triangle cause a warning.
 [[nodiscard]] Result<PolygonMesh> readStl(std::span<const std::byte> bytes);

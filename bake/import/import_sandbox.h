@@ -18,8 +18,8 @@ struct SandboxLimits {
 
 /// Restricts this process irrevocably. Limits address space, stack and processor time; forbids core files, writing or
 /// growing files, new privileges and debuggers; ends the process when its parent thread ends. With Landlock, only files
-/// below `folder` can be opened, read-only. With seccomp, only a few system calls are allowed; others raise SIGSYS. Call
-/// this function while the process has a single thread.
+/// below `folder` can be opened, read-only. With seccomp, only a few system calls are allowed; others fail
+/// or raise SIGSYS. Call this function while the process has a single thread.
 /// \param folder  descriptor; -1 for none.
 /// \param result  descriptor of the memory that may still be mapped, truncated and sealed, or of the pipe that may
 /// still be written; -1 for none.

@@ -100,11 +100,11 @@ struct ImportScene {
 
 /// Returns the error for a file with vertices or lines, but without polygons; nullopt for other files.
 [[nodiscard]] std::optional<std::string> partsError(const MeshParts& parts);
-/// Warns about skipped lines, points, free forms and meshes, and about many loose vertices; one line each, without the
-/// file name.
+/// Warns about skipped lines, points, free-form shapes and meshes, and about many loose vertices; one line each,
+/// without the file name.
 void warnAboutParts(const MeshParts& parts, std::vector<std::string>& warnings);
 
-/// Merges all shown parts of the scene into one mesh, with marks for the job's names and with warnings of skipped parts.
+/// Merges all shown parts of the scene into one mesh, sets TriangleMesh::marks, and warns about skipped parts.
 /// Converts to metres and +Y up if the frame or the job specifies unit and axis. Counts all triangles before
 /// allocating, because a small file can place one mesh many times.
 /// Errors, without the file name: kInvalidInput (nothing to show, a node within itself, an invalid frame), kUsage (a

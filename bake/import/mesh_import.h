@@ -11,7 +11,7 @@
 
 namespace relief {
 
-/// Reads a mesh file in a worker process (the program relief-import beside this one, or in ../libexec/relief). The
+/// Reads a mesh file in a worker process (relief-import, beside this program or library, or in ../libexec/relief). The
 /// worker has limits on memory and time, cannot write files, and reads only files below the mesh's folder. Its output
 /// is validated like an untrusted file. Blocks; leaves no process or file behind. The result equals that of importMesh.
 /// Errors, each naming the file: those of importMesh; kInvalidInput (the importer crashed), kLimit (memory or time

@@ -56,8 +56,8 @@ class PolygonCutter {
     std::vector<glm::uvec3> best_;
 };
 
-/// Rotates the corners of a polygon's triangles so that no triangle has the same first vertex as the previous triangle;
-/// shapes do not change. assimp marks polygon boundaries in this way. Using its order keeps baked files byte-identical.
+/// Rotates the corners of triangles so that consecutive triangles have the same first vertex only if they form a
+/// quadrilateral; shapes do not change. assimp marks polygons in this way. Its order keeps baked files byte-identical.
 class TriangleStarts {
   public:
     /// \param polygon  its triangles, as vertex indices of the mesh.

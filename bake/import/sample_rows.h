@@ -20,7 +20,7 @@ class SampleRows {
 
     [[nodiscard]] std::uint64_t columns() const { return columns_; }
     [[nodiscard]] std::uint64_t rows() const { return rows_; }
-    /// Maximum possible value of integer samples; 0 if samples are heights as floats.
+    /// Maximum possible value of unsigned samples; 0 for other types, which are heights in metres.
     [[nodiscard]] std::uint32_t most() const { return most_; }
 
     /// Reads the next row, which must exist.

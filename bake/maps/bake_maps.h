@@ -17,15 +17,15 @@
 
 namespace relief {
 
-/// How to classify doubtful space, for maps whose decode is plane. kInside: as solid, so that no particle enters a
-/// wall. kOutside: as free, so that no free volume is lost.
+/// How maps with Decode::kPlane, which include all patches, classify doubtful space. kInside: as solid, so that no
+/// particle enters a wall. kOutside: as free, so that no free volume is lost.
 enum class Prefer : std::uint8_t { kNeither, kInside, kOutside };
 
 template <>
 inline constexpr std::array<std::string_view, 3> kWordsOf<Prefer>{"neither", "inside", "outside"};
 
-/// The effort per texel for maps whose decode is plane: rays along each side of a texel's footprint, and rounds of
-/// search among neighbouring normals.
+/// The fitting effort for maps with Decode::kPlane: rays along each side of a texel's footprint, and rounds of search
+/// among neighbouring normals; for patches, the density of samples and the number of cells tried.
 enum class Quality : std::uint8_t { kFast, kNormal, kBest };
 
 template <>
@@ -36,8 +36,8 @@ struct BakeOptions {
     std::uint32_t resolution = 512;  ///< texels along a side, for maps whose spec has no size
     Quality quality = Quality::kNormal;
     Prefer prefer = Prefer::kNeither;
-    std::uint64_t budget = 0;  ///< bytes of patches, only recorded in the collider; 0: none
-    /// Object units: MapSpec::texel for bakePatchesWithin(). 0: limited only by the budget.
+    std::uint64_t budget = 0;  ///< limit of patches in bytes, only recorded in the collider; 0: not recorded
+    /// MapSpec::texel for bakePatchesWithin(), object units; bake() ignores it. 0: limited only by the budget.
     float texel = 0.0F;
     std::optional<Bounds> roots_contain{};  ///< PatchOptions::roots_contain
     unsigned threads = 0;                   ///< 0: all cores; the result does not depend on it
@@ -47,7 +47,7 @@ struct BakeOptions {
 };
 
 struct MapReport {
-    MapSpec spec;               ///< complete
+    MapSpec spec;               ///< with all defaults filled in
     std::uint64_t covered = 0;  ///< texels with a surface
     std::uint64_t texels = 0;
 
@@ -61,7 +61,7 @@ struct BakeReport {
     double build_ms = 0.0;   ///< acceleration structure
     double trace_ms = 0.0;   ///< rays
     double encode_ms = 0.0;  ///< normals and texels
-    double fit_ms = 0.0;     ///< rays and planes of maps whose decode is plane, and patches
+    double fit_ms = 0.0;     ///< maps with Decode::kPlane, including their rays
     std::vector<MapReport> maps;
     std::vector<std::string> warnings;  ///< likely errors in the options; one line each
 };
@@ -82,7 +82,7 @@ struct Baked {
 /// mesh, regardless of the maps. Depends on the spacing of floats at the farthest corner, relative to the standard
 /// deviation of the points' distance from the surface. At most 50.
 [[nodiscard]] double wrongByFloats(const TriangleMesh& mesh);
-/// Returns whether floats cause more than half of a percentage of wrong points, so that more bytes do not help.
+/// Returns whether coarse floats cause more than half of `wrong_percent`, so that more bytes do not help.
 [[nodiscard]] inline bool floatsLimit(const TriangleMesh& mesh, double wrong_percent) {
     return 2.0 * wrongByFloats(mesh) > wrong_percent;
 }
