@@ -34,7 +34,7 @@ void fields(FieldVisitor& visit, const BudgetTrial& attempt);
 
 struct BudgetSearchOptions {
     double max_error_percent = 1.0;
-    std::uint64_t budget_min = 32'000;      ///< bytes; lowered to budget_max
+    std::uint64_t budget_min = 32'000;      ///< bytes; budget_max if that is smaller
     std::uint64_t budget_max = 64'000'000;  ///< bytes
     BakeOptions bake;                       ///< its maps are ignored
     /// Fewer samples than `relief check` uses. Their noise (a standard deviation of 0.04 percentage points at 1 %) is

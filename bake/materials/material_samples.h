@@ -11,14 +11,14 @@
 
 namespace relief {
 
-/// Weight of a contact that is more than a texel away from any other material. Other contacts weigh 1, because texels do
-/// not resolve them.
+/// Weight of a contact that is more than a texel away from any other material. A closer contact weighs 1, because
+/// texels do not resolve the border between materials.
 inline constexpr std::uint32_t kClearContact = 8;
 
 struct MaterialSample {
     glm::dvec3 point;     ///< on the collider's surface
     glm::dvec3 normal;    ///< of the collider at that point
-    std::uint8_t id = 0;  ///< of the nearest surface of the source
+    std::uint8_t id = 0;  ///< of the nearest source triangle, an index into MaterialSource::list
     std::uint32_t weight = kClearContact;
 };
 

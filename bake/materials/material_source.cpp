@@ -10,7 +10,7 @@
 namespace relief {
 namespace {
 
-/// Returns the index of a material by name, and adds new names. Fails if the name has a different response.
+/// Returns the index of a material by name, and adds new names. Fails if the name has another restitution or friction.
 Result<std::size_t> idOf(const SurfaceName& name, const TriangleMesh& mesh,
                          std::map<std::string, std::size_t>& known, std::vector<Material>& list) {
     const auto [found, added] = known.try_emplace(name.material, list.size());

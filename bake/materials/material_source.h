@@ -18,17 +18,17 @@ struct MaterialSource {
     std::vector<glm::uvec3> triangles;  ///< counter-clockwise seen from outside
     std::vector<std::uint8_t> ids;      ///< per triangle, an index into `list`
     std::vector<Material> list;         ///< in file order
-    /// True if the surface has no sheets. Then the normal can distinguish the materials on the two sides of a board; a
-    /// sheet has the same material on both.
+    /// True if holes are closed and the source has no repairs, sheets or terrains. The normal then distinguishes the
+    /// materials on the two sides of a thin wall; a sheet has one material on both sides.
     bool sides = true;
 
     [[nodiscard]] bool empty() const { return list.empty(); }
 };
 
 /// Returns the materials of an imported mesh, merged by name; none if all have the same name.
-/// \param mesh    its labels are still the source's.
+/// \param mesh    its triangles are still those of the source (TriangleMesh::labels).
 /// \param single  keeps a single material, too, if it has a name.
-/// Errors, naming the mesh: kLimit (more than kMaterialsMax), kInvalidInput (one name with two responses).
+/// Errors, naming the mesh: kLimit (more than kMaterialsMax), kInvalidInput (one name, two restitutions or frictions).
 [[nodiscard]] Result<MaterialSource> materialSource(const TriangleMesh& mesh, bool single);
 
 }  // namespace relief

@@ -16,9 +16,9 @@ inline constexpr double kMaterialsFractionMax = 0.06;
 /// Minimum allowance for a small collider: patches of flat surfaces use few bytes, regardless of their materials.
 inline constexpr std::size_t kMaterialsBytesMin = 4096;
 
-/// Builds the materials of a collider within kMaterialsFractionMax of its maps' bytes or kMaterialsBytesMin; none if `source`
-/// is null. If the budget does not suffice, minimizes the area with a wrong material. The result does not depend on the
-/// number of threads.
+/// Builds the materials of a collider; none if `source` is null. Their budget is the larger of kMaterialsBytesMin and
+/// kMaterialsFractionMax times the maps' bytes. If it does not suffice, minimizes the area with a wrong material. The
+/// result does not depend on the number of threads.
 [[nodiscard]] Materials materialsFor(const Collider& collider, const MaterialSource* source);
 
 }  // namespace relief

@@ -24,7 +24,7 @@ struct FieldValue {
 /// pass through.
 using Field = std::function<std::optional<FieldValue>(const glm::vec3&)>;
 
-/// Returns the field of the vote: the side, and the normal of the deciding plane. \param collider  borrowed.
+/// Returns the field of the vote: the distance to the deciding surface, and its normal. \param collider  borrowed.
 [[nodiscard]] Field fieldOf(const Collider& collider);
 
 /// Like fieldOf(), with the distance to the nearest surface (nearest_surface.h); takes about 13 times as long.
@@ -62,11 +62,11 @@ struct FieldAccuracy {
     double distance_p99 = 0.0;
     double far_percent = 0.0;      ///< points near the surface that are outside without a distance
     double unknown_percent = 0.0;  ///< points near the surface without a value
-    /// Angle between the normals of field and surface, in degrees, over surface points that are not buried and have
-    /// both.
+    /// Angle between the normals of field and surface, in degrees, over the surface points that are not buried and
+    /// where the field has a normal.
     double normal_mean = 0.0;
     double normal_p99 = 0.0;
-    double no_normal_percent = 0.0;  ///< of the surface points that are not buried
+    double no_normal_percent = 0.0;  ///< points without a normal, of the surface points that are not buried
     InsideAccuracy inside;
     double seconds = 0.0;  ///< duration of the measurement
 };
@@ -82,7 +82,7 @@ void measureDistances(const TruthSamples& samples, const Field& field, FieldAccu
 
 struct ColliderAccuracy {
     FieldAccuracy field;
-    double unseen_percent = 0.0;  ///< area that is not buried and that no map sees (sight.h)
+    double unseen_percent = 0.0;  ///< area that no map sees (sight.h), of the area that is not buried
     double buried_percent = 0.0;  ///< of the whole area
     std::uint64_t gpu_bytes = 0;
 };

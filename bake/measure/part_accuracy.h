@@ -17,7 +17,7 @@ namespace relief {
 struct PartOptions {
     std::uint32_t points = 1000;         ///< per part, at most; a lost part is confirmed with at least 256
     std::uint32_t points_min = 48;       ///< per part, at least
-    std::uint64_t points_all = 200'000;  ///< for all parts together, except points_min
+    std::uint64_t points_all = 200'000;  ///< shared by parts of min_part or longer; at least points_min each
     std::size_t parts_max = 10'000;      ///< only the largest parts are measured
     std::uint64_t seed = 1;
     double sigma_fraction = 0.005;  ///< as in AccuracyOptions, in units of the part's longest side
@@ -77,10 +77,10 @@ struct PartsAccuracy {
     double min_part = 0.0;  ///< object units
     /// By state: lost, coarse, and so on; within a state by wrong points times size.
     std::vector<PartAccuracy> parts;
-    /// Nodes, then materials, with a name and several parts; least accurate first.
+    /// Named nodes, if there are several, then named materials, if there are several; each least accurate first.
     std::vector<GroupAccuracy> groups;
     std::uint64_t count[kPartVerdicts] = {};  ///< number of parts in each state
-    /// Minor and coarse parts together make more than kGoodPercent of the surface wrong.
+    /// Minor and coarse parts together make more than kGoodPercent of the points near the surface wrongly outside.
     bool minor_counts = false;
     IgnoredParts ignored;
 
@@ -91,7 +91,7 @@ struct PartsAccuracy {
 
 /// Measures points near each part's surface in the baked solid. Points are area-weighted, with an isotropic Gaussian
 /// offset. If most of a part seems to be missing, closer points are measured, too. Truth is the side of the whole mesh,
-/// except that a shell ends at its target_thickness. If fewer than 256 points classify a part as lost, it is measured
+/// except that a shell ends at its target_thickness. If a part is lost and had fewer than 256 points, it is measured
 /// again with 256.
 ///
 /// A lost part is minor if it is shorter than `min_part`. It is also minor if it is not missing, and enough points at a

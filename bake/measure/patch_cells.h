@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures the local resolution of a map of patches. Its finest cell does not describe other places, because cells grow
-// where the surface is simple.
+// Measures the local resolution of a map of patches. The size of the finest cell is not representative, because cells
+// are larger where the surface is simple.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace relief {
 [[nodiscard]] std::uint32_t patchCount(const DepthMap& map);
 
 /// Returns the spacing of heights in the leaf at a point (for a pair, of the first patch), in object units; the side of
-/// the leaf if it stores none.
+/// the leaf if it stores no heights.
 /// \param p  object space. Outside the roots, the nearest root is used.
 [[nodiscard]] double patchSpacingAt(const DepthMap& map, const glm::vec3& p);
 

@@ -22,8 +22,8 @@ class Sight {
     /// Borrows both arguments.
     Sight(const DepthMap& map, const MeshQuery& query);
 
-    /// Returns whether the map can represent the surface at the point. It can if a line of sight within the volume leads
-    /// from a stored end of the map's ray to a point in front of the surface, at kSurfaceStep.
+    /// Returns true if a free line within the volume leads from a start of the map's rays to a point kSurfaceStep in
+    /// front of the surface, so that the map can represent the surface. Always true for patches.
     [[nodiscard]] bool sees(const SurfacePoint& point) const;
 
     /// Returns the start of a free line of sight to a point in object space. nullopt: there is none, so even the finest

@@ -17,7 +17,7 @@ namespace relief {
 struct AccuracyOptions {
     std::uint32_t samples = 200'000;  ///< per kind; above 0
     std::uint64_t seed = 1;
-    /// Standard deviation of points near the surface, in units of the longest side of the mesh's box.
+    /// Standard deviation of the offset of points near the surface, in units of the longest side of the mesh's box.
     double sigma_fraction = 0.005;
 };
 
@@ -39,8 +39,8 @@ struct SurfacePoint {
     return static_cast<std::size_t>(std::ranges::count(points, true, &SurfacePoint::buried));
 }
 
-/// A point inside, with its nearest boundary. A surface with the inside on both sides is not a boundary; points nearer
-/// to such a surface are omitted.
+/// A point inside, with its nearest boundary. A surface with the inside on both sides is not a boundary; points are
+/// omitted if such a surface is nearer.
 struct InsidePoint {
     glm::vec3 position{0.0F};
     double depth = 0.0;   ///< distance to the boundary, object units, above 0
@@ -62,7 +62,7 @@ struct TruthSamples {
 [[nodiscard]] std::vector<TruthPoint> sampleNear(const MeshQuery& query, const AccuracyOptions& options);
 
 /// Samples all kinds. The result does not depend on the number of threads. Normals face the outside as
-/// MeshQuery::inside defines it. If both sides are outside, as on open meshes, they follow the winding.
+/// MeshQuery::inside defines it. If both sides are outside, as on open meshes, normals follow the winding.
 [[nodiscard]] TruthSamples sampleTruth(const MeshQuery& query, const AccuracyOptions& options);
 
 /// Samples only the points on the surface: sampleTruth(…).surface.

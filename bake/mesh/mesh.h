@@ -73,8 +73,8 @@ struct TriangleMesh {
     std::vector<SurfaceName> surface_names;
     std::uint64_t dropped_triangles = 0;  ///< triangles without area
     std::uint64_t unused_vertices = 0;    ///< vertices of the source without a triangle
-    /// Number of final triangles that are not part of the source's surface: caps over holes (hole_caps.h), rims of
-    /// shells, and ground below terrains (bake/shape). Measurements exclude them.
+    /// Number of triangles at the end of `triangles` that are not part of the source's surface: caps over holes
+    /// (hole_caps.h), rims of shells, and ground below terrains (bake/shape). Measurements exclude them.
     std::uint64_t cap_triangles = 0;
     std::uint64_t closed_holes = 0;
     std::uint64_t source_triangles = 0;  ///< in the file, if different from surfaceTriangles(); else 0
@@ -96,20 +96,20 @@ struct TriangleMesh {
     }
 };
 
-/// Returns a mesh without triangles for a new surface of the same source: with its name, hash, unit, dependencies, warnings
-/// and number of dropped triangles.
+/// Returns a mesh without triangles for a new surface of the same source. Copies the name, hash, unit, dependencies,
+/// warnings and number of dropped triangles.
 [[nodiscard]] TriangleMesh meshOfSource(const TriangleMesh& source);
 
 /// Establishes the invariants of TriangleMesh: drops triangles without area, with their marks and labels, drops unused
 /// positions, and computes the bounds.
 /// \param mesh  has no marks or one per triangle, and no labels or one per triangle.
 /// Errors, naming mesh.name: kInvalidInput (index out of range, coordinate not finite or beyond 1e15, no triangle with
-/// an area), kLimit (kTriangleMax).
+/// an area, longest side below 1e-15), kLimit (kTriangleMax).
 [[nodiscard]] Result<TriangleMesh> finishMesh(TriangleMesh mesh);
 
 /// Truncates triangles, marks and labels to `count`. \pre moveTriangle() has filled the entries that are kept.
 void keepTriangles(TriangleMesh& mesh, std::size_t count);
-/// Clears the labels if there is only one surface, and clears its name if the material is unnamed.
+/// Clears `labels` if there is only one surface, and also `surface_names` if that surface's material is unnamed.
 void dropSingleLabel(TriangleMesh& mesh);
 void moveTriangle(TriangleMesh& mesh, std::size_t from, std::size_t to);
 

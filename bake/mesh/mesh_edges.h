@@ -17,7 +17,7 @@ namespace relief {
 /// An edge with an odd number of triangles: the border of a hole, or of a flap on a closed surface. Vertices are the
 /// lowest indices of their positions.
 struct OddEdge {
-    std::uint32_t from = 0;  ///< the direction of most of its triangles
+    std::uint32_t from = 0;  ///< `from` to `to` is the direction in most of its triangles
     std::uint32_t to = 0;
 
     friend bool operator==(const OddEdge&, const OddEdge&) = default;

@@ -77,9 +77,9 @@ class MeshQuery {
     [[nodiscard]] const TriangleMesh& mesh() const { return *mesh_; }
 
     /// Classifies a point by the majority of seven rays, kParityDirections. Their parity is independent of the winding
-    /// and tolerates holes for most points. For PreparedMesh::woundShells, the winding number decides, so that the
+    /// and tolerates holes for most points. If PreparedMesh::woundShells(), the winding number decides, so that the
     /// overlap of two solids is inside. In a union (PreparedMesh::unionOf), each body that uses parity is tested
-    /// separately; if the winding number decides for all bodies, three rays vote. Voids (PreparedMesh::voids) are inside.
+    /// separately; if the winding number decides for all bodies, three rays vote. Voids are inside.
     [[nodiscard]] bool inside(const glm::vec3& p) const;
 
     /// Like inside(), without voids.
@@ -92,8 +92,8 @@ class MeshQuery {
     /// Whether no void meets the box. Conservative: may return false for a box that meets none.
     [[nodiscard]] bool awayFromVoids(const glm::dvec3& low, const glm::dvec3& high) const;
 
-    /// Returns the bodies that contain `p`, as the start of a path that counts each crossed triangle by bodyOf(). On
-    /// open meshes the state at the end of the path can differ from inside().
+    /// Returns a counter of the bodies that contain `p`. To follow a path from `p`, pass bodyOf() each crossed triangle
+    /// to cross(). On open meshes, the counter at the end of the path can differ from inside().
     [[nodiscard]] BodyCounter bodiesAt(const glm::vec3& p) const;
     /// The body of a triangle: 0 if the winding number decides, else the number of a body that uses parity.
     [[nodiscard]] std::uint32_t bodyOf(std::uint32_t triangle) const {

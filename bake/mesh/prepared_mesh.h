@@ -19,7 +19,7 @@ namespace relief {
 
 struct EmbreeMesh;
 
-/// Free space within a mesh that cannot be reached from outside: a grid of classified nodes.
+/// Classifies the nodes of a grid. A void is free space within a mesh that is unreachable from outside.
 struct Voids {
     enum class Place : std::uint8_t { kSolid, kOutside, kVoid };
 
@@ -77,8 +77,8 @@ class PreparedMesh {
     [[nodiscard]] const std::vector<OddEdge>& oddEdges() const;
     /// Whether there is no odd edge. Then all rays from a point have the same crossing parity.
     [[nodiscard]] bool closed() const { return oddEdges().empty(); }
-    /// hasSeveralShells() of a closed mesh after windOutwards. The winding number then classifies points, not the parity
-    /// of ray crossings.
+    /// Whether the winding number classifies points, not the parity of ray crossings: in a closed mesh after
+    /// windOutwards if hasSeveralShells(), and in a union if all bodies are 0.
     [[nodiscard]] bool woundShells() const;
     /// Returns −1 if the mesh is closed and inside out (triangles are clockwise seen from outside), else 1. Here,
     /// closed means that the triangles' area vectors sum to zero; the sign is that of the enclosed volume.
@@ -91,7 +91,7 @@ class PreparedMesh {
     /// triangle is flipped.
     /// \param turn  per triangle: swap its second and third corners.
     [[nodiscard]] PreparedMesh woundOutwards(const std::vector<bool>& turn) &&;
-    /// The last argument of woundOutwards; empty if no triangle was flipped.
+    /// The argument of woundOutwards; empty if no triangle was flipped.
     [[nodiscard]] const std::vector<bool>& turned() const { return state_->turned; }
     /// Builds a mesh of parts that each enclose a volume; the inside is their union.
     /// \param bodies  per triangle: 0 if the winding number decides (wound outwards), else the number of a body that

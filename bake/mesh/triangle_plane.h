@@ -36,7 +36,7 @@ struct TrianglePlane {
     return planeOf(positions[t.x], positions[t.y], positions[t.z]);
 }
 
-/// Whether the corners span a plane, so that a float normal can be computed.
+/// Whether the corners span a plane, so that its unit normal exists.
 [[nodiscard]] inline bool hasArea(const TrianglePlane& plane) {
     return plane.normal != glm::dvec3(0.0);
 }

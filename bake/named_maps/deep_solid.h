@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Deep solid: points around which the whole cross-section of the texel is solid. No plane may cut them off.
 //
-// The rays of a footprint end at the surface. A steep plane reaches far deeper, where no ray detects the loss. This
-// test therefore intersects a few lines along the texel with the solid. A ball with the radius of the texel's diagonal
-// covers the texel's cross-section:
+// The rays of a footprint end at the surface. A steep plane cuts far deeper, where no ray detects the lost solid. This
+// test therefore intersects a few lines along the texel with the solid. A ball around P with the texel's diagonal as
+// its radius covers the texel's cross-section:
 //
-//     |‾‾|‾‾‾‾‾‾|‾‾|      If one of the lines is outside for some length before and behind P's depth, P is not
-//     |  |  .P  |  |      deep, and may be cut to improve the points near the surface.
+//     |‾‾|‾‾‾‾‾‾|‾‾|      If one of the lines is outside anywhere in the ball, P is not deep, and may be cut off
+//     |  |  .P  |  |      to improve the points near the surface.
 //     |__|______|__|
 #pragma once
 
@@ -25,7 +25,7 @@ namespace relief {
 /// Tests planes for one texel at a time. Traces lines on demand. Not thread-safe.
 class DeepSolid {
   public:
-    /// \param query, map  borrowed; must outlive it.
+    /// \param query, map  borrowed; must outlive this object.
     DeepSolid(const MeshQuery& query, const DepthMap& map) : query_(query), map_(map) {}
 
     /// \param texel  index: (face · height + y) · width + x

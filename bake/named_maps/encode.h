@@ -34,8 +34,8 @@ class NormalTable {
 /// thread.
 ///
 /// Normals are those of the triangles, towards the free space in which the ray started. If a ray may start inside,
-/// surfaces hit from their inner side are omitted. A cube whose centre lies on the surface then stores the centre as
-/// the surface, with everything behind it inside.
+/// surfaces hit from their inner side are omitted. A cube whose centre lies on the surface stores the centre as the
+/// surface for such a ray instead: everything behind the centre is inside.
 /// \return the number of texels with a surface.
 std::uint64_t encodeRows(const RayScene& scene, const NormalTable& normals, const View& view,
                          const RowRange& rows, std::span<const Hit> near_hits, std::span<const Hit> far_hits,

@@ -56,7 +56,7 @@ class EndView {
         : far_(end == RayEnd::kFar),
           u_max_(view.projection() == Projection::kCube ? double{kCubeDepthMax} : 1.0) {}
 
-    /// Returns a ray without a hit.
+    /// Converts a texel's ray to a ray from the viewer, without a hit.
     [[nodiscard]] FootprintRay fromViewer(const TexelRay& ray) const {
         return far_ ? FootprintRay{ray.origin + u_max_ * ray.direction, -ray.direction, -1.0, glm::dvec3(0.0)}
                     : FootprintRay{ray.origin, ray.direction, -1.0, glm::dvec3(0.0)};
@@ -65,7 +65,7 @@ class EndView {
 
     /// Returns the plane as a texel stores it; half-float depths are rounded towards the viewer.
     [[nodiscard]] Surface surfaceOf(const FittedPlane& plane, MapFormat format) const {
-        // Exact in double precision: both use the same 65534 steps.
+        // Exact in double precision: the plane's code and 16-bit depths use the same 65534 steps.
         constexpr double kCodes = kDepthSteps;
         const double code = plane.code;
         const double depth = (far_ ? kCodes - code : code) / kCodes * u_max_;

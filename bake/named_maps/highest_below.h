@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the plane with the highest mean over a set of points among the planes that lie below all of them. This is the
-// supporting plane of a texel (plane_fit.h) whose rays are parallel and all hit a surface.
+// Finds the plane that lies below all points of a set and has the highest mean over them. This is the supporting plane
+// of a texel (plane_fit.h) whose rays are parallel and all hit a surface.
 //
-// The plane is the facet of the points' lower convex hull over their mean, which is the origin. The search starts from
-// three points whose triangle contains the origin. While some point is below their plane, the lowest such point replaces
-// one of the three (the dual simplex method):
+// The plane contains the facet of the points' lower convex hull on the vertical line through their mean, the origin.
+// The search starts from three points whose triangle contains the origin. While some point is below their plane, the
+// lowest such point replaces one of the three (the dual simplex method):
 //
 //      ·       ·
 //        \   ·          · points, heights upwards

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fits supporting planes: the planes that texels store if the map's decode is "plane".
 //
-// A block of rays samples the footprint of a texel. Candidate planes have normals of the footprint. Each candidate is
-// pushed towards the viewer until no sampled surface point lies in front of it, and is rounded so that this remains
-// true. The candidate with the least free space behind it wins:
+// A block of rays samples the footprint of a texel. Candidate planes have normals of the sampled surfaces. Each
+// candidate is pushed towards the viewer until no sampled surface point lies in front of it, and is rounded so that
+// this remains true. The candidate with the least free space behind it wins:
 //
 //       viewer            A texel is outside in front of its plane, and inside behind it. A pushed plane never
-//      | | | | |          misclassifies the inside of a sampled surface point. The fit minimises the space between
+//      | | | | |          misclassifies the solid behind a sampled surface point. The fit minimises the space between
 //     --.-----.-- plane   plane and surface, which is wrongly inside. Other maps that see this space correct it, so
 //       |\   /|            additional views can only help.
 //      surface
@@ -47,7 +47,7 @@ struct PlaneFitOptions {
     /// space. Has no effect at steps, where the spread exceeds `span`/4.
     double inward_shift = 0.0;
     /// Maximum distance of a point of the texel from its nearest ray, in texel diagonals. A plane whose normal has a
-    /// smaller cosine with the rays drops by more than the diagonal between two rays.
+    /// cosine below rays_apart with the rays drops by more than the diagonal between two rays.
     double rays_apart = 0.0;
     /// Rays start in free space. If false, a ray without a hit may be entirely in the solid.
     bool starts_free = true;
@@ -79,13 +79,13 @@ void forNeighbours(NormalIndex from, int step, const Visit& visit) {
 /// \param rays    the footprint: 1 to kFootprintRaysMax.
 /// \param around  returns rays around the footprint, whose surface points may not lie in front of steep planes either.
 /// Called at most once, for the first steep plane. May be null.
-/// \param edge    rays that barely hit a surface, next to rays that miss it. They support steep planes, and the plane
-/// of a footprint without hits, which faces the viewer.
+/// \param edge    rays that barely hit a surface, next to rays that miss it. Their points may not lie in front of steep
+/// planes either. If no ray of the footprint hits, the plane faces the viewer at the nearest of these points.
 /// \param centre  the texel's centre ray, from the viewer; the depth of the plane is measured along it.
 /// \param zero_depth  the point of that ray at map depth 0.
-/// \param deep  points of the texel deep in the solid. Planes that the rays do not justify must not cut off these
-/// points. May be null.
-/// \return nullopt for an empty texel: no ray hits a surface, or the result is unknown and `starts_free` is false.
+/// \param deep  rejects planes that cut off deep solid. Tests planes steeper than `rays_apart` or moved by
+/// `inward_shift`, and all planes if `starts_free` is false. May be null.
+/// \return nullopt for an empty texel: no ray hits a surface, or `starts_free` is false and `deep` rejects all planes.
 [[nodiscard]] std::optional<FittedPlane> fitSupportingPlane(
     std::span<const FootprintRay> rays, const AroundRays& around, std::span<const FootprintRay> edge,
     const FootprintRay& centre, const glm::dvec3& zero_depth, const PlaneFitOptions& options,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Traces single rays of one end of a view with Embree: between texels, where scan_convert.h has no result.
+// Traces single rays from one end of a view with Embree. These rays lie between those of scan_convert.h.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ namespace relief {
 /// Not thread-safe: caches the planes of recent triangles.
 class RayProbe {
   public:
-    /// \param scene, view  borrowed; must outlive it.
+    /// \param scene, view  borrowed; must outlive this object.
     RayProbe(const RayScene& scene, const View& view, RayEnd end);
 
     [[nodiscard]] Hit trace(std::uint32_t face, std::uint32_t x, std::uint32_t y);
@@ -36,15 +36,15 @@ class RayProbe {
     [[nodiscard]] Hit hitOf(std::uint32_t face, std::uint32_t x, std::uint32_t y, std::uint32_t triangle);
     /// Whether the ray hit the inner side of a closed mesh.
     [[nodiscard]] bool hitsInnerSide(const Hit& hit) const { return hit.fromBehind() != scene_.insideOut(); }
-    /// Traces again beside the ray, because Embree misses some vertices and edges that a ray hits exactly, even in
-    /// robust mode. A triangle that such a ray hits before `hit` counts if the original ray touches it.
+    /// Traces rays beside the original ray, because Embree misses some vertices and edges that a ray hits exactly, even
+    /// in robust mode. A triangle that a ray beside hits before `hit` counts if the original ray touches the triangle.
     [[nodiscard]] Hit traceBeside(std::uint32_t face, std::uint32_t x, std::uint32_t y, const Hit& hit);
     [[nodiscard]] RTCRayHit traced(const Segment& segment) const;
     /// \param along  dot(normal, direction of growing depth)
     [[nodiscard]] bool isFromBehind(double along) const {
         return end_ == RayEnd::kNear ? along > 0.0 : along < 0.0;
     }
-    /// Whether a line through `origin`, perpendicular to `right` and `up`, passes the triangle within kTouching.
+    /// Whether a line through `origin`, perpendicular to `right` and `up`, passes within kTouching of the triangle.
     [[nodiscard]] bool touches(const glm::dvec3& origin, const glm::dvec3& right, const glm::dvec3& up,
                                std::uint32_t triangle) const;
     /// Returns the triangle with the best facingScore(); of equal ones, the one with the lowest index.

@@ -59,8 +59,8 @@ class RayScene : public MeshQuery {
     bool closed_;
 };
 
-/// Returns whether a ray of this end that first hits the inner side of a surface has started in the solid, because the
-/// centre lies on the surface of a closed solid. Empty texels may still mean outside.
+/// Returns whether the rays of this end start at a centre on the surface of a closed solid. A ray that first hits the
+/// inner side of a surface then starts in the solid. Empty texels may still mean outside.
 [[nodiscard]] inline bool centreMayBeInSolid(const RayScene& scene, const View& view, RayEnd end) {
     return view.centre_on_surface && end == RayEnd::kNear && scene.closed();
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scan conversion in double precision: finds the triangles that the rays of all texels hit, triangle by triangle and
-// row by row. The rays of an orthographic view are parallel, and those of a cube's face start at one point. This is
-// several times as fast as tracing, handles both ends of the view at once, and does not depend on the arithmetic of a
-// ray tracer.
+// row by row. The rays of an orthographic view are parallel, and those of a cube's face start at one point. Scan
+// conversion is several times as fast as tracing, handles both ends of the view at once, and does not depend on the
+// arithmetic of a ray tracer.
 #pragma once
 
 #include <array>
@@ -24,10 +24,10 @@ namespace relief {
 /// Depths are those of the triangles' planes in double precision. A ray through the edge of two triangles hits both,
 /// exactly: it cannot slip through. If triangles meet there or coincide, the one that faces the ray most wins; among
 /// equals, the lowest index. For a ray that starts in the solid, triangles that face away win over those that face it,
-/// because it may leave one solid and enter another at an edge where they touch.
+/// because the ray may leave one solid and enter another at an edge where they touch.
 class ScanConverter {
   public:
-    /// \param scene, view  borrowed; must outlive it.
+    /// \param scene, view  borrowed; must outlive this object.
     ScanConverter(const RayScene& scene, const View& view);
 
     /// Computes the hits of some rows from both ends of the rays. Runs on the calling thread; thread-safe.

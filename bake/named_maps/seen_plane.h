@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Depths of the plane of a triangle on the rays of a view.
+// Computes the depths at which the rays of a view meet the plane of a triangle.
 #pragma once
 
 #include <cstdint>
@@ -29,12 +29,12 @@ struct PlaneHit {
 /// Makes the planes of a view.
 class ProjectedPlanes {
   public:
-    /// \param mesh, view  borrowed; must outlive it.
+    /// \param mesh, view  borrowed; must outlive this object.
     ProjectedPlanes(const TriangleMesh& mesh, const View& view);
 
     [[nodiscard]] ProjectedPlane of(std::uint32_t triangle) const;
 
-    /// The hit of a texel's ray, clamped to the triangle if it is seen almost edge-on.
+    /// The hit of a texel's ray, clamped to the triangle's depths if the plane is seen almost edge-on.
     [[nodiscard]] PlaneHit at(const ProjectedPlane& plane, std::uint32_t face, std::uint32_t x,
                               std::uint32_t y) const {
         if (orthographic_ && !plane.grazing) {  // the common case; inline for millions of calls per bake

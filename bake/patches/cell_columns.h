@@ -69,8 +69,8 @@ struct CellPlane {
 
 /// A square of `across` × `across` lines through the unit cube along one frame, with the data that all cells share.
 /// Rows are ordered by v. A row interleaves its four quarters: the first line of each quarter, then the second of each,
-/// and so on. Fits can thus process four lines at once (lanes.h), even if each lies between different heights of the
-/// patch.
+/// and so on. Fits can thus process four lines at once (lanes.h), even if the four lie between different heights
+/// of the patch.
 class LineGrid {
   public:
     /// Distance from the side of the cube to the first line, in line spacings. Not 0.5, because models are built on
@@ -80,7 +80,7 @@ class LineGrid {
     /// \param across  a multiple of 4.
     LineGrid(const PatchFrame& frame, unsigned across);
 
-    /// The interval of w (PatchFrame) in which a line is inside the cube. Both are 0 if it misses the cube.
+    /// The interval of w (PatchFrame) in which a line is inside the cube. Both ends are 0 if the line misses the cube.
     struct Line {
         double enters = 0.0;
         double leaves = 0.0;
@@ -104,7 +104,7 @@ class LineGrid {
     [[nodiscard]] const std::vector<float>& enters() const { return enters_; }
     [[nodiscard]] const std::vector<float>& leaves() const { return leaves_; }
     [[nodiscard]] const std::vector<double>& lengths() const { return lengths_; }
-    /// The starts of all lines that do not miss the cube, along a path of short segments.
+    /// The starts of all lines that do not miss the cube, in order along a path of short segments.
     [[nodiscard]] const std::vector<Start>& starts() const { return starts_; }
     /// Whether the triangle is near a side where lines enter, so that the path from one start to the next may cross it.
     [[nodiscard]] bool nearStarts(const UnitTriangle& triangle) const;

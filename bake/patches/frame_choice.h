@@ -16,7 +16,7 @@ struct FrameChoice {
 
 /// Returns the frame that sees most of the surface from one side. If the cell has surfaces that face both ways, as in a
 /// thin wall, returns the frame that sees most of them from above and below together. The sampling lines of another
-/// frame may be parallel to the wall and miss it, so that its error is not detected.
+/// frame may be parallel to the wall and miss it, so that errors there are not detected.
 [[nodiscard]] FrameChoice chooseFrame(std::span<const ClippedTriangle> pieces);
 
 }  // namespace relief

@@ -35,7 +35,7 @@ class LeafFitter {
     /// \return whether the leaf represents the surface; true for a node without triangles.
     bool hold(PatchNode& node, double within, double byte) const;
 
-    /// The heights of a leaf with a single surface, or with two.
+    /// Returns the heights of a leaf with a single surface; pair() returns those of a leaf with two.
     [[nodiscard]] PatchHeights heights(const PatchNode& node) const;
     [[nodiscard]] std::array<PatchHeights, 2> pair(const PatchNode& node) const;
 
