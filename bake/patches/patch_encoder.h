@@ -17,10 +17,10 @@ namespace relief {
 struct PatchRoots {
     double size = 0.0;       ///< side of a root, object units
     glm::dvec3 origin{0.0};  ///< low corner of the first root, object space
-    glm::uvec3 count{1};     ///< along each axis; x fastest
+    glm::uvec3 count{1};     ///< number of roots along each axis
 };
 
-/// \param nodes  the roots.
+/// \param nodes  the roots, x fastest.
 /// \param progress  as PatchOptions::progress, with the fraction of the encoding done.
 [[nodiscard]] DepthMap encodePatches(const MeshQuery& query, const LeafFitter& fitter,
                                      const PatchRoots& roots, std::span<const PatchNode* const> nodes,

@@ -13,11 +13,11 @@
 
 namespace relief {
 
-/// The best height on a line.
+/// The best height on one line of a LineGrid.
 struct HeightTarget {
     double height = 0.0;
-    /// Costs of errors above and below the height. If a line has no surface, one of them is zero, because all greater
-    /// or all smaller heights are correct. Both are zero if the line misses the cube.
+    /// Costs of errors above and below the height. If the height is an end of the line in the cell, one cost is zero,
+    /// because all greater or all smaller heights are equally good. Both are zero if the line misses the cell.
     double above = 0.0;
     double below = 0.0;
 };
@@ -25,7 +25,7 @@ struct HeightTarget {
 /// A HeightTarget for each line, stored as one array per member.
 class HeightTargets {
   public:
-    /// Initializes all targets as those of lines that miss the cube.
+    /// Sets all costs to zero, as for lines that miss the cell.
     explicit HeightTargets(std::size_t lines) : lines_(lines), numbers_(3 * lines) {}
     void set(std::size_t line, const HeightTarget& target) {
         *height(line) = static_cast<float>(target.height);
@@ -60,7 +60,7 @@ class PairFitter {
   public:
     /// \param columns  borrowed.
     /// \param normal  of the planes that provide heights where no line meets the surface.
-    /// \param walls  whether to fit a wall or a gap; nullopt: the one with the smaller bound least().
+    /// \param walls  true: fits a wall; false: a gap; nullopt: the one with the lower least().
     PairFitter(const CellColumns& columns, const ErrorCosts& costs, const glm::dvec3& normal,
                std::optional<bool> walls = {});
 
@@ -77,7 +77,7 @@ class PairFitter {
     [[nodiscard]] FittedPair fitOf(int rounds) const;
 
     const CellColumns& columns_;
-    ErrorCosts costs_;  // here, inside: between the surfaces
+    ErrorCosts costs_;  // false_inside applies to volume that is wrongly between the surfaces
     glm::dvec3 normal_;
     bool walls_ = true;
     double least_ = 0.0;
@@ -102,14 +102,14 @@ class PatchFitter {
     [[nodiscard]] double insideVolume() const { return inside_volume_; }
 
   private:
-    /// \param by_error  cleared if |height − target| within the cube may not be the misclassified length.
+    /// \param by_error  set to false if the misclassified length may differ from |height − target| within the cell.
     [[nodiscard]] HeightTarget targetOf(const CellColumn& column, bool& by_error) const;
     template <std::size_t kSide>
     [[nodiscard]] FittedPatch fitOf(int rounds) const;
     /// The misclassified volume for given heights.
     template <std::size_t kSide>
     [[nodiscard]] double wrongOf(const std::array<double, kSide * kSide>& heights) const;
-    /// Sets the targets of lines without turns.
+    /// Sets the targets of lines whose CellColumn::turns is empty.
     void setTargetsWithoutTurns();
 
     const CellColumns& columns_;

@@ -27,7 +27,7 @@ struct PatchShape {
         return side > 0 ? double{kPatchTexelBytes} * (1.0 + texels()) : 0.0;
     }
 };
-/// Shapes in the order in which they are tried: outside and inside without a surface first.
+/// Shapes in the order in which they are tried. The first kFlats have no surface: all outside, then all inside.
 inline constexpr std::array<PatchShape, 8> kPatchShapes = {
     {{}, {}, {2, false}, {3, false}, {5, false}, {2, true}, {3, true}, {5, true}}};
 inline constexpr std::size_t kFlats = 2;
@@ -37,7 +37,7 @@ inline constexpr std::size_t kSinglePatchShapesEnd = 5;
 enum class DepthPlanes : std::uint8_t {
     kNone,
     kOne,  ///< for a leaf without a surface, in a separate record
-    kTwo,  ///< stored like a pair of patches; in a leaf with a single surface, that surface and another plane
+    kTwo,  ///< stored like a pair of patches: two planes, or the single surface of the leaf and one plane
 };
 
 struct PatchNode {
@@ -52,7 +52,7 @@ struct PatchNode {
     /// Weighted error of each shape that was tried: volume, object units cubed.
     std::array<double, kPatchShapes.size()> errors;
     double pair_least = 0.0;     ///< lower bound of the errors of any pair
-    double missed_volume = 0.0;  ///< volume missed between the lines; included in all errors
+    double missed_volume = 0.0;  ///< estimated volume missed between sampling lines; included in `errors`
     double bytes = 0.0;          ///< of the chosen subtree
     double wrong = 0.0;          ///< errors of the chosen subtree
     std::unique_ptr<std::array<PatchNode, 8>> children;
@@ -72,13 +72,13 @@ struct PatchNode {
     [[nodiscard]] std::uint32_t texels() const {
         return (surface() ? shape().texels() : 0) + (planes == DepthPlanes::kTwo ? 2 : 0);
     }
-    /// For a leaf without a surface.
+    /// Whether a leaf without a surface is inside.
     [[nodiscard]] bool inside() const { return empty() ? in_void || cell.bodies.inside() : chosen == 1; }
     [[nodiscard]] double cost(std::size_t index, double byte) const {
         return errors[index] + byte * kPatchShapes[index].bytes();
     }
     void add(double wrong_volume) { errors[tried++] = wrong_volume; }
-    /// Chooses the cheapest shape tried if a byte is worth `byte` of misclassified volume.
+    /// Chooses the tried shape with the lowest cost(). \param byte  misclassified volume that a byte is worth.
     void chooseLeaf(double byte) {
         split = false;
         chosen = 0;

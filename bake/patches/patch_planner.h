@@ -25,13 +25,13 @@ struct PatchOptions {
     bool coarsen = false;  ///< if the tree exceeds the bytes, uses a larger texel
     /// Object units: a box that the roots contain in addition to the mesh.
     std::optional<Bounds> roots_contain{};
-    /// A tree by texel that exceeds this size has small roots, so that it can be cut into tiles of this size
-    /// (patch_tiles.h). A tree by bytes always has small roots.
+    /// If a tree exceeds this size, its roots are small, so that it can be cut into tiles of this size (patch_tiles.h).
+    /// If `texel` is 0, the roots are always small.
     std::uint64_t tile_bytes = PatchTileOptions().bytes;
     ErrorCosts costs{};
     LeafLines lines{};
-    /// A leaf is split on trial if its errors exceed the worth of this many bytes. Lower values find better trees and
-    /// take longer.
+    /// The planner tries to split a leaf if fixing its errors is worth more than this many bytes. Lower values find
+    /// better trees and take longer.
     double trial_bytes = 45.0;
     /// Called periodically with the fraction of the work done; from any thread, never concurrently. Its exceptions end
     /// the bake and propagate.
@@ -40,7 +40,7 @@ struct PatchOptions {
 
 struct PatchTree {
     DepthMap map;        ///< of MapFormat::kPatches
-    double texel = 0.0;  ///< object units: that of the options, or larger if coarsened; 0: a tree by bytes
+    double texel = 0.0;  ///< object units: PatchOptions::texel, or larger if coarsened
 };
 
 /// The size of a tree and its errors.
@@ -53,13 +53,13 @@ struct ErrorPoint {
 /// Sorted by bytes; each tree is larger and has fewer errors than the previous one.
 using ErrorCurve = std::vector<ErrorPoint>;
 
-/// Returns the sizes and errors of the trees that bakePatches() tries, including some that are too large. Takes as long
-/// as a bake without its encoding. The result does not depend on the number of threads.
+/// Returns the sizes and errors of trees that bakePatches() tries, including some that are too large. Takes as long as
+/// a bake without its encoding. The result does not depend on the number of threads.
 /// \param options  `texel` must be 0.
 [[nodiscard]] ErrorCurve planErrors(const MeshQuery& query, const PatchOptions& options);
 
 /// Bakes a mesh into a tree of patches. The result does not depend on the number of threads.
-/// Errors: kUsage (a texel too fine for floats), kLimit (the texel exceeds the bytes, and `coarsen` is false).
+/// Errors: kUsage (a texel too fine for floats), kLimit (the tree exceeds the bytes, and `coarsen` is false).
 [[nodiscard]] Result<PatchTree> bakePatches(const MeshQuery& query, const PatchOptions& options);
 
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cuts a tree of patches into tiles: boxes of its roots, each of which is a separate tree.
+// Cuts a tree of patches into tiles. Each tile is a box of the roots, stored as a separate tree.
 //
 //      roots     0 … 31 32 33 … 63 64 65 … 95
 //      tile 0    |--------|
@@ -38,7 +38,7 @@ struct PatchTile {
 /// until another cut would exceed a limit of the options or make a tile narrower than four roots. Omits tiles whose own
 /// roots are all outside, because every other tile classifies their points as far outside.
 /// \param whole  a valid map of patches.
-/// \return the tiles, x fastest; a single tile without texels if the tree needs no cut (then use `whole`).
+/// \return the tiles, x fastest; a single tile without texels if the tree is not cut (then use `whole`).
 [[nodiscard]] std::vector<PatchTile> cutIntoTiles(const DepthMap& whole, const PatchTileOptions& options);
 
 /// Returns a tree of some roots with all their descendants. The texels are identical to those of `whole` if it is from

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests at points near the surface of a cell whether a patch represents the surface.
+// Tests whether a patch represents the surface in a cell, at points near that surface.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ class SurfaceProbe {
     SurfaceProbe(const MeshQuery& query, const MeshCell& cell, std::span<const UnitTriangle> triangles,
                  double within);
 
-    /// Whether all points are inside, or all outside.
+    /// Whether every point is on the given side.
     [[nodiscard]] bool agreesWithAll(bool inside);
     /// Whether a single surface classifies all points correctly.
     [[nodiscard]] bool agreesWith(const PatchFrame& frame, const PatchHeights& heights, bool outside_below);
@@ -32,7 +32,7 @@ class SurfaceProbe {
   private:
     struct Point {
         glm::dvec3 at;  // unit cube
-        bool inside;    // by its triangle, until `known`
+        bool inside;    // assumed from the winding of its triangle, unless `known`
         bool known;
     };
     void add(const glm::dvec3& at, const glm::dvec3& normal, double within);

@@ -45,8 +45,8 @@ struct BakeResult : SolidMesh {
 
 /// Bakes a mesh in memory; writes no files. Warnings are in baked.report.
 /// \param mesh  from finishMesh; used instead of the request's file.
-/// Errors: those of settingsOf, importMeshInWorker, repairMesh, shapeMesh, bakeForError, bakePatchesWithin and bake;
-/// kUsage (an option that requires the mesh file).
+/// Errors: those of settingsOf, importSource, solidOf, bakeMaps and selfCheck; kUsage (an option that requires the mesh
+/// file).
 [[nodiscard]] Result<BakeResult> bake(const BakeRequest& request, const BakeWatcher& watcher = {},
                                       std::optional<TriangleMesh> mesh = {});
 
@@ -54,7 +54,7 @@ struct BakeResult : SolidMesh {
 [[nodiscard]] Result<SolidMesh> prepareSolid(const BakeRequest& request, TriangleMesh mesh);
 
 /// Bakes a prepared solid.
-/// \param request  that of prepareSolid(); its budget may differ if solid.isBudgetIndependent().
+/// \param request  as passed to prepareSolid(); its budget may differ if solid.isBudgetIndependent().
 [[nodiscard]] Result<BakeResult> bake(const BakeRequest& request, const SolidMesh& solid);
 
 /// Returns the error curve of the trees of patches of a solid (bake/patches/patch_planner.h).

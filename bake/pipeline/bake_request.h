@@ -19,7 +19,7 @@
 
 namespace relief {
 
-inline constexpr std::uint64_t kBudgetDefault = 1'000'000;  ///< bytes; also if a container records none
+inline constexpr std::uint64_t kBudgetDefault = 1'000'000;  ///< bytes; also if no budget is recorded
 
 enum class Holes : std::uint8_t { kClose, kKeep };
 template <>
@@ -38,7 +38,7 @@ inline constexpr std::array<std::string_view, 2> kWordsOf<Decode>{"projected", "
 
 struct BakeRequest {
     std::string mesh;              ///< a file
-    std::vector<std::string> map;  ///< MapSpecs; empty: patches, unless `paper`, `animated` or `holes` is set
+    std::vector<std::string> map;  ///< MapSpecs; empty: patches, unless `paper`, `animated` or Holes::kKeep
     std::optional<Decode> decode;  ///< of `map`
     std::optional<FrontBackDepth> depth;  ///< of `map`
     bool paper = false;
@@ -92,7 +92,7 @@ struct RecordedBake {
 };
 
 [[nodiscard]] RecordedBake recordedBake(const std::vector<RecordedOption>& options);
-/// Returns kKeep if the record has no value: there were no voids, or the version that baked it ignored them.
+/// Returns the recorded mode; kKeep if none is recorded: there were no voids, or that version of Relief ignored voids.
 [[nodiscard]] inline VoidMode voidsOf(const BakeRequest& recorded) {
     return recorded.voids.value_or(VoidMode::kKeep);
 }

@@ -47,11 +47,11 @@ struct Measured {
 struct MeshCheck {
     Collider collider;
     PreparedMesh imported{TriangleMesh()};  ///< wound outwards
-    /// The solid of the imported mesh: where solids overlap, their winding decides what is inside.
+    /// The solid of the imported mesh; overlaps of its solids are inside.
     PreparedMesh mesh{TriangleMesh()};
     ShapeReport shape;
     RecordedBake recorded;
-    PreparedMesh baked{TriangleMesh()};  ///< the solid of the repaired mesh; `mesh` without a repair
+    PreparedMesh baked{TriangleMesh()};  ///< solid of the repaired mesh; if not repaired, `mesh`
     std::optional<MeshQuery> query;      ///< of `baked`
     bool same_file = false;
     std::vector<std::string> warnings;  ///< one line each
@@ -72,9 +72,9 @@ struct MeshCheck {
     [[nodiscard]] bool passes(std::optional<float> max_error) const;
 };
 
-/// Returns the solid from which a collider was baked. A thickness is recorded with every sheet. Sheets of a repaired
-/// mesh use the thickness of the default budget, regardless of the bake's budget, so that all budgets are compared with
-/// the same solid.
+/// Returns the solid that the recorded options make of a mesh. Its shells have the recorded thickness. If a repair left
+/// no sheets, no thickness is recorded. The default thickness for kBudgetDefault or a recorded texel then applies,
+/// so that all budgets are compared with the same solid.
 /// Errors: those of makeSolid.
 [[nodiscard]] Result<ShapedMesh> recordedSolid(BakeRequest recorded, const PreparedMesh& mesh);
 
@@ -86,13 +86,13 @@ struct MeshCheck {
 /// \param given       from finishMesh; used instead of the request's file.
 /// \param checkpoint  called between stages; its exceptions end the check and propagate.
 /// Errors: kLimit (samples); kInvalidInput (the mesh of another collider); kUsage (options or names that require the
-/// mesh file); those of importMeshInWorker, of the shapes and of Embree.
+/// mesh file); those of importMeshInWorker, recordedSolid and MeshQuery::build.
 [[nodiscard]] Result<MeshCheck> check(
     const CheckRequest& request, Collider collider, std::optional<TriangleMesh> given = {},
     const std::function<void()>& checkpoint = [] {});
 
 /// Suggests commands for a collider that is not accurate enough, after trying them in memory. The causes of the worst
-/// places determine the commands: patches of twice the bytes, closed holes, thicker sheets, a wrapped mesh. The best
+/// places determine the commands: patches with twice the bytes, closed holes, thicker sheets, a wrapped mesh. The best
 /// command comes first; commands that did not help come last. The result does not depend on the number of threads or
 /// the machine, because the choice of trials does not depend on time.
 /// \param run  result of a check. \param mesh_file, output  file names for the commands

@@ -25,13 +25,13 @@ namespace relief {
 struct BakeWatcher {
     std::function<void(const char* stage)> begin;  ///< "baking the maps"
     std::function<void(double share)> progress;  ///< fraction of the stage, in [0, 1]; called from any thread
-    std::function<void()> checkpoint;            ///< called within a stage without progress, from any thread
+    std::function<void()> checkpoint;  ///< called in stages that report no progress, from any thread
     std::function<void(const BudgetTrial&)> tried;      ///< during the search for the smallest budget
     std::function<void(const TriangleMesh&)> imported;  ///< the mesh as imported
     FileGuard* files = nullptr;  ///< receives the inputs that are known only after the import
 };
 
-/// Calls a function of a watcher, which may be empty.
+/// Calls a function of a watcher, unless the function is empty.
 template <class... Arguments>
 void notify(const std::function<void(Arguments...)>& function, Arguments... arguments) {
     if (function) {
@@ -55,7 +55,7 @@ struct SolidMesh {
     SurfaceParts parts;
     std::shared_ptr<const MaterialSource> materials;  ///< null: no materials are kept
     std::optional<AnimatedMesh> animated;             ///< with --animated
-    std::optional<PreparedMesh> imported;  ///< the imported mesh, if repaired and measured by --max-error
+    std::optional<PreparedMesh> imported;  ///< the mesh before a repair, if --max-error measures against it
 
     /// Whether the solid is the same for any budget, because it has no shells.
     [[nodiscard]] bool isBudgetIndependent() const { return shape.sheets == 0; }
@@ -66,7 +66,7 @@ struct SolidMesh {
 [[nodiscard]] Result<SolidMesh> solidOf(const BakeRequest& request, SourceMesh source,
                                         const BakeWatcher& watcher);
 
-/// Returns the solid of a mesh that is wound outwards; with --holes keep, the mesh itself.
+/// Returns the solid of a mesh that is wound outwards; with --holes keep or --animated, the mesh itself.
 /// Errors: those of parseShapeOptions and shapeMesh.
 [[nodiscard]] Result<ShapedMesh> makeSolid(const BakeRequest& request, const PreparedMesh& mesh);
 
@@ -74,9 +74,9 @@ struct SolidMesh {
 struct PatchesReport {
     std::optional<std::uint64_t> budget;   ///< bytes; nullopt for --texel without --budget
     std::uint64_t bytes = 0;               ///< on the GPU
-    double texel = 0.0;                    ///< object units: minimum distance of two heights
+    double texel = 0.0;                    ///< object units: minimum distance between heights
     std::optional<float> requested_texel;  ///< --texel, object units
-    std::optional<double> max_error;       ///< percent; for --max-error, as are the next two
+    std::optional<double> max_error;       ///< percent; this and the next two: only with --max-error
     double wrong_percent = 0.0;            ///< measured
     std::vector<BudgetTrial> tries;
 };
@@ -88,16 +88,16 @@ struct BakedMaps {
 };
 
 /// Bakes the named maps of a solid, or patches limited by a budget, a texel or an error.
-/// Errors: those of bake(mesh), bakePatchesWithin and bakeForError; kDifference (floats are too coarse for
+/// Errors: those of bake (bake_maps.h), bakePatchesWithin and bakeForError; kDifference (floats are too coarse for
 /// --max-error).
 [[nodiscard]] Result<BakedMaps> bakeMaps(const BakeRequest& request, const BakeSettings& settings,
                                          const SolidMesh& solid, const BakeWatcher& watcher);
 
 /// Bakes the named maps of a solid, or patches for the budget or texel of the request. Ignores `max_error`.
-/// Errors: those of bake and bakePatchesWithin.
+/// Errors: those of bake (bake_maps.h) and bakePatchesWithin.
 [[nodiscard]] Result<Baked> bakeSolid(const BakeRequest& request, const PreparedMesh& solid);
 
-/// Returns the warnings of a bake: of the import, the parts and the unit, the maps, and the measurement.
+/// Returns the warnings about the import, the parts, the unit, the names of --as, the maps and the measurement.
 /// \param check  null if the collider is not measured.
 [[nodiscard]] std::vector<std::string> warningsOf(const BakeRequest& request, const SolidMesh& solid,
                                                   const Baked& baked, const SelfCheck* check);

@@ -60,7 +60,7 @@ inline void need(const Result<void>& done) {
     }
 }
 
-/// Collects one member of all items into an array: (n,), or (n, parts) for vectors and quaternions.
+/// Collects one member of all items into an array of shape (n,), or (n, 3) for vectors and (n, 4) for quaternions.
 template <class T, class Class, class Item>
 auto column(const std::vector<Item>& items, T Class::*member) {
     const auto count = static_cast<py::ssize_t>(items.size());

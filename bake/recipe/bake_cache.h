@@ -34,7 +34,7 @@ struct BakeCacheEntry {
 /// Entries by the name of the output.
 using BakeCacheEntries = std::map<std::string, BakeCacheEntry>;
 
-/// Returns "relief 0.1.0 HASH"; HASH differs between builds. Errors: kIo.
+/// Returns "relief 0.1.0 HASH HASH": hashes of this program and, if it exists, of relief-import beside it. Errors: kIo.
 [[nodiscard]] Result<std::string> toolIdentity();
 
 /// Returns the XXH3-128 of a regular file; nullopt for anything else, or if it cannot be read.
@@ -65,7 +65,7 @@ using BakeCacheEntries = std::map<std::string, BakeCacheEntry>;
                                            const BakeCacheEntries& entries);
 
 /// Returns the XXH3-128 of the program, the options, and the names and contents of the inputs. Equal keys mean
-/// byte-identical outputs. Other programs can use it for their own caches.
+/// byte-identical outputs. Other programs can use the key for their own caches.
 /// \param tool  toolIdentity(). \param options  RecipeJob::options.
 /// \param inputs  named relative to the recipe's folder, in any order.
 [[nodiscard]] std::string assetKey(const std::string& tool, const std::vector<std::string>& options,

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Patterns of file names in recipes: rocks/*.obj, **/*.glb.
 //
-// A pattern is a relative path. Within a part, `*` matches any characters, `?` matches one character, and `[a-f]` and
-// `[!a-f]` match one character in or not in a range. A backslash escapes the next character. The part `**` matches any
-// number of folders, including none. No wildcard matches a dot at the start of a name. Bytes are compared, regardless
-// of the locale. A trailing slash makes the pattern match folders.
+// A pattern is a relative path; slashes separate its parts. Within a part, `*` matches any characters, `?` matches one
+// character, and `[a-f]` and `[!a-f]` match one character in or not in a range. A backslash escapes the next character.
+// The part `**` matches any number of folders, including none. No wildcard matches a dot at the start of a name. Bytes
+// are compared, regardless of the locale. A trailing slash makes the pattern match folders.
 #pragma once
 
 #include <filesystem>

@@ -46,9 +46,9 @@ struct RecipeJobs {
 };
 
 /// Expands the assets of a recipe.
-/// \param recipe  meshes are named relative to its folder, and must lie inside it; "-": the current folder.
+/// \param recipe  path of the recipe; its folder must contain all meshes; "-": the current folder.
 /// \param output_folder  need not exist; empty for the recipe's folder.
-/// \param files  contains other inputs.
+/// \param files  already contains all other inputs.
 /// Errors, with a position in the recipe: kInvalidInput (a pattern without a match, a file outside the recipe's folder,
 /// an output that is outside the output folder, neither a collider nor a world, equal to another output or an input, or
 /// in the folder of another world), kLimit (kRecipeJobsMax), those of globFiles.
@@ -56,7 +56,7 @@ struct RecipeJobs {
                                             const std::filesystem::path& recipe,
                                             const std::filesystem::path& output_folder, FileGuard files = {});
 
-/// Reserves the folder of a world: its containers, including those that are up to date, and its caches.
+/// Registers the outputs in the folder of a world: all present and future containers, and the cache files.
 /// \param option  the option that names the folder, for messages. Errors: those of FileGuard::writes().
 [[nodiscard]] Result<void> reserveWorldFolder(const std::filesystem::path& folder, std::string_view option,
                                               FileGuard& files);

@@ -48,7 +48,7 @@ struct RecipeRun {
     std::filesystem::path recipe;
     std::filesystem::path output_folder;  ///< exists, unless dry_run
     unsigned jobs = 1;                    ///< at least 1
-    unsigned threads = 1;                 ///< per bake; neither number affects results
+    unsigned threads = 1;                 ///< per bake; results do not depend on `jobs` or `threads`
     bool dry_run = false;                 ///< only determines what is stale
     // Called on the thread of runRecipe(); may be empty.
     std::function<void(const AssetResult&)> started;
@@ -62,8 +62,8 @@ struct RecipeResult {
 };
 
 /// Runs the jobs. Errors of single assets are in their results.
-/// Errors: kIo (the program cannot be read, or the cache file cannot be written), kUsage (an output would replace an
-/// unknown file of another kind).
+/// Errors: kIo (the program cannot be read, or the cache file cannot be written), kUsage (an output that is
+/// not in the cache would replace a file of another format).
 [[nodiscard]] Result<RecipeResult> runRecipe(std::vector<RecipeJob> jobs, const RecipeRun& run);
 
 /// Writes the inputs of all outputs for build systems: the recipe, every file read, and every folder that a pattern

@@ -178,7 +178,7 @@ double contradictedFraction(const std::vector<Vote>& votes, const MeshQuery& clo
     return static_cast<double>(contradicted) / static_cast<double>(std::max<std::size_t>(inside, 1));
 }
 
-/// Whether the caps swap inside and outside, on or off the surface: caps of patches whose seams do not meet would cross
+/// Whether the caps swap inside and outside, on or off the surface: caps of panels whose seams do not meet would cross
 /// the inside.
 bool swapsSides(const std::vector<std::array<Vote, 2>>& votes, const MeshQuery& open,
                 const MeshQuery& closed) {

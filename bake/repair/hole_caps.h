@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Closes the holes of nearly closed meshes: a scan without its bottom, a model whose exporter lost a triangle.
-// Otherwise, views through a hole hit the back of the surface and classify the inside as free.
+// Rays through an open hole would hit the back of the surface and classify the inside as free.
 #pragma once
 
 #include <cstddef>
@@ -16,8 +16,8 @@ namespace relief {
 
 inline constexpr std::size_t kEnclosureProbes = 512;
 
-/// Measures how well a mesh encloses its inside: the crossing parity of opposite pairs of rays on both sides of probes,
-/// which are spread evenly over the surface.
+/// How well a mesh encloses its inside. Probes are points spread evenly over the surface. Opposite pairs of rays
+/// classify both sides of each probe by crossing parity.
 struct Enclosure {
     double one_sided =
         0.0;  ///< fraction of the probes with the inside on exactly one side, by majority of rays
@@ -50,7 +50,7 @@ using BorderLoop = std::vector<BorderStep>;
 ///
 /// Returns the mesh unchanged if it is closed or not nearly closed: a terrain, a sheet, or a bowl without thickness, up
 /// to half a sphere. About one ray in seven may lead out through a hole. Also returns it unchanged if the caps would
-/// swap parts of inside and outside (patches whose seams do not meet).
+/// swap parts of inside and outside, as with panels whose seams do not meet.
 /// \param probes  number of test points on the surface, and in the box; fewer suffice for a small part of a mesh.
 /// Errors: those of MeshQuery::build.
 [[nodiscard]] Result<PreparedMesh> closeHoles(const PreparedMesh& mesh,

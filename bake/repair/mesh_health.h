@@ -29,7 +29,7 @@ struct MeshHealth {
     std::uint64_t duplicate_triangles = 0;
     std::uint64_t boundary_edges = 0;        ///< with one triangle
     std::uint64_t nonmanifold_edges = 0;     ///< with three or more triangles
-    std::uint64_t inconsistent_edges = 0;    ///< with two triangles that traverse it in the same direction
+    std::uint64_t inconsistent_edges = 0;    ///< traversed by two triangles in the same direction
     std::uint64_t nonmanifold_vertices = 0;  ///< whose triangles form groups that share no edge there
     std::uint64_t components = 0;            ///< sets of triangles connected by edges
     std::uint64_t closed_components = 0;
@@ -50,7 +50,7 @@ void fields(FieldVisitor& visit, const MeshHealth& health);
 /// Lists the faults: "12 boundary edges, 3 non-manifold vertices, inside out".
 [[nodiscard]] std::string faultsText(const MeshHealth& health);
 
-/// Fails if the mesh is not a solid. Errors: kInvalidInput, with the counts and the first place.
+/// Fails if the mesh is not a solid. Errors: kInvalidInput, with the counts and the first fault.
 [[nodiscard]] Result<void> requireSolid(const MeshHealth& health, const std::string& mesh_name);
 
 }  // namespace relief

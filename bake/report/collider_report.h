@@ -28,7 +28,7 @@ void fields(FieldVisitor& visit, const ColliderMapReport& report);
 /// Returns a line with the size of the materials in bytes, and a table.
 [[nodiscard]] std::string materialsText(const Materials& materials);
 
-/// Returns a line, the groups and materials, and a table of the clips; empty parts are omitted.
+/// Returns a line of counts, the groups and materials, and a table of the clips; empty parts are omitted.
 [[nodiscard]] std::string animationText(const AnimatedMesh& mesh);
 
 [[nodiscard]] std::vector<ColliderMapReport> mapReports(const Collider& collider, const ContainerInfo& info);

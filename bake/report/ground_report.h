@@ -20,7 +20,7 @@ namespace relief {
 struct GroundJson {
     const GroundResult& result = kNone<GroundResult>;
     std::string output{};
-    std::string heights{};  ///< --heights, completed
+    std::string heights{};  ///< effective settings, in the syntax of --heights
     double ms = 0.0;
 };
 
@@ -33,7 +33,7 @@ void fields(FieldVisitor& visit, const GroundJson& report);
 struct GroundCheckJson {
     const GroundAccuracy& accuracy = kNone<GroundAccuracy>;
     std::string file{};
-    std::string heights{};  ///< --heights, completed
+    std::string heights{};  ///< effective settings, in the syntax of --heights
     std::optional<float> max_error{};
 };
 

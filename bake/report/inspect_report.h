@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reports of a container without its mesh, for `relief check FILE`.
+// Reports of a container that is checked without its mesh, for `relief check FILE`.
 #pragma once
 
 #include <string>

@@ -20,7 +20,7 @@ namespace relief {
 [[nodiscard]] Result<std::vector<glm::vec3>> parsePoints(std::string_view text, const std::string& name);
 
 /// Formats samples as `x,y,z,f,nx,ny,nz,map`: a header, then one line per point. Numbers are the shortest decimals that
-/// parse back exactly. f is "inf" for kFarOutside; f, nx, ny, nz and map are empty where no map votes.
+/// parse back exactly. f is the distance, "inf" for kFarOutside. f, nx, ny, nz and map are empty where no map votes.
 /// \param decides  name of the last column.
 [[nodiscard]] std::string formatSamples(std::span<const glm::vec3> points,
                                         std::span<const FieldSample> samples,

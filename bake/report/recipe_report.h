@@ -18,7 +18,7 @@ namespace relief {
 
 struct RecipeCounts {
     std::array<std::size_t, kWordsOf<AssetState>.size()> of_state{};
-    std::uint64_t bytes = 0;  ///< total of all outputs that are up to date
+    std::uint64_t bytes = 0;  ///< total of all outputs that are baked or up to date
 
     [[nodiscard]] std::size_t of(AssetState state) const { return of_state[static_cast<std::size_t>(state)]; }
     [[nodiscard]] std::size_t all() const;
@@ -36,7 +36,7 @@ struct RecipeCounts {
 /// The fields of an asset depend on its state.
 struct AssetReport {
     const AssetResult& asset = kNone<AssetResult>;
-    bool event = false;  ///< part of an event, which contains a key only if the output is up to date
+    bool event = false;  ///< part of an event, which has a key only if the asset is baked or up to date
 
     [[nodiscard]] static std::vector<AssetReport> kinds();
 };
@@ -106,13 +106,13 @@ class RecipeEvents {
 
 /// The warnings of one of many bakes.
 struct OwnerWarnings {
-    std::string owner;  ///< name for the line
-    std::string mesh;   ///< name that may start a warning
+    std::string owner;  ///< name of the bake in the line, such as its output
+    std::string mesh;   ///< name of the mesh, removed from the start of warnings
     std::span<const std::string> warnings;
 };
 /// Groups equal warnings into one line each, in the order of their first occurrence.
 /// \param owners  plural noun for the owners, such as "assets"
-/// \param join_numbers  warnings are treated as equal even if their numbers differ
+/// \param join_numbers  whether warnings that differ only in their numbers count as equal
 [[nodiscard]] std::vector<std::string> warningLines(std::span<const OwnerWarnings> all,
                                                     std::string_view owners, bool join_numbers);
 /// Groups the warnings of assets: "2 assets (a.relief, b.relief): it is skinned". All warnings about a missing unit form

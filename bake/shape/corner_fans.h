@@ -12,7 +12,7 @@
 
 namespace relief {
 
-/// Groups the corners around each vertex that share a mitre.
+/// Groups corners of the same vertex that share a mitre.
 class CornerFans {
   public:
     /// Splits fans of joined corners whose common mitre would leave a side thin, and cuts the sheet there.
@@ -28,7 +28,7 @@ class CornerFans {
     /// For each cut, the two corners of the vertex next to the cut. The triangle side that begins at the
     /// first corner was cut, and is now open.
     [[nodiscard]] const std::vector<std::array<std::uint32_t, 2>>& cuts() const { return cuts_; }
-    /// For each cut fan around a vertex inside the sheet, its roots.
+    /// For each split fan that surrounded its vertex completely, the roots of its pieces.
     [[nodiscard]] const std::vector<std::vector<std::uint32_t>>& lids() const { return lids_; }
 
   private:

@@ -24,7 +24,7 @@ struct OpenPart {
     Sheet sheet;
     ShapeAs as = ShapeAs::kAuto;
     OpenRole role;
-    bool full = false;  ///< closed separately, and a solid
+    bool full = false;  ///< it was closed separately, into a solid
 };
 
 [[nodiscard]] double sizeOf(const Sheet& sheet);
@@ -39,13 +39,13 @@ struct OpenPart {
 /// A part with holes, after closing.
 struct ClosedPart {
     std::optional<PreparedMesh> mesh;
-    bool balanced = true;
-    bool is_body = true;  ///< cut off at its foot; not a vessel
+    bool balanced = true;  ///< Part::balanced
+    bool is_body = true;   ///< a body, possibly cut off at its foot; false: a vessel
 };
 
 /// Closes a part. Returns no mesh if the holes cannot be closed, or if the result encloses nothing.
 /// \param is_body  already known to be a body.
-/// \param z_is_up  +z may be up, too.
+/// \param z_is_up  +z may be up; otherwise only +y.
 [[nodiscard]] Result<ClosedPart> closePart(const TriangleMesh& open, bool is_body, bool z_is_up);
 
 }  // namespace relief

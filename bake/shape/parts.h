@@ -44,7 +44,7 @@ struct Part {
                                                    const std::vector<glm::uvec3>& triangles,
                                                    const glm::dvec3& center);
 
-/// Maximum distance of near copies, in units of the longer part's longest side: the thickness of the thinnest shell.
+/// Maximum distance between near copies, in units of the larger part's longest side: the minimum shell thickness.
 inline constexpr double kCopyReach = 1e-4;
 
 struct NearCopies {
@@ -59,7 +59,7 @@ struct NearCopies {
 
 /// Finds closed parts that almost coincide with another part, as in an export of two copies, one enlarged by a
 /// millionth. The gap between them is thinner than any wall of a collider and would make the solid hollow. In near
-/// copies, every corner has a corner of the other part within kCopyReach of their longest side.
+/// copies, every corner lies within kCopyReach (times the longest side) of a corner of the other part.
 /// \param solids  closed, not flat; borrowed.
 [[nodiscard]] NearCopies nearCopies(const TriangleMesh& mesh, std::span<const Part* const> solids);
 

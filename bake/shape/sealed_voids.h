@@ -11,19 +11,19 @@
 
 namespace relief {
 
-/// How a triangle of a union closes off space; kNothing if free space was requested on both sides.
+/// How a triangle of a union seals off space. kNothing: a shell requested with --as, whose two sides stay free.
 enum class Wall : std::uint8_t { kSolid, kSheet, kNothing };
 
 /// Finds free space that leads outside only through a sheet, or through openings that lie between grid nodes and pass
-/// at most 1 % of all rays. A grid of 64 nodes along the longest side finds candidates of at least 1e-4 of that side
-/// cubed. A grid of 192 nodes refines the box of the candidates. A cavity of a solid is not a void. The result does not
-/// depend on the number of threads.
+/// at most 1 % of all rays. A grid of 64 nodes along the longest side finds candidates, whose volume is at least 1e-4
+/// times that side cubed. A grid of 192 nodes refines the box of the candidates. A cavity of a solid is not a void. The
+/// result does not depend on the number of threads.
 /// \param walls  per triangle.
 [[nodiscard]] Voids sealedVoids(const MeshQuery& query, const std::vector<Wall>& walls);
 
 /// Returns the same union with its voids filled. Triangles that face only voids and solids move to the end, like caps
 /// (TriangleMesh::cap_triangles).
-/// \param part_of  per triangle; reordered with them, with kNoLabel for the moved ones.
+/// \param part_of  per triangle; reordered like the triangles, and set to kNoLabel for those that move.
 /// Errors: those of finishMesh.
 [[nodiscard]] Result<PreparedMesh> withVoids(const MeshQuery& query, Voids voids,
                                              std::vector<std::uint32_t>& part_of);

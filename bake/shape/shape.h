@@ -39,7 +39,7 @@ struct ShapeReport {
     std::uint64_t closable_sheets = 0;  ///< large sheets that would be solids if their holes were closed
     /// Open shells within another shell, with rims too far apart to join; the space inside is solid.
     std::uint64_t unjoined_shells = 0;
-    /// Walls of two joined shells whose winding does not distinguish a lining from a body.
+    /// Walls of two joined shells that may also be a clothed body: see isAmbiguous() in walls.h.
     std::uint64_t ambiguous_walls = 0;
     std::uint64_t terrains = 0;
     std::uint64_t voids = 0;  ///< sealed by sheets, and filled
@@ -57,8 +57,9 @@ struct ShapeReport {
 
 void fields(FieldVisitor& visit, const ShapeReport& report);
 
-/// Returns the values of --as, and of --thickness if there are shells, that reproduce the solid.
+/// Returns the values of --as that reproduce the solid.
 [[nodiscard]] std::vector<std::string> asOptionWords(const ShapeReport& report);
+/// Returns the value of --thickness that reproduces the solid; nullopt without shells.
 [[nodiscard]] std::optional<Thickness> thicknessOf(const ShapeReport& report);
 
 struct ShapedMesh {

@@ -50,7 +50,7 @@ struct ShapeOptions {
     std::vector<NamedShape> named = {};
     /// `thickness` is a default that each sheet adapts to its size (partThickness).
     bool thickness_by_part = false;
-    /// The default is derived from --texel. Adapting it to a part then does not make the shell thicker.
+    /// The default is derived from --texel; partThickness() then has a lower minimum.
     bool thickness_by_texel = false;
     VoidMode voids = VoidMode::kFill;
 

@@ -27,7 +27,7 @@ struct Sheet {
 };
 
 /// If the cosine between two triangles' normals is less, the shell is cut at their edge; a mitre would be longer than
-/// twice its thickness.
+/// twice the shell's thickness.
 inline constexpr double kFoldCosine = -0.5;
 
 /// Builds a sheet.
@@ -36,7 +36,7 @@ inline constexpr double kFoldCosine = -0.5;
 [[nodiscard]] Sheet sheetOf(const TriangleMesh& mesh, std::span<const std::uint32_t> welded,
                             std::span<const std::uint32_t> triangles);
 
-/// Returns the sheet as a mesh before finishMesh, with its sources as labels.
+/// Returns the sheet as a mesh before finishMesh; Sheet::sources become TriangleMesh::labels.
 [[nodiscard]] TriangleMesh meshOf(const Sheet& sheet, const std::string& name);
 
 [[nodiscard]] glm::dvec3 unitNormal(const std::vector<glm::vec3>& positions, const glm::uvec3& t);

@@ -56,10 +56,10 @@ class PartBuilder {
     SolidPart part_;
 };
 
-/// Builds the shell within half the thickness along the sheet's normals. Edges have mitres, the border has flat ends,
-/// and corners have bevels if a common mitre would leave a side thin. Each patch of joined triangles becomes one closed
-/// surface. A region that is thinner than the shell, such as a rod, is filled; its offset surface would turn inside out
-/// and is omitted.
+/// Builds the shell. Its two sides are half the thickness from the sheet, along the sheet's normals. Edges have mitres,
+/// the border has flat ends, and corners have bevels if a common mitre would leave a side thin. Each set of joined
+/// triangles becomes one closed surface. A region that is thinner than the shell, such as a rod, is filled; its offset
+/// surface would turn inside out and is omitted.
 ///
 ///            top: + thickness/2
 ///      ┌──────────────────────────┐

@@ -23,8 +23,8 @@ struct ShellWall {
 
 struct ShellWalls {
     std::vector<ShellWall> walls;
-    /// Pairs of outer and inner candidates with nearly facing mouths, for inner candidates that are in no wall. At least
-    /// one of each pair may be a solid.
+    /// Outer and inner candidates whose largest rims nearly face each other, although the inner one is in no wall. At
+    /// least one of the two has WallCandidate::may_be_solid.
     std::vector<std::array<std::size_t, 2>> unjoined;
 };
 

@@ -28,8 +28,8 @@ void fields(FieldVisitor& visit, const IgnoredParts& ignored);
 /// \return "0.3 % wrong near the surface, but 27 of 82 parts are lost: poor", followed by ignoredText().
 [[nodiscard]] Verdict verdictOf(double wrong_percent, const std::string& grade, const std::string& but,
                                 const IgnoredParts& ignored, const std::string& unit);
-/// The grade is the worse of gradeOf(wrong_percent) and the grade of the parts: poor if a part is lost, fair if coarse
-/// parts count.
+/// The grade is the worse of gradeOf(wrong_percent) and the grade of the parts: poor if a part is lost, fair if a part
+/// is coarse and accuracy.minor_counts is set.
 [[nodiscard]] Verdict verdictOf(double wrong_percent, const PartsAccuracy& accuracy, const std::string& unit);
 
 /// Returns how to keep a lost or coarse part: a budget, a resolution, a thickness, or a separate bake.

@@ -53,7 +53,7 @@ inline constexpr std::string_view kNoUnit = "no unit is named";
 [[nodiscard]] std::optional<std::string> missingUnitText(const Bounds& bounds);
 
 /// Formats rows as aligned columns; the first row is the header. Columns whose header ends in '>' are right-aligned;
-/// the mark is not printed.
+/// the '>' is not printed.
 [[nodiscard]] std::string table(const std::vector<std::vector<std::string>>& rows);
 
 }  // namespace relief
