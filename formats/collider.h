@@ -77,8 +77,8 @@ struct Collider {
 
 /// The combined vote at a point.
 struct FieldSample {
-    /// Signed distance in object units, positive outside. kFarOutside if P is outside at an unknown distance; undefined
-    /// if map is −1.
+    /// Signed distance in object units, positive outside. kFarOutside if the point is outside at an unknown distance;
+    /// undefined if map is −1.
     float distance = 0.0F;
     glm::vec3 normal{0.0F};  ///< of the deciding surface; zero if distance is kFarOutside
     int map = -1;            ///< deciding map, the first on ties; −1 if all maps abstain
@@ -93,19 +93,19 @@ struct FieldSample {
 /// The data that a simulation step needs: inside or outside, and the normal if inside.
 struct InsideSample {
     bool inside = false;
-    glm::vec3 normal{0.0F};  ///< of the largest negative vote; zero if P is outside
-    /// Inside: the map of that vote. Outside: the first map that classifies P as outside, or −1.
+    glm::vec3 normal{0.0F};  ///< of the inside vote closest to 0; zero if the point is outside
+    /// Inside: the map of that vote. Outside: the first map that classifies the point as outside, or −1.
     int map = -1;
 };
 
-/// Equals evaluate(…).inside(), with its normal and map if inside, but stops at the first map that classifies P as
-/// outside. Put the map that decides most often first.
+/// Equals evaluate(…).inside(), with its normal and map if inside, but stops at the first map that classifies `p` as
+/// outside. The first element of Collider::maps should be the map that decides most often.
 [[nodiscard]] InsideSample evaluateInside(const Collider& collider, const glm::vec3& p);
 
 /// Returns a box that contains the solid, from the volumes of maps that enclose it; nullopt if no map does.
 [[nodiscard]] std::optional<Bounds> insideBox(const Collider& collider);
-/// Returns the box of the mesh and of the solid, as far as the maps define it. Ground extends below its mesh, and so
-/// below `bounds`.
+/// Returns a box that contains Collider::bounds and, if there is one, insideBox(). The solid of ground extends below
+/// `bounds`.
 [[nodiscard]] Bounds solidBox(const Collider& collider);
 
 /// Returns the side of the finest texel of all maps, in object units, but at least 1/2048 of the longest side.

@@ -11,7 +11,8 @@ namespace relief {
 inline constexpr std::uint16_t kContainerMajor = 2;
 inline constexpr std::uint16_t kContainerMinor = 0;
 
-/// Default limit for the ratio of texel bytes to file size. Typical maps compress to between a third and a fifth.
+/// Limit on the ratio of texel bytes to file size, applied above ContainerLimits::memory. Typical maps compress to
+/// between a third and a fifth.
 inline constexpr std::uint64_t kUnpackedPerStored = 16;
 
 struct ContainerLimits {

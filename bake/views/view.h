@@ -2,16 +2,15 @@
 // The geometry of a map: its frame, its volume, and one ray per texel.
 //
 // The frame of an orthographic view along d is r (right), u (up), d with r = d × u. The image is thus not mirrored, and
-// the camera (r, u, −d) is right-handed. u is +y projected perpendicular to d, or ∓z for a view within 2.6° of ±y: a
+// the camera (r, u, −d) is right-handed. u is +y projected perpendicular to d, or ±z for a view within 2.6° of ±y: a
 // view along -y (from above) has +x to the right and −z up. `up` of a spec replaces +y.
 //
-// The volume of an orthographic map is the extent of the mesh's box along r, u and d. The texels inside the border
-// cover it exactly:
+// The volume of an orthographic map is the extent along r, u and d of the spec's `box`, or of the mesh plus a margin:
+// 1e-4 of the mesh's longest side, or more if the volume would be thinner than 1 % of that side. The texels inside the
+// border cover the volume exactly:
 //
 //     texels across      0 |  1 … width−2  | width−1           texel = extent / (width − 2)
 //     map x              0  1/w         1−1/w  1
-//
-// A volume that fits the mesh has a margin of 1e-4 of the mesh's longest side, and is at least 1 % of that side thick.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +26,7 @@
 
 namespace relief {
 
-/// The two surfaces on a ray that a map can keep: the one with the smallest depth and the one with the largest.
+/// A surface on a ray: the one with the smallest depth or the one with the largest. A map keeps one or both of them.
 enum class RayEnd : std::uint8_t { kNear = 0, kFar = 1 };
 [[nodiscard]] constexpr RayEnd otherEnd(RayEnd end) {
     return end == RayEnd::kNear ? RayEnd::kFar : RayEnd::kNear;
@@ -56,16 +55,16 @@ struct View {
     std::uint32_t height = 0;
     /// Orthographic: the point of map coordinates (0, 0, 0). Cube: the centre. Object space.
     glm::dvec3 origin{0.0};
-    /// Object-space vectors of one unit along each map axis. Those of a cube are parallel to the axes of object space.
+    /// Object-space vectors from map coordinate 0 to 1 along each map axis. A cube's are parallel to the object axes.
     glm::dvec3 axis[3] = {glm::dvec3(0.0), glm::dvec3(0.0), glm::dvec3(0.0)};
     Affine object_to_map;
     glm::vec3 object_per_map{1.0F};
     bool encloses = true;  ///< every vertex is in the volume
-    /// By RayEnd: the rays towards this surface start in free space. Rays of kNear start at depth 0. Rays of kFar start
-    /// at the far end of the volume and run backwards.
+    /// Indexed by RayEnd: the rays to that surface start in free space. Rays of kNear start at depth 0. Rays of kFar
+    /// start at the far end of the volume and run backwards.
     bool starts_free[2] = {true, true};
-    /// For a cube that keeps the nearest surface: its centre lies on the surface, so that rays may start on either
-    /// side. Set by bake().
+    /// For a cube with kLess: the centre lies on the mesh's surface, so that rays may start on either side. Set by
+    /// bake().
     bool centre_on_surface = false;
 
     [[nodiscard]] Projection projection() const {
@@ -112,8 +111,8 @@ struct View {
 [[nodiscard]] Result<MapSpec> completeSpec(MapSpec spec, const PreparedMesh& mesh, std::uint32_t resolution);
 
 /// Makes the view of a spec.
-/// \param spec  complete.
-/// Errors: kUsage (a box whose texels are too small for floats, up parallel to the direction).
+/// \param spec  from completeSpec().
+/// Errors: kUsage (a volume too small or too large for floats; `up` parallel to the direction).
 [[nodiscard]] Result<View> makeView(const MapSpec& spec, const TriangleMesh& mesh);
 
 }  // namespace relief

@@ -29,15 +29,15 @@ struct FieldGrids {
     /// counterclockwise seen from outside. Empty if not requested.
     std::vector<std::byte> surface;
     double voxel = 0.0;  ///< side of a voxel, object units
-    /// Estimated fraction of the collider's surface, 0 to 1, missing from both: parts thinner than a voxel that contain
-    /// no voxel centre.
+    /// Estimated fraction of the collider's surface, 0 to 1, missing from `level_set` and `surface`: parts thinner than
+    /// a voxel that contain no voxel centre.
     double missing = 0.0;
 };
 
 /// Creates the level set and the surface. The result does not depend on the number of threads. Memory: three bytes per
-/// voxel of the box, in addition to the grid.
+/// voxel of the collider's box, in addition to the level set.
 /// Errors: kUnsupported (a build without OpenVDB), kLimit (voxels, memory), kInvalidInput (no voxel is inside, or the
-/// inside extends beyond the bounds), kFailure.
+/// inside extends beyond solidBox()), kFailure.
 [[nodiscard]] Result<FieldGrids> encodeGrids(const Collider& collider, const FieldGridOptions& options = {});
 
 }  // namespace relief

@@ -6,8 +6,8 @@
 //
 //     weight · −d wrong / d bytes = worth.
 //
-// No share is below an eighth of an even share. Shares are rounded down to steps of an eighth of an octave: if one mesh
-// changes, most others keep their share and need no new bake.
+// No share is below an eighth of an even share. Shares are rounded down to a power of 2^(1/8): if one mesh changes,
+// most others keep their share and need no new bake.
 #pragma once
 
 #include <cstdint>
@@ -30,13 +30,13 @@ inline constexpr std::uint64_t kShareMin = 4096;
 /// The bytes of a share divided by the bytes of its plan, before the plan is rounded down to a power of two.
 inline constexpr std::uint64_t kSharePerPlan = 8;
 
-/// Plans trees of a mesh up to a number of bytes, which is a power of two. Called from several threads. A mesh gets an
-/// even share if its plan fails or has no trees.
+/// Returns the error curve of a mesh from a plan of `bytes` bytes, a power of two. Called from several threads. A mesh
+/// gets an even share if its plan fails or its curve is empty.
 using PlanErrors = std::function<Result<ErrorCurve>(std::size_t mesh, std::uint64_t bytes)>;
 
 /// Plans each mesh for an even share, and again if its share grows by a factor of two or more.
-/// \param shares  at least one; a single share is the whole budget, without a plan. Weights apply to misclassified
-/// volume.
+/// \param shares  at least one; a single share is the budget, rounded down, without a plan. Weights apply to
+/// misclassified volume.
 /// Errors: kUsage (the budget is below 2·kShareMin per share).
 [[nodiscard]] Result<void> shareByErrors(std::uint64_t budget, std::span<BudgetShare> shares,
                                          const PlanErrors& plan);

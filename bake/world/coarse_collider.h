@@ -14,10 +14,10 @@ namespace relief {
 /// Colliders up to this size in bytes on the GPU have no coarse version, because it would save little.
 inline constexpr std::uint64_t kCoarseFrom = 65'536;
 
-/// Whether a collider of a level has a coarse version: it is a single map of patches, larger than kCoarseFrom.
+/// Returns whether a collider of a level gets a coarse version: `fine` is a single patch map larger than kCoarseFrom.
 [[nodiscard]] bool hasCoarse(const Collider& fine);
 
-/// The collider that a coarse version replaces.
+/// The properties of a collider that determine its coarse version.
 struct FineCollider {
     Bounds box;     ///< solidBox()
     Bounds bounds;  ///< of its mesh
@@ -27,8 +27,8 @@ struct FineCollider {
 };
 
 /// Bakes a coarse collider with a sixteenth of the bytes. Its box contains the box of the fine collider, so that a
-/// program need not sort its bodies again when it swaps the two. Shells of open sheets are as thick as the coarse texels
-/// require.
+/// program need not rebuild its grid of bodies when it replaces the coarse collider. Shells of open sheets are as thick
+/// as the coarse texels require.
 /// \param request  the request that baked the fine collider.
 /// \param bake  bakes the same mesh with another request.
 /// Errors: those of bake().

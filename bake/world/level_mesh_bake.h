@@ -23,7 +23,7 @@ struct LevelMeshBake {
 
 /// Bakes and writes the colliders of a mesh.
 /// \param collider  the result of the mesh; receives the measured errors and warnings.
-/// \return these colliders.
+/// \return the written colliders.
 [[nodiscard]] Result<std::vector<WorldColliderResult>> bakeLevelMesh(const LevelMeshBake& of,
                                                                      WorldColliderResult& collider);
 

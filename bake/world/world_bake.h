@@ -2,8 +2,8 @@
 // Bakes a level into a world. Each distinct mesh becomes a container, or several tiles if it is very large
 // (world_tiles.h). Containers that are up to date are kept. The file that places them (formats/world) is written last.
 //
-// The name of a container consists of its mesh and the XXH3-128 of everything it depends on. A bake therefore never
-// replaces a container that the previous world references: if anything fails, that world remains intact.
+// The file name of a container is its mesh's name and a hash of everything that the container depends on. A bake thus
+// never replaces a container that the previous world references: if anything fails, that world remains intact.
 #pragma once
 
 #include <cstdint>
@@ -52,9 +52,9 @@ struct WorldWatcher {
 /// Checks that no option for single meshes is set. Errors: kUsage.
 [[nodiscard]] Result<void> checkWorldRequest(const BakeRequest& request);
 
-/// Returns the request for one mesh of a level. Leaves out --as options whose name marks no triangle, and renumbers
+/// Returns the request for one mesh of a level. Omits --as options whose name applies to no triangle, and renumbers
 /// mesh.marks to match.
-/// \param mesh  with marks for `names`.
+/// \param mesh  mesh.marks contains 1 + the index into `names`, or 0.
 [[nodiscard]] BakeRequest requestOf(const BakeRequest& request, const std::vector<std::string>& names,
                                     TriangleMesh& mesh);
 

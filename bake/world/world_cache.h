@@ -17,7 +17,7 @@ namespace relief {
 /// Returns the options of a request that affect the bytes of a container, as words of a command line.
 [[nodiscard]] std::vector<std::string> cacheOptions(const BakeRequest& request, std::uint32_t compress);
 
-/// The names of the containers of one mesh.
+/// The file names of the containers of one mesh: `front`, the name of a tile, `back`.
 struct ContainerNames {
     std::string front;
     std::string back;

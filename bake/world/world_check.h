@@ -19,8 +19,9 @@ namespace relief {
 struct WorldCheckRequest {
     /// `mesh` is the level; `samples` are distributed among its bodies; `min_part` is unused.
     CheckRequest check;
-    std::optional<float> within;  ///< maximum distance of points, world units; nullopt: see AccuracyOptions
-    bool pictures = false;        ///< adds slices through the worst places
+    /// Maximum distance of points from the surface, world units; nullopt: see AccuracyOptions.
+    std::optional<float> within;
+    bool pictures = false;  ///< adds slices through the worst places
 };
 
 /// The points near the surface of one body.
@@ -29,7 +30,7 @@ struct BodyAccuracy {
     std::string mesh;
     std::uint64_t points = 0;
     WrongPercent wrong;
-    std::size_t tiles = 1;     ///< consecutive bodies of the world, one per tile; 0: the level has changed
+    std::size_t tiles = 1;     ///< bodies of the world, one per tile; 0: the level's node count changed
     glm::vec3 position{0.0F};  ///< world space: a typical misclassified point, or the position of the body
 };
 
@@ -47,7 +48,7 @@ struct WorldAccuracy {
     std::vector<std::size_t> worst;    ///< bodies with misclassified points, worst first, at most ten
     std::vector<WorldPlace> places;    ///< of `worst`, in the same order
     std::vector<LostParts> lost;       ///< meshes that lose parts, in the order of the level
-    std::size_t coarse = 0;            ///< number of other meshes with coarse parts
+    std::size_t coarse = 0;            ///< number of meshes with coarse parts that are not in `lost`
     IgnoredParts ignored;              ///< of all meshes; sizes in world space
     std::vector<std::string> warnings;
     std::vector<std::string> dependencies;  ///< files that the level references
@@ -60,8 +61,8 @@ struct WorldAccuracy {
 };
 
 /// Measures a world.
-/// Errors: kLimit (samples), kInvalidInput (a mesh of the level has no collider), those of importLevel, of the shapes
-/// and of Embree.
+/// Errors: kLimit (samples), kInvalidInput (a mesh of the level has no collider), those of importLevel, makeSolid and
+/// MeshQuery::build.
 [[nodiscard]] Result<WorldAccuracy> checkWorld(const WorldCheckRequest& request, const WorldField& field);
 
 }  // namespace relief

@@ -19,7 +19,7 @@ namespace relief {
 
 struct ReplacedWorld {
     std::vector<std::string> removed;   ///< removed containers
-    std::vector<std::string> warnings;  ///< about settings written by hand that were dropped; one line each
+    std::vector<std::string> warnings;  ///< about dropped settings that were written by hand; one line each
 };
 
 /// Writes kWorldFileName; its containers must exist. Removes containers that only the previous world references, if

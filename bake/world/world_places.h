@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A typical misclassified point of a body: its cause, and a slice through the union of all bodies there.
+// A typical misclassified point of a body: the cause of the error, and a slice through all bodies at the point.
 #pragma once
 
 #include <cstddef>

@@ -27,7 +27,7 @@ struct ColliderTile {
 /// power of two, so that it rarely changes as a level grows.
 [[nodiscard]] std::uint32_t maxTiles(std::size_t meshes, std::size_t bodies);
 
-/// Returns the budget of a collider whose tiles then fit into `share` bytes, although they duplicate some cells.
+/// Returns the budget for a collider so that its tiles fit into `share` bytes, although tiles duplicate some roots.
 [[nodiscard]] std::uint64_t bytesBeforeCut(std::uint64_t share, const PatchTileOptions& options);
 
 }  // namespace relief

@@ -49,7 +49,7 @@ struct MeshNode {
     glm::vec3 translation{0.0F};                 ///< object units
     glm::vec4 rotation{0.0F, 0.0F, 0.0F, 1.0F};  ///< unit quaternion x, y, z, w
     glm::vec3 scale{1.0F};
-    std::optional<Affine> matrix{};  ///< replaces the three members above; no channel may animate such a node
+    std::optional<Affine> matrix{};  ///< replaces the three members above, which no channel may then animate
     std::uint32_t first_weight = 0;  ///< index into AnimatedMesh::weights of the node's first morph weight
     std::uint32_t weights = 0;
     friend bool operator==(const MeshNode&, const MeshNode&) = default;

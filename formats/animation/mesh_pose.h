@@ -40,8 +40,8 @@ struct MeshPose {
 /// \param pose  has as many joints and weights as the mesh.
 [[nodiscard]] std::vector<glm::vec3> posed(const AnimatedMesh& mesh, const MeshPose& pose);
 
-/// Bounds poses at a cost per joint, not per vertex: a skinned vertex is a convex combination of the positions to
-/// which its joints move it, so it lies in the bounds of the transformed boxes of these joints.
+/// Computes the boxes of poses at a cost per joint, not per vertex: a skinned vertex is a convex combination of the
+/// positions to which its joints move it, so it lies in the bounds of the transformed boxes of these joints.
 class PoseBounds {
   public:
     explicit PoseBounds(const AnimatedMesh& mesh);
@@ -59,10 +59,10 @@ struct PoseExtent {
     Bounds box;                ///< of all poses, object space
     glm::vec3 box_size{0.0F};  ///< largest size of a pose's box along each axis, plus 2 %
 };
-/// Uses the rest pose, where arms are often spread, only if there is no clip.
+/// Excludes the rest pose if there is a clip, because characters often spread their arms only in the rest pose.
 [[nodiscard]] PoseExtent poseExtent(const AnimatedMesh& mesh);
 
-/// Returns whether the clip ends near its start pose, so that it loops without a jump.
+/// Returns whether the boxes of the clip's first and last pose are nearly equal, so that it can loop without a jump.
 [[nodiscard]] bool isCyclic(const AnimatedMesh& mesh, const MeshClip& clip);
 
 }  // namespace relief

@@ -19,8 +19,8 @@
 // A visitor receives each field as a FieldRef, which carries its type (formats/base/field_type.h): numbers, bool, text,
 // paths, glm::vec3, enumerations with words, structs with their own fields(), and optionals, vectors and arrays of
 // these. If one value in a data file sets several members, fields() visits a FieldSpan, FieldPair or other adapter
-// below. Rules between fields that FieldInfo cannot express belong in the struct's second function, check(). Report
-// structs are only written: their fields() takes a const reference and may visit expressions as well as members.
+// below. If FieldInfo cannot express a rule between fields, a second function, check(), enforces it (toml_reader.h).
+// Report structs are only written: their fields() takes a const reference and may visit expressions and members.
 #pragma once
 
 #include <algorithm>
@@ -143,7 +143,7 @@ struct FieldFile {
     std::string& place;
 };
 
-/// An object in a report without a struct of its own (formats/fields/field.h).
+/// A report object that has no struct of its own (formats/fields/field.h).
 struct FieldGroup {
     const void* of;
     void (*visit)(const void* of, FieldVisitor& visit);
@@ -190,7 +190,7 @@ template <class T>
 inline constexpr bool kIsArray = false;
 template <class T, std::size_t kSize>
 inline constexpr bool kIsArray<std::array<T, kSize>> = true;
-/// A struct with kinds that have different fields: `static std::vector<T> kinds()` returns one value of each kind.
+/// A struct whose kinds have different fields: `static std::vector<T> kinds()` returns one value of each kind.
 template <class T>
 concept WithKinds = requires {
     T::kinds();

@@ -40,7 +40,7 @@ enum class FieldForm : std::uint8_t {
     kPath,    ///< std::filesystem::path
     kVector,  ///< glm::vec3
     kArray,   ///< std::array
-    kList,    ///< std::vector; write-only: any contiguous range
+    kList,    ///< std::vector, or any contiguous range if write-only
     kOptional,
     kVariant,  ///< write-only
     kSpan,     ///< FieldSpan; the next four likewise
@@ -71,7 +71,7 @@ struct FieldItems {
 struct FieldType {
     FieldForm form = FieldForm::kCustom;
     std::uint32_t size = 0;                        ///< bytes of a value
-    std::size_t count = 0;                         ///< elements of an array
+    std::size_t count = 0;                         ///< elements of a vector or array
     std::span<const std::string_view> words = {};  ///< of an enumeration
     const FieldType* held = nullptr;               ///< type of the elements, or of an optional's value
     std::span<const FieldType* const> alternatives = {};
@@ -81,7 +81,7 @@ struct FieldType {
     FieldItems (*items)(void* value) = nullptr;  ///< list or optional
     void* (*add)(void* value) = nullptr;   ///< appends an element to a list, or emplaces an optional's value
     void (*clear)(void* value) = nullptr;  ///< of a list
-    FieldRef (*chosen)(void* value) = nullptr;  ///< of a variant
+    FieldRef (*chosen)(void* value) = nullptr;  ///< the value in a variant
     std::string_view (*text)(const void* value) = nullptr;
 
     // Structs:
@@ -99,7 +99,7 @@ struct FieldType {
 template <class T>
 [[nodiscard]] const FieldType& fieldType();
 
-/// A reference to a value of any type that has a FieldType. Temporaries are valid until the end of the full expression.
+/// A reference to a value of any type that has a FieldType. Does not extend the lifetime of a temporary.
 class FieldRef {
   public:
     template <class T>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prevents a run's output from replacing a file that the run reads or owns, or another output.
+// Prevents an output of a run from replacing an input, a cache file or another output of that run.
 #pragma once
 
 #include <cstddef>
@@ -63,25 +63,25 @@ class FileGuard {
     /// Errors: those of preflightFile; kUsage if it is an input, another output, or a link out of `made`.
     [[nodiscard]] Result<void> writes(const std::filesystem::path& path, std::string_view option,
                                       const std::filesystem::path& made = {});
-    /// Registers files in a folder, which need not exist. Errors: kUsage, as above, or if one of the files is a link
-    /// that leaves the folder.
+    /// Registers files in a folder. The folder need not exist. Errors: kUsage, as above, or if one of the files is a
+    /// link that leaves the folder; kIo (the folder's path cannot be followed).
     [[nodiscard]] Result<void> writes(const NumberedFiles& files, std::string_view option);
     [[nodiscard]] Result<void> writes(const FilesByEnding& files, std::string_view option);
-    /// Creates a folder that the run fills, like preflightFolder(). The last copy of this guard removes the
-    /// created folders that are still empty, unless keepFolders() was called.
+    /// Creates a folder for outputs with preflightFolder(). The destructor of the guard's last copy removes the created
+    /// folders that are still empty, unless keepFolders() was called.
     [[nodiscard]] Result<void> makes(const std::filesystem::path& folder, std::string_view option);
     void keepFolders() { folders_->made.clear(); }
     /// Registers a cache file. A link at that path is replaced, not followed. Several caches may share one file, and
     /// the folder need not exist. \param option  the option that names the folder. Errors: kUsage, as for writes().
     [[nodiscard]] Result<void> keeps(const std::filesystem::path& path, std::string_view option);
 
-    /// Registers an output whose folder may not exist yet; does not check that it is writable.
-    /// \return the registered file that it would replace, or nullopt if there is none.
+    /// Registers an output whose folder may not exist yet; does not check that the output is writable.
+    /// \return the registered file that the output would replace, or nullopt if there is none.
     [[nodiscard]] std::optional<File> claim(const std::filesystem::path& path, std::string_view option);
 
   private:
-    /// Identities of a path: the location of a symbolic link itself, the inode of a regular file, and last its
-    /// destination ("-" for standard output). Devices have none.
+    /// Identities of a path, in this order: the location of a symbolic link itself, the inode of a regular file, the
+    /// destination of the path ("-" for standard output). Devices have none.
     using Keys = std::vector<std::string>;
     using HoldsName = std::function<bool(const std::string& name)>;
     struct Series {

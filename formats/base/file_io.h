@@ -17,12 +17,12 @@
 
 namespace relief {
 
-/// Returns whether the path is a pipe, a socket or a block device. Opening one could block forever, so they are neither
-/// read nor written. Returns false for /dev/stdin, /dev/fd/N and similar paths, which the shell has already opened.
+/// Returns whether the path is a pipe, a socket or a block device, which readFile() and writeFile() reject: opening a
+/// pipe could block forever. Returns false for /dev/stdin, /dev/fd/N and similar paths, which are already open.
 [[nodiscard]] bool mayBlock(const std::filesystem::path& path);
 
-/// Returns N for /dev/fd/N, /dev/stdin and similar paths, otherwise nullopt. Write such files through their descriptor:
-/// reopening them by name would restart at the beginning or replace them.
+/// Returns N for /dev/fd/N, /dev/stdin and similar paths, otherwise nullopt. Write to descriptor N: opening the path
+/// again would restart at the beginning of the file or replace the file.
 [[nodiscard]] std::optional<int> descriptorOf(const std::filesystem::path& path);
 
 /// Reads a whole file. "-" reads standard input. Devices are read to their end.
@@ -36,10 +36,10 @@ namespace relief {
 /// fsync of the folder. An error before the rename leaves the old file unchanged and no temporary file behind. If only
 /// the last fsync fails, the message states that the new file is in place.
 ///
-/// A new file gets the permissions of the umask. Replacing a file keeps its permission bits, but not its owner, ACLs or
-/// hard links. Temporary files that killed processes left in the folder are removed. A symbolic link is kept and its
-/// target is replaced. "-" writes to standard output; /dev/stdout, /dev/fd/N and devices (/dev/full) are written in
-/// place.
+/// A new file gets the permissions that the umask allows. Replacing a file keeps its permission bits, but not its
+/// owner, ACLs or hard links. Temporary files of killed processes are removed from the folder. A symbolic link is kept
+/// and its target is replaced. "-" writes to standard output; /dev/stdout, /dev/fd/N and devices (/dev/full) are
+/// written in place.
 /// Errors: kIo, with the system's message.
 [[nodiscard]] Result<void> writeFile(const std::filesystem::path& path, std::span<const std::byte> bytes);
 

@@ -12,7 +12,7 @@ namespace relief::portable {
 /// Computes e^x within 2 ULP; 0 below −745, infinity above 710.
 [[nodiscard]] double exp(double x);
 
-/// Computes x^y to 13 digits if y · log x is at most 100. \param x  as for log()
+/// Computes x^y to 13 digits if |y · log x| is at most 100. \param x  as for log()
 [[nodiscard]] double pow(double x, double y);
 
 /// Accurate to 1e-15. \param radians  at most 100,000 in magnitude

@@ -19,8 +19,8 @@ struct ProcessStart {
     std::vector<std::string> arguments;  ///< argv, starting with the program's name
     /// files[n], borrowed, becomes descriptor n; -1 means /dev/null. No other descriptors are inherited.
     std::vector<int> files;
-    /// Disposition of signals that this process ignores. False resets only SIGPIPE; the others stay ignored, as under
-    /// nohup. True resets all of them.
+    /// Resets all signals that this process ignores. If false, resets only SIGPIPE; the others stay ignored, as under
+    /// nohup.
     bool reset_ignored_signals = false;
     sigset_t blocked_signals{};  ///< empty by default
     bool own_group = false;      ///< makes the program the leader of a new process group

@@ -8,7 +8,7 @@
 
 namespace relief {
 
-/// Error category, which determines who can fix the error. The value is the exit code of both executables
+/// Error category, which determines who can fix the error. The value is the exit code of `relief` and `relief-sim`
 /// (bake/cli/README.md, "Exit codes").
 enum class ErrorCode : int {
     kUsage = 1,         ///< invalid option, key or value in the call
@@ -54,7 +54,7 @@ inline void valueOf(Result<void>&& /*result*/) {}
 
 /// Evaluates to the value of a Result, or returns its error from the calling function:
 /// `const View view = RELIEF_TRY(makeView(spec));`. Use it as a statement, or as the whole right side of a declaration
-/// or assignment. It is a statement expression of GCC and Clang because a function cannot return from its caller.
+/// or assignment. A function cannot make its caller return, so the macro is a statement expression of GCC and Clang.
 #define RELIEF_TRY(...)                             \
     __extension__({                                 \
         auto relief_tried = (__VA_ARGS__);          \

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures durations for reports. No output may depend on time.
+// Measures durations for reports. No other output may depend on time.
 #pragma once
 
 #include <chrono>

@@ -21,7 +21,7 @@ class TemporaryFile {
     TemporaryFile& operator=(const TemporaryFile&) = delete;
     ~TemporaryFile();
 
-    /// All member functions return 0 or an errno.
+    /// create(), fill() and renameTo() return 0 or an errno.
     [[nodiscard]] int create(const std::filesystem::path& folder, mode_t mode);
     /// Writes the bytes, sets the permissions and syncs. The file stays locked until renameTo().
     [[nodiscard]] int fill(std::span<const std::byte> bytes, std::optional<mode_t> mode);
@@ -30,8 +30,8 @@ class TemporaryFile {
     /// Removes all temporary files of this process. Safe in a signal handler.
     static void removeAll();
 
-    /// Removes the temporary files that ended processes left in a folder: regular files of this user with such a name
-    /// and without a lock. The lock protects files that another machine or container is writing.
+    /// Removes the temporary files of ended processes from a folder: regular files of this user that are named as above
+    /// and not locked. The lock protects files that another machine or container is writing.
     static void removeLeftovers(const std::filesystem::path& folder);
 
   private:

@@ -17,7 +17,7 @@ namespace relief {
 [[nodiscard]] std::string shortest(float value);
 /// Appends shortest(value) to `out` without a temporary string.
 void appendShortest(std::string& out, float value);
-/// "a/b/c"
+/// Joins the components with '/': "0.1/2/3".
 [[nodiscard]] std::string shortest(const glm::vec3& value);
 
 /// Parses the whole text as a finite float, otherwise returns nullopt. Accepts a leading '+'; values that are too small
@@ -53,14 +53,14 @@ void appendShortest(std::string& out, float value);
 /// Converts A…Z to a…z; other bytes are unchanged.
 [[nodiscard]] std::string lowerCase(std::string_view text);
 
-/// Returns the entry of `known` nearest to `word` if at most a third of its letters differ, otherwise "".
+/// Returns the entry of `known` nearest to `word` if at most a third of the letters of `word` differ, otherwise "".
 [[nodiscard]] std::string_view nearest(std::string_view word, std::span<const std::string_view> known);
 /// Returns "; did you mean 'size'?" for the nearest entry, or "".
 [[nodiscard]] std::string didYouMean(std::string_view word, std::span<const std::string_view> known);
-/// "less, greater"
+/// Joins words: "less, greater".
 [[nodiscard]] std::string listed(std::span<const std::string_view> words);
 
-/// Bidirectional control characters (UAX 9), which can disguise a name as another one.
+/// Treatment of bidirectional control characters (UAX 9), which can disguise one name as another.
 enum class Bidi : std::uint8_t { kReplace, kKeep };
 /// Converts bytes to valid UTF-8: invalid sequences and control characters become U+FFFD.
 /// \param size_max  bytes; truncates before the character that would exceed it.

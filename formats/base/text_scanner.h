@@ -33,7 +33,7 @@ class TextScanner {
     /// Skips the rest of this line. \return false if it was the last one.
     bool nextLine();
 
-    /// Returns the line number, from 1, of the last word or rest returned; 1 before the first.
+    /// Returns the line number, from 1, at which the text returned last starts; initially 1.
     [[nodiscard]] std::size_t line() const { return word_line_; }
     /// Returns the unread text.
     [[nodiscard]] std::string_view rest() const;
@@ -57,7 +57,7 @@ class TextScanner {
 /// quoting.
 class CsvReader {
   public:
-    /// fields() has at most one more than this, to show that a line has too many; a hostile line could have millions.
+    /// If a line has more fields, fields() returns only the first kFieldsMax + 1: a hostile line could have millions.
     static constexpr std::size_t kFieldsMax = 8;
 
     /// \param text  borrowed; line() and fields() point into it.

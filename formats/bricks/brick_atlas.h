@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Distances near a surface in GPU-filterable form. `relief-accuracy --atlas` writes the distance volumes that it
-// measures, and `relief-bench step --bricks` reads them. A dense volume is one brick.
+// Distances near a surface: a grid of cubes, where each cube near the surface has a brick, a block of distances that a
+// GPU can filter. A dense volume is one brick. `relief-accuracy --atlas` writes the distance volumes that it measures,
+// and `relief-bench step --bricks` reads them.
 //
 // File layout: a Header, `index`, `codes`; little-endian. The layout may change with every version of the tools.
 #pragma once
@@ -28,7 +29,7 @@ struct BrickAtlas {
     glm::uvec3 cells{1};      ///< voxels per brick; a brick has one more node along each axis
     float range = 1.0F;       ///< distance of the largest code, in object units
     std::uint32_t bits = 8;   ///< per code: 8 or 16
-    std::uint64_t bytes = 0;  ///< size counted by relief-accuracy, including the index in its own encoding
+    std::uint64_t bytes = 0;  ///< size that relief-accuracy reports; its index may be smaller than `index`
     std::vector<std::uint32_t>
         index;  ///< per cube, x fastest: kOutside, kInside, or kFirstBrick + brick number
     std::vector<std::int16_t> codes;  ///< brick by brick, nodes x fastest: ±codeMax() encodes ±range

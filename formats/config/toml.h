@@ -6,7 +6,7 @@
 #include <vector>
 
 #define TOML_HEADER_ONLY 1
-// toml++ asserts that a key starts with a valid character just before it checks for that and reports an error. Hostile
+// toml++ asserts that a key starts with a valid character, although its next lines report an error otherwise. Hostile
 // files must not abort a debug build.
 #define TOML_ASSERT(expression) static_cast<void>(0)
 #include <toml++/impl/preprocessor.h>
@@ -21,7 +21,7 @@
 
 namespace relief {
 
-/// Returns the keys of a table in file order, so that the first error is reported.
+/// Returns the keys of a table in file order, so that readers report the first error in the file.
 inline std::vector<const toml::key*> keysInOrder(const toml::table& table) {
     std::vector<const toml::key*> keys;
     for (const auto& [key, node] : table) {

@@ -9,7 +9,7 @@ namespace relief {
 
 void readValue(const TomlValue& from, FieldRef value, const FieldInfo& info);
 
-/// Reads a table into a struct, then applies the rules of its fields and its check(), which may also complete the
+/// Reads a table into a struct, applies FieldInfo::rules, then calls the struct's check(), which may also complete the
 /// struct:
 ///     std::optional<FieldFault> check(T& value, const GivenFields& given);
 /// Sets the struct's member `place`, if it has one, to the position of the table.

@@ -51,7 +51,7 @@ class TomlValue {
     [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] const TomlFile& file() const { return *file_; }
     [[nodiscard]] std::string place() const;  ///< "file:line:column", or "file" if is_text is false
-    /// Fails at a key of this table.
+    /// Throws "place: message" with the place of a key of this table.
     [[noreturn]] void failAt(const toml::key& key, const std::string& message) const;
     /// Returns "table.key".
     [[nodiscard]] std::string full(std::string_view key) const;
