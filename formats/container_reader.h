@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The only parser of containers. Each step validates before use and records every problem as an issue. Loading
-// (container.cpp) rejects a file with any error; inspect.cpp reports all issues and what is still readable.
+// The library's only parser of containers. Each step validates before use and records every problem as an issue.
+// Loading (container.cpp) rejects a file with any error; inspect.cpp reports all issues and what is still readable.
 #pragma once
 
 #include <array>
@@ -58,17 +58,17 @@ inline constexpr std::uint64_t kPayloadAlignment = 64;  ///< bytes
     return (end + kPayloadAlignment - 1) / kPayloadAlignment * kPayloadAlignment;
 }
 
-/// Returns the longest file that readContainer accepts: payloads are never longer than their texels.
+/// Returns the maximum size of a file that readContainer accepts, with all payloads uncompressed.
 [[nodiscard]] std::uint64_t containerSizeMax(const ContainerLimits& limits);
 
 /// Map metadata.
 struct StoredMap {
-    DepthMap frame;  ///< no texels before readTexels(); unspecified if `framed` is false
+    DepthMap frame;  ///< the map, without texels before readTexels(); invalid if `framed` is false
     PayloadInfo payload;
     std::uint64_t hash = 0;
-    bool framed = false;  ///< the frame is valid
-    bool readable =
-        false;  ///< `framed`, the payload's sizes and place are valid, and the texels are within the limits
+    bool framed = false;  ///< `frame` is valid
+    /// `framed` is true, the payload has valid sizes and lies within the file, and the texels are within the limits.
+    bool readable = false;
     bool intact = false;  ///< set by readTexels(): the payload's checksum matches
 };
 
@@ -78,7 +78,7 @@ class ContainerReader {
     ContainerReader(std::span<const std::byte> bytes, const ContainerLimits& limits)
         : bytes_(bytes), limits_(limits) {}
 
-    /// Reads header, metadata and frames, and checks the sizes and offsets of payloads without reading them.
+    /// Reads the header and the metadata. Checks the sizes and offsets of payloads, but not their contents.
     void readDescription();
 
     /// Reads the texels of a map. \param index  of a `readable` map. \return whether the texels are valid.
@@ -96,7 +96,7 @@ class ContainerReader {
     bool bounds_valid = false;
     Collider collider;  ///< without maps
     std::vector<StoredMap> maps;
-    std::vector<Issue> issues;  ///< in file order, except that payload issues come last
+    std::vector<Issue> issues;  ///< in file order, except that those of readTexels() come last
     /// Index of the first issue of a map; earlier ones concern header and metadata.
     std::size_t first_map_issue = 0;
 
@@ -123,7 +123,7 @@ class ContainerReader {
 /// \param major  format version of the file.
 [[nodiscard]] std::string fixFor(IssueCode code, std::uint16_t major);
 
-/// Returns kUnsupported for another major version, kLimit if the only errors are limits, else kInvalidInput.
+/// Returns kUnsupported for another major version, kLimit if every error is an exceeded limit, else kInvalidInput.
 [[nodiscard]] ErrorCode errorCodeOf(std::span<const Issue> issues);
 
 /// Runs f and converts an allocation failure into an Error.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One depth map: its frame in object space, its texels, and its vote at a point. CPU reference of
+// One depth map: its transform from object space, its texels, and its vote at a point. CPU reference of
 // shaders/collider/collider.glsl.
 //
 // An orthographic map looks along +z of its map coordinates. T = object_to_map maps the map's volume to the unit cube.
@@ -12,8 +12,8 @@
 //        0 +   +--+--+--+--+--> x
 //              0           1
 //
-// A cube map's T maps its volume to [−1, 1]³ about the centre. The faces +X −X +Y −Y +Z −Z and their axes follow
-// OpenGL's cube maps (OpenGL 3.3, table 3.21); they are stored one after the other.
+// In a cube map, T maps the volume to [−1, 1]³, and rays start at its centre. The faces +X −X +Y −Y +Z −Z and their
+// axes follow OpenGL's cube maps (OpenGL 3.3, table 3.21); they are stored one after the other.
 #pragma once
 
 #include <cstddef>
@@ -34,24 +34,24 @@ enum class Projection : std::uint8_t { kOrthographic = 0, kCube = 1, kLocal = 2 
 
 [[nodiscard]] const char* projectionName(Projection projection);  ///< "orthographic", "cube" or "local"
 
-/// Selects the surface along the ray that a map stores: the nearest, the farthest, or both (front-back).
+/// Selects which surface on the ray of a texel is stored: the nearest, the farthest, or both (front-back).
 enum class Compare : std::uint8_t { kLess = 0, kGreater = 1, kBoth = 2 };
 
 [[nodiscard]] const char* compareName(Compare compare);  ///< "less", "greater" or "both"
 
 /// How a texel becomes a vote: the distance along the ray to the stored depth (the paper: Kolb et al. 2004), or the
-/// distance to the plane through the surface point at the texel's centre. Encoders of planes use plane.h.
+/// distance to the plane through the surface point at the texel's centre. Writers compute rays with plane.h.
 enum class Decode : std::uint8_t { kProjected = 0, kPlane = 1 };
 
 [[nodiscard]] const char* decodeName(Decode decode);  ///< "projected" or "plane"
 
 /// An affine transform as three rows: result i = dot(row[i].xyz, p) + row[i].w,
-/// evaluated as x·p.x + (y·p.y + (z·p.z + w)). The shader does the same with rows that map to texels.
+/// evaluated as x·p.x + (y·p.y + (z·p.z + w)). Shaders do the same; for orthographic maps, their x and y are in texels.
 struct Affine {
     glm::vec4 row[3] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
 
     [[nodiscard]] glm::vec3 apply(const glm::vec3& p) const;
-    /// Returns the matrix that transforms directions; in double precision, like the next function.
+    /// Returns the matrix that transforms directions.
     [[nodiscard]] glm::dmat3 linear() const;
     /// Returns the inverse of linear(), which must exist.
     [[nodiscard]] glm::dmat3 inverse() const;
@@ -124,7 +124,7 @@ struct Vote {
 
 /// Combination rule of votes, independent of their order (paper section 4.1, rule 2). A point is outside if any vote is
 /// outside. The smallest outside vote wins; if there is none, the inside vote closest to 0. A vote of 0 is outside:
-/// with the paper's `vote > 0`, the result exactly on a surface would depend on the order.
+/// with the paper's `vote > 0`, the result at a point on a surface would depend on the order.
 [[nodiscard]] constexpr bool replaces(float vote, float best) {
     return (best < 0.0F && vote > best) || (vote >= 0.0F && vote < best);
 }

@@ -21,7 +21,7 @@ struct MapInspection {
     PartState state = PartState::kUnreadable;
     std::optional<DepthMap> frame;  ///< without texels; set if valid
     std::optional<PayloadInfo> payload;
-    /// Fraction of texels with a surface (at least one in front-back maps), 0…1. Set if the texels were read.
+    /// Fraction of texels with a surface (at least one in front-back maps), 0…1; 1 for patches. Set if they are valid.
     std::optional<double> coverage;
 };
 
@@ -37,7 +37,7 @@ struct Inspection {
     [[nodiscard]] std::size_t count(Severity severity) const;
     /// Returns whether readContainer rejects the file.
     [[nodiscard]] bool damaged() const;
-    /// Returns kUnsupported for another major version, kLimit if the only errors are limits, else kInvalidInput.
+    /// Returns kUnsupported for another major version, kLimit if every error is an exceeded limit, else kInvalidInput.
     [[nodiscard]] ErrorCode errorCode() const;
 };
 

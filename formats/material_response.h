@@ -28,7 +28,7 @@ struct MaterialResponse {
 
 void fields(FieldVisitor& visit, MaterialResponse& response);
 
-/// Returns the index of the second response with a repeated name, or nullopt.
+/// Returns the index of the first response that repeats an earlier name, or nullopt.
 [[nodiscard]] std::optional<std::size_t> repeatedName(std::span<const MaterialResponse> responses);
 
 /// Applies responses to the materials of several colliders, and records which names occurred.
@@ -40,8 +40,8 @@ class MaterialResponses {
     void apply(Materials& materials);
     /// Records names without applying responses.
     void recordNames(const Materials& materials);
-    /// Returns nullopt if a recorded material has this name. Otherwise returns "is not the name of a material; there are
-    /// 'oak' and 'stone'", with the names recorded so far.
+    /// Returns nullopt if a recorded material has this name. Otherwise returns "is not the name of a material; there
+    /// are 'oak', 'stone'", with the names recorded so far.
     [[nodiscard]] std::optional<std::string> faultOf(const std::string& name) const;
 
   private:

@@ -2,7 +2,7 @@
 // The materials of a collider: names, responses, and an octree that assigns a material to each point. Described in
 // README.md in this folder, "Materials"; shaders/bodies/materials.glsl implements materialAt() on the GPU.
 //
-// The tree covers a cube around the collider, independent of texels, so that maps of every format share it. A cell is
+// The tree covers a cube around the collider. It does not depend on the maps, so all map formats share it. A cell is
 // split only if surfaces of different materials are near it. A cell without a surface gets the nearest surface's
 // material because contacts lie slightly off the surface.
 #pragma once
@@ -66,7 +66,7 @@ struct Materials {
     std::vector<MaterialNode> nodes;  ///< level by level, root first; empty: material 0 everywhere
 
     [[nodiscard]] bool empty() const { return list.empty(); }
-    /// Returns the bytes of nodes, sides and names.
+    /// Returns the total size of nodes, sides and names.
     [[nodiscard]] std::size_t bytes() const;
     friend bool operator==(const Materials&, const Materials&) = default;
 };

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Finds the nearest surface of a collider by repeated evaluation of its maps.
 //
-// A vote only uses one plane: that of the texel that P projects to. Its distance is correct if the surface coincides
-// with that plane. It is wrong beside a silhouette, past an edge, or in a pocket, where another part is nearer. The
-// search therefore tests whether the maps change sign at the plane, adopts the plane found there, and probes around P
-// for nearer surfaces:
+// The vote at a point P uses only one plane: the plane of the texel that P projects to. The distance is correct if the
+// surface coincides with that plane. It is wrong beside a silhouette, past an edge, or in a pocket, where another part
+// is nearer. The search therefore tests whether the maps change sign at the plane, adopts the plane found there, and
+// probes around P for nearer surfaces:
 //
 //            ·  P  ·          1. Project P onto the plane of the vote (1), and step slightly beyond.
-//         ·    /|\    ·       2. Still on P's side: the plane there (2) also counts; continue to the nearest
-//        ·    / | \    ·         point of both planes. On the other side: a surface lies between.
+//         ·    /|\    ·       2. If still on P's side, the plane there (2) also counts: continue to the nearest
+//        ·    / | \    ·         point behind both planes. If on the other side, a surface lies between.
 //        ·   2  1  ·   ·      3. Probe 14 points on two spheres around P, inside the distance found. If one
 //     ____\ /______ ·            is on the other side, a nearer surface exists there.
 //          X
-// Other implementations may evaluate other points. They must keep the sign, and return only points on the other side, or
-// points on a plane with the other side just behind it.
+// Other implementations may evaluate other points. They must keep the sign, and return only points on the other side,
+// or points on a plane with the other side just behind it.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -24,8 +24,8 @@ namespace relief {
 
 /// A surface near a point.
 struct SurfaceSample {
-    /// Object units, with the sign of evaluate(): negative inside. kFarOutside if P is outside and no surface was
-    /// found; undefined if map is −1.
+    /// Object units, with the sign of evaluate(): negative inside. kFarOutside if evaluate() returns it and no
+    /// surface was found; undefined if map is −1.
     float distance = 0.0F;
     glm::vec3 point{0.0F};   ///< nearest point found, object space; P if distance is kFarOutside
     glm::vec3 normal{0.0F};  ///< of the surface there, unit length, outwards; zero if distance is kFarOutside
@@ -36,14 +36,14 @@ struct SurfaceSample {
 
 /// Search parameters; nearest_surface.cpp documents their use.
 struct NearestSearch {
-    /// Limit of evaluations per search. Near the surface, a search needs about 20 on average. Most evaluations outside
-    /// cost one vote.
+    /// Maximum evaluations per search. Near the surface, a search needs about 20 on average. If P is outside, most
+    /// evaluations stop at the first vote.
     static constexpr int kEvaluationsMax = 192;
     static constexpr int kSteps = 8;           // from the plane of the vote at P
     static constexpr int kStepsFromProbe = 4;  // from a plane found by a probe
     // Overshoot of an evaluation behind a plane, as a fraction of the distance to the plane.
     static constexpr float kBeyond = 0.015625F;
-    static constexpr float kBeyondMin = 1.52587890625e-5F;  // 2⁻¹⁶, as a fraction of the longest side
+    static constexpr float kBeyondMin = 1.52587890625e-5F;  // 2⁻¹⁶, as a fraction of the bounds' longest side
     // As a fraction of the longest side; small enough not to step over thin parts.
     static constexpr float kBeyondMax = 0.00390625F;
     // A new plane must be nearer by this factor to justify another step.
@@ -65,13 +65,13 @@ struct NearestSearch {
 
 /// Computes the distance from P to the nearest surface that the maps represent.
 ///
-/// The sign is that of evaluate(). The distance is measured to `point`, which is on the other side, or on the plane of a
-/// vote with the other side just behind it. The search never returns a surface that the maps do not represent, but may
-/// miss a nearer surface: a part that is thin relative to its distance from P. If no point on the other side is found, the
-/// result is that of evaluate().
+/// The sign is that of evaluate(). The distance is measured to `point`, which is on the other side, or on the plane of
+/// a vote just in front of the other side. The search never returns a surface that the maps do not represent, but may
+/// miss a nearer surface: a part that is thin relative to its distance from P. If no point on the other side is found,
+/// the result is that of evaluate().
 ///
-/// \param p  object space; any finite point. For points or colliders beyond 10¹⁵, or flatter than 10⁻¹², the search is
-/// skipped and the result is that of evaluate().
+/// \param p  object space; any finite point. The result is that of evaluate() if a coordinate of P or of the bounds
+/// exceeds 10¹⁵ in magnitude, or if the bounds' longest side is below 10⁻¹².
 /// \return finite for all map contents.
 [[nodiscard]] SurfaceSample nearestSurface(const Collider& collider, const glm::vec3& p);
 

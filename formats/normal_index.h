@@ -17,7 +17,7 @@ inline constexpr int kNormalHalfRange = 127;
 /// never written and decodes like 254.
 ///
 ///     (s, t) = (127, 127) -> (0, 0, 1)      (254, 127) -> (1, 0, 0)      (127, 0) -> (0, −1, 0)
-///     (s, t) = (0, 0)     -> (0, 0, −1), as are the three other corners of the square
+///     (s, t) = (0, 0)     -> (0, 0, −1), as for the three other corners of the square
 struct NormalIndex {
     std::uint8_t s = 127;
     std::uint8_t t = 127;
@@ -41,7 +41,7 @@ struct NormalIndex {
 /// \param normal  any finite nonzero vector.
 [[nodiscard]] NormalIndex encodeNormal(const glm::vec3& normal);
 
-/// Packs both indices into 16 bits, s in the high byte: the red and green channels of a front-back texel.
+/// Packs both indices into 16 bits, s in the high byte: the red or green channel of a front-back texel.
 [[nodiscard]] constexpr std::uint16_t packNormal(NormalIndex index) {
     return static_cast<std::uint16_t>(index.s << 8 | index.t);
 }

@@ -74,7 +74,7 @@ PatchHeights heightRange(const PatchRecord& patch) {
     return heights;
 }
 
-/// \param i  of a height, x fastest.
+/// \param i  of a height, u fastest.
 std::uint8_t heightCode(PatchTexels texels, const PatchRecord& patch, std::uint32_t i) {
     const std::uint32_t side = patch.side();
     if (i == side * side - 1) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A map of patches: an octree whose leaves contain small depth maps of the surface. Each patch is projected along the one
-// of 13 axes that suits its piece of the surface best, so no part of a mesh is hidden. formats/README.md specifies the
-// format and shaders/engines/relief.glsl implements it in GLSL; change all three together.
+// A map of patches: an octree whose leaves contain small depth maps of the surface. Each patch is projected along the
+// one of 13 axes that suits its piece of the surface best, so no part of a mesh is hidden. formats/README.md specifies
+// the format and shaders/engines/relief.glsl implements it in GLSL; change all three together.
 //
 // Map space is measured in root cells: the volume is [0, n.x] × [0, n.y] × [0, n.z], and cells are cubes in object
 // space. A texel has 8 bytes, four little-endian words of 16 bits. Below, `low` is the first two words and `high` the
@@ -19,9 +19,9 @@
 //               fastest); 10-17: mask of inside children among the       others follow; 24-31: distance of the cell's
 //               rest; 18-31: s and t of a coarse plane's normal, 7       centre from the coarse plane, in 128ths of the
 //               bits each                                                cell, + 128
-//     patch     3 in bits 0-1; 2-3: 0, 1 or 2 for 2², 3² or 5² heights;  0-23: texel of all heights except the last, a
-//               4: outside is below; 5-6: 0 axis, 1 face diagonal,       byte each, x fastest; for 2², these heights
-//               2 cube diagonal; 7-8: the first axis; 9-10: first and    themselves; 24-31: scale
+//     patch     3 in bits 0-1; 2-3: 0, 1 or 2 for 2², 3² or 5² heights;  0-23: first texel of the heights except the
+//               4: outside is below; 5-6: 0 axis, 1 face diagonal,       last, a byte each, u fastest; for 2², these
+//               2 cube diagonal; 7-8: the first axis; 9-10: first and    heights themselves; 24-31: scale
 //               second axis mirrored; 11-22: base + 2048; 23-30: last
 //               height
 //     pair      3 in bits 0-1, 3 in 2-3; 4: inside is the                0-23: texel of the first patch's record; the
@@ -53,7 +53,7 @@ inline constexpr std::uint32_t kPatchSideMax = 5;  ///< heights per side
 /// 0…1 along an axis, 0…2 along a face diagonal, and 0…3 along the cube diagonal.
 struct PatchFrame {
     std::uint8_t diagonal = 0;  ///< 0: axis, 1: face diagonal, 2: cube diagonal
-    std::uint8_t first = 0;     ///< first axis; the others follow in the order x y z
+    std::uint8_t first = 0;     ///< first axis; the others follow cyclically: x y z x y
     std::uint8_t mirrored = 0;  ///< bit 0: the first axis, bit 1: the second
 
     /// Transforms a point of the unit cube to (u, v, w).
@@ -64,7 +64,7 @@ struct PatchFrame {
     friend bool operator==(const PatchFrame&, const PatchFrame&) = default;
 };
 
-/// Returns all 13 frames, an axis first.
+/// Returns all 13 frames: along the axes, then the face diagonals, then the cube diagonals.
 [[nodiscard]] const std::array<PatchFrame, 13>& patchFrames();
 
 struct PatchRecord;
@@ -78,10 +78,10 @@ struct PatchRecord;
 struct PatchHeights {
     std::uint32_t side = 2;  ///< 2, 3 or 5
     int base = 0;            ///< −2048…2047
-    std::uint8_t scale = 0;  ///< of the range: (1 + (scale & 15)/16) · 2^((scale >> 4) − 12)
+    std::uint8_t scale = 0;  ///< encodes range = (1 + (scale & 15)/16) · 2^((scale >> 4) − 12)
     std::array<std::uint8_t, kPatchSideMax * kPatchSideMax> codes{};
 
-    /// Encodes heights as the nearest codes; clamps them to ±3.99.
+    /// Clamps heights to ±3.99, and encodes them as the nearest codes.
     [[nodiscard]] static PatchHeights of(std::span<const double> heights, std::uint32_t side);
     [[nodiscard]] float low() const { return static_cast<float>(base) * (1.0F / 512.0F); }
     [[nodiscard]] float step() const;  ///< height of one code step
@@ -103,7 +103,7 @@ struct PatchRecord {
     /// Heights along each side of a patch; 0 for a pair.
     [[nodiscard]] std::uint32_t side() const { return std::array{2U, 3U, 5U, 0U}[low >> 2U & 3U]; }
     [[nodiscard]] PatchFrame frame() const;  ///< patches only
-    /// Split cells, pairs and patches: index of the first texel.
+    /// Split cells, pairs, patches of 3² or 5²: index of the first texel that the record refers to.
     [[nodiscard]] std::uint32_t first() const { return high & 0xffffffU; }
 
     /// \param distance  of the cell's centre from the nearest plane, in root cells, positive outside.
@@ -140,7 +140,7 @@ struct PatchTreeSize {
 /// Returns the spacing of heights in the finest possible patch, in root cells.
 [[nodiscard]] double patchSpacing(PatchTexels texels);
 
-/// Width and height of a map with this many texels. Unused texels of the last row are zero.
+/// Width and height of the map for a number of texels. Unused texels of the last row are zero.
 struct PatchMapSize {
     std::uint32_t width;
     std::uint32_t height;
@@ -167,8 +167,8 @@ struct PatchVote {
 /// \return nullopt outside the roots.
 [[nodiscard]] std::optional<PatchVote> votePatches(PatchTexels texels, const glm::vec3& p);
 
-/// Checks that every record refers to texels of the map: children to the next free texels, level by level; patches and
-/// pairs to texels after the records. Errors: kInvalidInput.
+/// Checks that every record refers to texels of the map: split cells to the next free texels, level by level; patches
+/// and pairs to texels after the records of cells. Errors: kInvalidInput.
 /// \param texels  any bytes.
 [[nodiscard]] Result<void> validatePatches(PatchTexels texels);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Helpers for the fields() of reports, in addition to formats/base/field.h. Reports are only written, and visit
-// expressions as well as members.
+// Helpers for the fields() of reports, in addition to formats/base/field.h. Reports are never read, so their fields()
+// may visit expressions as well as members.
 #pragma once
 
 #include <cmath>
@@ -13,14 +13,14 @@
 
 namespace relief {
 
-/// Writes an object: visit("bounds", group([&](FieldVisitor& visit) { visit("min", …); }), {…})
+/// Makes an object of fields: visit("bounds", group([&](FieldVisitor& visit) { visit("min", …); }), {…})
 /// \param visit_fields  borrowed
 template <class Visit>
 [[nodiscard]] FieldGroup group(const Visit& visit_fields) {
     return {&visit_fields,
             [](const void* of, FieldVisitor& visit) { (*static_cast<const Visit*>(of))(visit); }};
 }
-/// Writes an object, or null if not present. The schema visits the fields in either case.
+/// Like group(), but written as null if not `present`. The schema contains the fields in either case.
 template <class Visit>
 [[nodiscard]] FieldGroup groupIf(bool present, const Visit& visit_fields) {
     FieldGroup made = group(visit_fields);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Converts structs with fields() to JSON text, and derives the JSON Schema. The tools write their reports with it.
-// formats/fields/json_value.h declares the JSON values.
+// Converts structs with fields() to JSON text, such as the reports of the tools, and derives JSON Schemas.
+// formats/fields/json_value.h declares functions for JSON values.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ namespace relief {
 /// Returns the same JSON on one line.
 [[nodiscard]] std::string jsonLineOf(FieldRef value);
 
-/// Returns the file NAME.schema.json, which the build writes: the schema of the output of the functions above.
+/// Returns the file NAME.schema.json, which the build writes: the schema of jsonTextOf(value).
 [[nodiscard]] GeneratedText schemaFile(const std::string& name, std::string_view title,
                                        std::string_view description, FieldRef value);
 

@@ -12,8 +12,8 @@
 namespace relief {
 
 /// Reads `json` into `value`.
-/// \param value  its float fields must have ranges that floats can represent. May be partly changed on failure.
-/// Errors: kInvalidInput, kLimit (more elements than a field allows); messages do not include the file name.
+/// \param value  each float field must have a range within that of float. On failure, `value` may be partly changed.
+/// Errors: kInvalidInput; messages do not include the file name.
 [[nodiscard]] Result<void> readJson(const nlohmann::json& json, FieldRef value);
 
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// JSON values of types with fields(), for sources that build JSON or schemas by hand.
+// JSON values of types with fields(), for source files that build JSON or schemas by hand.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -11,7 +11,7 @@ namespace relief {
 
 using Json = nlohmann::ordered_json;
 
-/// Wraps Json so that headers can forward-declare it (FieldCustom).
+/// Wraps Json in a struct that headers can forward-declare (FieldCustom).
 struct FieldJson {
     Json json;
 };
@@ -24,21 +24,21 @@ struct FieldJson {
 /// Returns the same JSON on one line.
 [[nodiscard]] std::string jsonLine(const Json& json);
 
-/// Converts a value to JSON. Enumerations become words, empty optionals null, paths their bytes, and vec3 an array.
-/// Fields become members of an object in visiting order. Fields of other kinds are omitted (see FieldRules::only); with
-/// FieldRules::single, a list of one table becomes that table.
+/// Converts a value to JSON. Enumerations become words, empty optionals null, paths strings, and vec3 an array.
+/// Fields become members of an object in visiting order, except those that FieldRules::only or FieldInfo::left_out
+/// exclude. With FieldRules::single, a list of one table becomes that table.
 [[nodiscard]] Json jsonOf(FieldRef value);
 
-/// Returns the schema of a field: type, range and description. Objects are closed and require every field that is not
-/// left_out. \param value  any value; for structs whose fields depend on their kind, a value of that kind.
+/// Returns the schema of a field. Objects accept no other keys, and require all fields without left_out or `only`.
+/// \param value  any value. If fields differ by kind, the schema covers the value's kind, or all kinds() of its type.
 [[nodiscard]] Json schemaOf(FieldRef value);
 [[nodiscard]] Json schemaOf(FieldRef value, const FieldInfo& info);
 
 /// Returns the description with its unit: "Centre of attraction, m".
 [[nodiscard]] std::string fieldDescription(const FieldInfo& info);
-/// Returns "type" with the limits of its range, or the words.
+/// Returns {"type": …} with the limits of info.range; {"enum": …} if info.words is not empty.
 [[nodiscard]] Json numberSchema(bool whole, bool is_unsigned, const FieldInfo& info);
-/// Returns "type" with its pattern, or the words.
+/// Returns {"type": "string"} with info.pattern; {"enum": …} if info.words is not empty.
 [[nodiscard]] Json textSchema(const FieldInfo& info);
 [[nodiscard]] Json arraySchema(Json items, const FieldRange& count);
 /// Returns a schema that also accepts null.

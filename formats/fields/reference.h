@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Documents structs that are read from files (formats/config/toml_reader.h) for users, editors and fuzzers: Markdown
-// tables, JSON Schema and dictionaries, all derived from one tree.
+// Documents structs that formats/config/toml_reader.h reads. Derives Markdown tables for users, JSON Schemas for
+// editors and dictionaries for fuzzers from one tree of FieldReference.
 #pragma once
 
 #include <map>
@@ -23,7 +23,7 @@ struct FieldReference {
     std::string_view name;
     FieldInfo info;
     FieldSchema type;                    ///< empty for a table
-    std::string fallback;                ///< the default in the file's syntax
+    std::string fallback;                ///< the constant default as JSON, or ""
     std::vector<FieldReference> fields;  ///< of a table
     bool several = false;                ///< true for [[name]]
 };
@@ -39,11 +39,11 @@ template <class T>
 
 /// Returns a Markdown table | key | meaning | default | range | with its header. Omits nested tables.
 [[nodiscard]] std::string markdownTable(const std::vector<FieldReference>& fields);
-/// Returns one table for several nested tables in `fields`; keys are prefixed with their table. \param names  tables to
-/// include.
+/// Returns one Markdown table for the tables `names` in `fields`, and the tables nested in them. The first key of each
+/// is prefixed with the table's name: "`[camera]` `position`".
 [[nodiscard]] std::string markdownTables(const std::vector<FieldReference>& fields,
                                          std::span<const std::string_view> names);
-/// Returns a JSON Schema of the file. \param place  JSON pointer of these fields within it.
+/// Returns a JSON Schema of the file. \param place  JSON pointer to this schema: "#" for the whole file.
 [[nodiscard]] Json fileSchema(const std::vector<FieldReference>& fields, const std::string& place);
 /// Returns keys, words and table names for libFuzzer.
 [[nodiscard]] std::string fuzzDictionary(const std::vector<FieldReference>& fields);

@@ -20,22 +20,22 @@ namespace relief {
 [[nodiscard]] std::string expectedOneOfMessage(std::string_view word,
                                                std::span<const std::string_view> words);
 
-/// Returns "1MB" for 1000000; the plain number if no power of 1000 divides it.
+/// Returns "1.5MB" for 1500000; the plain number below 10000, or if the word would be inexact.
 [[nodiscard]] std::string bytesWord(std::uint64_t bytes);
 
 /// Returns the shortest decimal that reads back as the same number.
 [[nodiscard]] std::string numberWord(float value);
 [[nodiscard]] std::string numberWord(double value);
 
-/// Parses a word into a value; appends to a list. \return an empty string on success, otherwise the clause that follows
-/// the field's name in a message: "is 'x' but must be …".
+/// Parses a word into a value; if the value is a list, appends an element. \return an empty string on success,
+/// otherwise the clause that follows the field's name in a message: "is 'x' but must be …".
 [[nodiscard]] std::string readWord(std::string_view word, const FieldInfo& info, FieldRef value);
 
 /// Returns the words from which readWord() restores the value: none for an empty optional, one for each element of a
 /// list.
 [[nodiscard]] std::vector<std::string> wordsOf(FieldRef value);
 
-/// Number of words that a field accepts.
+/// The form of a field: a bool, one word, or one word for each element.
 enum class FieldKind : std::uint8_t { kFlag, kValue, kList };
 
 /// A field of a struct, described independently of its type.

@@ -8,9 +8,9 @@
 
 namespace relief {
 
-/// Parses a decimal number: a sign, digits with an optional point, an exponent; or nan and inf in any case. The result
-/// is within one ULP of the nearest float: integer and fraction are rounded separately and then added. Keep this
-/// rounding, because the bytes of bakes depend on it.
+/// Parses a decimal number: an optional sign, digits with an optional point, and an optional exponent; or nan, inf
+/// or infinity in any letter case. The result may differ from the nearest float: the integer and the first 15 digits of
+/// the fraction are rounded separately and then added. Keep this rounding, because the bytes of bakes depend on it.
 /// \return nullopt if the word is not a number.
 [[nodiscard]] std::optional<float> readDecimal(std::string_view word);
 

@@ -48,7 +48,7 @@ struct PlyHeader {
 };
 
 /// Parses the header at the start of `data` and removes it.
-/// Errors, without the file: kInvalidInput.
+/// Errors, without the file name: kInvalidInput.
 [[nodiscard]] Result<PlyHeader> readPlyHeader(std::string_view& data);
 
 /// Reads the numbers after a header in order, from text or binary.
@@ -62,12 +62,12 @@ class PlyNumbers {
     /// Returns the next number; nullopt at the end of the data, or if a word is not a number.
     [[nodiscard]] std::optional<double> next(PlyType type);
     [[nodiscard]] bool ended() const { return ended_; }
-    /// Returns the data after the last number.
+    /// Returns the unread data.
     [[nodiscard]] std::string_view rest() const { return isText() ? text_.rest() : data_; }
     [[nodiscard]] bool isText() const { return encoding_ == PlyEncoding::kAscii; }
-    /// Returns whether the last word was the last on its line. \pre isText()
+    /// Returns whether the rest of the line contains no words. \pre isText()
     [[nodiscard]] bool atLineEnd() { return text_.atLineEnd(); }
-    /// Returns "line 12: " for the last word; "" for binary data.
+    /// Returns "line 12: " for the word that next() read; "" for binary data.
     [[nodiscard]] std::string where() const;
     [[nodiscard]] std::string_view word() const { return word_; }
 
@@ -82,7 +82,7 @@ class PlyNumbers {
     bool ended_ = false;
 };
 
-/// Returns the error of a failed next(), without the file.
+/// Returns the error of a failed next(), without the file name.
 [[nodiscard]] tl::unexpected<Error> plyNumberError(const PlyNumbers& numbers);
 
 /// Reads the length of a list. Errors: those of plyNumberError; kInvalidInput for an invalid length.
@@ -91,13 +91,13 @@ class PlyNumbers {
 /// Skips a property: a number or a list. Errors: those of readPlyLength.
 [[nodiscard]] Result<void> skipPlyProperty(const PlyProperty& property, PlyNumbers& numbers);
 
-/// Reads the properties of one element that a reader needs: single numbers, by name.
+/// Reads the properties of an element that have given names and are not lists.
 class PlyColumns {
   public:
     /// \param element  borrowed. \param names  one for each value of read().
     PlyColumns(const PlyElement& element, std::span<const std::string_view> names);
 
-    /// Returns how many properties of the element have this name: 1 in a well-formed header.
+    /// Returns how many of these properties have the name `names[name]`; more than 1 if the header is malformed.
     [[nodiscard]] std::size_t count(std::size_t name) const;
     /// Reads the element's next item. \param values  entries without a property are unchanged.
     /// Errors: those of readPlyLength.

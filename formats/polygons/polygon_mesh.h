@@ -21,7 +21,7 @@ inline constexpr std::uint64_t kPolygonTrianglesMax = 100'000'000;
 /// Whether to read vertex colours; only pictures need them.
 enum class PolygonColors : std::uint8_t { kSkip, kRead };
 
-/// Counts for a file before triangulation and clean-up. Shared elements count once.
+/// Counts for a file before triangulation and clean-up. A mesh counts once, even if several nodes reference it.
 struct MeshParts {
     std::uint64_t polygons = 0;  ///< faces with at least three corners
     std::uint64_t lines = 0;
@@ -88,7 +88,7 @@ struct ObjMesh {
 /// "7/1", "7//3" or "7/1/3"; negative indices count back from the last vertex so far. Faces may precede their vertices.
 /// A face has the name of its material, and the names of the current group or object, whichever started last. The names
 /// of a group are its whole line and each of its words. A new material does not end the group.
-/// Errors, with the line but not the file: kInvalidInput, kLimit.
+/// Errors, with the line but without the file name: kInvalidInput, kLimit.
 [[nodiscard]] Result<ObjMesh> readObj(std::span<const std::byte> bytes,
                                       PolygonColors colors = PolygonColors::kSkip);
 
@@ -97,8 +97,8 @@ struct ObjMesh {
 /// with alternating winding; -1 starts a new strip. Other elements are skipped, with a warning if they look like faces.
 /// Vertex colours are red, green and blue as bytes, 16-bit integers, or floats in 0…1.
 /// \return at least one polygon.
-/// Errors, with the line of a text file but not the file: kInvalidInput (not a PLY, truncated, a missing vertex, no
-/// faces), kLimit.
+/// Errors, with the line of a text file but without the file name: kInvalidInput (not a PLY, truncated, a missing
+/// vertex, no faces), kLimit.
 [[nodiscard]] Result<PolygonMesh> readPly(std::span<const std::byte> bytes,
                                           PolygonColors colors = PolygonColors::kSkip);
 

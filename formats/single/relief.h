@@ -27,8 +27,8 @@
  * Optional macros for the implementation:
  *     RELIEF_MALLOC(bytes), RELIEF_FREE(pointer)   replace malloc and free; define both
  *     RELIEF_NO_STDIO                              omits relief_load()
- *     RELIEF_UNPACKED_MAX                          bytes that any compressed container may unpack to (default: 64 MiB);
- *                                                  a larger container may unpack to 16 times its own size
+ *     RELIEF_UNPACKED_MAX                          maximum bytes of unpacked texels (default: 64 MiB), or 16 times the
+ *                                                  size of the container if that is larger
  *
  * The C API of Relief's library is a different header, relief_runtime.h. A program can use both, in different files. */
 #ifndef RELIEF_H
@@ -51,7 +51,7 @@ extern "C" {
  * (row_x[2]*z + row_x[3])), likewise y' and z'.
  *
  * size: edge of a root cell in object units; number of root cells along x', y' and z'.
- * place: index of the collider's first texel in the texture, 0; texels from root cell to root cell along y' and z';
+ * place: index of the collider's first texel in the texture (0); texels from root cell to root cell along y' and z';
  * levels below the root cells. To pack colliders into one texture, set place[0] in your copies of the constants. */
 typedef struct relief_constants {
     float row_x[4];
@@ -62,7 +62,7 @@ typedef struct relief_constants {
 } relief_constants;
 
 /* An open collider, which is read-only. Create it with relief_open() or relief_load(); free it with relief_close().
- * Upload the texels as a texture of four unsigned 16-bit integers (RGBA16UI) with nearest filtering and one level. */
+ * Upload `texels` as an RGBA16UI texture (four unsigned 16-bit integers), with nearest filtering and one level. */
 typedef struct relief_collider {
     relief_constants constants;
     uint16_t* texels; /* 4 * width * height numbers, row by row */
@@ -84,9 +84,9 @@ typedef enum relief_status {
     RELIEF_WRONG_VERSION,   /* not version 2 */
     RELIEF_DAMAGED,         /* truncated, longer than stated, or a checksum does not match */
     RELIEF_INVALID,         /* violates the format, or has values of a later version */
-    RELIEF_UNSUPPORTED,     /* a valid format, but not one map of patches */
+    RELIEF_UNSUPPORTED,     /* not exactly one map of patches */
     RELIEF_COMPRESSED,      /* needs a decompressor */
-    RELIEF_TOO_LARGE,       /* exceeds RELIEF_UNPACKED_MAX, or the largest file (144 MiB) */
+    RELIEF_TOO_LARGE,       /* exceeds RELIEF_UNPACKED_MAX, or the maximum file size (144 MiB) */
     RELIEF_OUT_OF_MEMORY
 } relief_status;
 
@@ -117,8 +117,8 @@ float relief_distance(const relief_collider* collider, const float point[3], flo
 
 /* Collides a particle with a collider. If the distance of `position` is less than `radius`, moves the particle along
  * the normal to the distance `radius`. If its velocity points inwards, multiplies the normal velocity by -restitution
- * and the tangential velocity by 1 - friction, both in 0...1: 0 and 0 make it slide, 0 and 1 make it stick. Returns
- * whether the particle hit. Threads may share a collider. */
+ * and the tangential velocity by 1 - friction. `restitution` and `friction` are in 0...1: with 0 and 0 the particle
+ * slides, with 0 and 1 it sticks. Returns whether the particle hit. Threads may share a collider. */
 int relief_collide(const relief_collider* collider, float position[3], float velocity[3], float radius,
                    float restitution, float friction);
 
@@ -453,7 +453,7 @@ static int rlf_verify_field(rlf_metadata* m, uint64_t place, const rlf_field* fi
     return 1;
 }
 
-/* The accessors below need verified metadata. Absent numbers are 0. */
+/* The accessors below need verified metadata. Absent integers are 0. */
 
 static unsigned rlf_get_byte(const rlf_metadata* m, uint64_t table, unsigned field) {
     uint64_t place = rlf_find(m, table, field);
@@ -755,7 +755,7 @@ static relief_status rlf_check_materials(const rlf_metadata* m, uint64_t root, r
     }
 }
 
-/* Checks that the rows of the transform are orthogonal, and `scale` the reciprocal of their lengths. */
+/* Checks that the rows of the transform are orthogonal, and that `scale` contains the reciprocals of their lengths. */
 static int rlf_is_transform(const float rows[12], const float scale[3]) {
     RLF_EXACT
     double unit[3][3], length[3], cosine;
@@ -902,7 +902,7 @@ static void rlf_set_unit(float out[3], float x, float y, float z) {
     out[2] = z / length;
 }
 
-/* Returns the height at place i of a patch, in steps. */
+/* Returns height i of a patch, in code steps. */
 static float rlf_code(const uint16_t* texels, rlf_record patch, uint32_t side, uint32_t i) {
     rlf_record texel = patch;
     if (i == side * side - 1) {
@@ -1210,7 +1210,7 @@ static relief_status rlf_read_map(const rlf_metadata* m, uint64_t root, relief_c
                : RELIEF_OK;
 }
 
-/* Checks that the payload follows the metadata at the next multiple of 64 and ends the container, and its checksum. */
+/* Checks that the payload extends from the next multiple of 64 after the metadata to the end. Checks its checksum. */
 static relief_status rlf_check_place(const rlf_payload* payload, const unsigned char* bytes, uint64_t size,
                                      uint64_t metadata_end) {
     uint64_t i, begin = (metadata_end + 63) / 64 * 64;
