@@ -18,9 +18,9 @@ inline constexpr std::size_t kMeshNameMax = 255;  ///< bytes; likewise the next 
 inline constexpr std::size_t kUnitMax = 16;
 inline constexpr std::size_t kToolVersionMax = 64;
 inline constexpr std::size_t kOptionsMax = std::size_t{1} << 20;
-inline constexpr float kUnitLengthTolerance = 1e-3F;    ///< of a float texel's normal
-inline constexpr double kFrameCosineMax = 1e-4;         ///< between any two rows of T, either sign
-inline constexpr double kObjectPerMapTolerance = 1e-3;  ///< relative to the inverse of T
+inline constexpr float kUnitLengthTolerance = 1e-3F;    ///< of the normal of a kFloat32 texel
+inline constexpr double kFrameCosineMax = 1e-4;         ///< between two rows of object_to_map; absolute value
+inline constexpr double kObjectPerMapTolerance = 1e-3;  ///< relative error of object_per_map
 
 // All Results fail with kInvalidInput, or with kLimit for too many texels. Messages name the field and its value.
 // Functions for one map do not name the map; callers add it with inMap().
@@ -31,7 +31,7 @@ inline constexpr double kObjectPerMapTolerance = 1e-3;  ///< relative to the inv
 /// Validates a map except its texels, which may be missing.
 [[nodiscard]] Result<void> validateFrame(const DepthMap& map);
 
-/// Validates the texels of a map whose frame is valid.
+/// Validates the texels of a map that passes validateFrame().
 [[nodiscard]] Result<void> validateTexels(const DepthMap& map);
 
 /// Validates the whole collider, which must have at least one map. Messages name the map ("map 3: …").
@@ -40,8 +40,8 @@ inline constexpr double kObjectPerMapTolerance = 1e-3;  ///< relative to the inv
 /// Prefixes an error with the index of its map.
 [[nodiscard]] Error inMap(std::size_t index, const Error& error);
 
-/// Returns a mesh name as containers store it, and as the name of the mesh's file in a scene's render.meshes: cleanUtf8
-/// with '_' for '/' and '\', because node names may look like paths; truncated to kMeshNameMax bytes.
+/// Returns the name that containers store for a mesh, which also names its file in the folder render.meshes of a scene:
+/// cleanUtf8() with '_' for '/' and '\', because node names may look like paths; truncated to kMeshNameMax bytes.
 [[nodiscard]] std::string storedMeshName(std::string name);
 
 /// Returns whether a text is well-formed UTF-8 (no overlong forms, no surrogates) without control characters.

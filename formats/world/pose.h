@@ -21,7 +21,7 @@ struct Pose {
     return pose.position + pose.scale * (pose.rotation * p);
 }
 
-/// Returns the world-space axis-aligned box of an object-space box.
+/// Returns the axis-aligned box in world space that encloses an object-space box.
 [[nodiscard]] inline Bounds toWorld(const Pose& pose, const Bounds& box) {
     Bounds world;
     for (unsigned i = 0; i < 8; ++i) {

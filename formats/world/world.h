@@ -40,7 +40,7 @@ inline constexpr std::string_view kWorldFormat = "relief-world";
 /// File name inside a world's folder.
 inline constexpr const char* kWorldFileName = "world.json";
 inline constexpr double kWorldCoordinateMax = double{1e15F};
-inline constexpr double kWorldFileBytesMax = 2147483648.0;  ///< limit for the texels of one container
+inline constexpr double kWorldFileBytesMax = 2147483648.0;  ///< maximum of WorldFile::gpu_bytes
 
 /// A container of a world, as listed in the file.
 struct WorldFile {
@@ -122,7 +122,7 @@ struct LoadedWorld {
 [[nodiscard]] Result<World> loadWorldFile(const std::filesystem::path& path);
 
 /// Loads one collider of a world.
-/// \param folder  of the world. Errors: those of loadWorld, prefixed with the position of the collider.
+/// \param folder  of the world. Errors: those of loadWorld, prefixed with the collider's index instead of the file.
 [[nodiscard]] Result<Collider> loadWorldCollider(const World& world, std::size_t collider, WorldDetail detail,
                                                  const std::filesystem::path& folder,
                                                  const ContainerLimits& limits = {});

@@ -12,7 +12,7 @@
 namespace relief {
 
 struct WorldSample {
-    /// Signed distance in world units: that of a FieldSample times the body's scale. Undefined if body is −1.
+    /// Signed, world units: FieldSample::distance times the body's scale, or kFarOutside. Undefined if body is −1.
     float distance = 0.0F;
     glm::vec3 normal{0.0F};  ///< world space; zero if unknown
     int body = -1;           ///< deepest or nearest body, the first on ties; −1 if every body abstains
@@ -35,7 +35,7 @@ class WorldField {
     [[nodiscard]] WorldSample evaluate(const glm::vec3& p) const;
     /// Evaluates the union of some bodies. \param bodies  in ascending order.
     [[nodiscard]] WorldSample evaluate(const glm::vec3& p, std::span<const std::uint32_t> bodies) const;
-    /// Returns the bodies that may contain a point of a box, in ascending order; the box is outside all others.
+    /// Returns the bodies that may contain a point of a box, in ascending order; the box is outside all other bodies.
     [[nodiscard]] std::vector<std::uint32_t> bodiesIn(const Bounds& box) const;
 
     [[nodiscard]] glm::vec3 toObject(std::size_t body, const glm::vec3& p) const;
@@ -47,7 +47,7 @@ class WorldField {
 
     LoadedWorld loaded_;
     std::vector<Bounds> boxes_;  ///< world-space boxes of the bodies, with a margin
-    std::vector<char> local_;    ///< 1: the body votes far outside beyond its box
+    std::vector<char> local_;    ///< 1: all points beyond the body's box are far outside the body
 };
 
 }  // namespace relief

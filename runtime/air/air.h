@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Forces on particles besides collision and gravity: moving air, which acts through drag, and force fields, which
-// accelerate. These are plain settings; air_block.h uploads them and shaders/air/air.glsl evaluates them.
+// Forces on particles besides collision and gravity: moving air, which acts through drag, and force fields, which add
+// an acceleration. These are plain settings; air_block.h uploads them and shaders/air/air.glsl evaluates them.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -72,8 +72,8 @@ void fields(FieldVisitor& visit, AirSettings& air);
 /// Checks all settings. Errors: those of checkFlow; kUsage (a number out of range, too many forces).
 [[nodiscard]] Result<void> checkAir(const AirSettings& air);
 
-/// Converts seconds since the start into the shader's time. Count them in a double. Do not use a particle system's own
-/// clock, which is set back periodically.
+/// Converts seconds since the start, such as ParticleSystem::time(), into the shader's u_air_time. Do not use the GPU
+/// clock of a particle system, which is set back periodically.
 [[nodiscard]] float airTime(const AirSettings& air, double seconds);
 
 }  // namespace relief

@@ -21,11 +21,11 @@ class AirBlock {
 
     /// Uploads settings. Needs a current context. Without forces it allocates nothing, and bind() and attach() do
     /// nothing.
-    /// Errors: those of checkAir; kLimit (a flow larger than this GL context supports, or out of memory).
+    /// Errors: those of checkAir; kLimit (out of memory, or a flow larger than this GL context supports).
     [[nodiscard]] static Result<AirBlock> create(const AirSettings& air);
 
     /// Changes everything except the flow, for subsequent draws. Does not wait; programs remain valid.
-    /// \param air  uses only kinds of forces that were present at creation; its flow is ignored.
+    /// \param air  may only contain kinds of forces that were present at creation; its flow is ignored.
     /// Errors: those of checkAir; kUsage (a kind that the programs were compiled without).
     [[nodiscard]] Result<void> update(const AirSettings& air);
 

@@ -4,12 +4,12 @@
 //
 // The potential is noise on the simplex lattice (K. Perlin, 2001; S. Gustavson, "Simplex noise demystified", 2005): the
 // sum of contributions from the four corners of a simplex. A corner contributes (a + b × d)(1/2 - |d|²)³ / 6, where d
-// is the offset from the corner, and a and b are random vectors of the corner. Its curl in closed form (R. Bridson et
-// al., "Curl-noise for procedural fluid flow", 2007) is t² ((4t/3 - 1/2) b + (b·d) d + a × d) with t = 1/2 - |d|², and
-// 0 for t < 0. The velocity and its first derivative are continuous. Vector a rotates the air about the corner; b moves
-// the air through the corner. If a and b have equal size, the mean square speed varies least over space: from 0.68 to
-// 1.38 times its mean. On a cubic lattice it varies from 0.62 to 1.34; with three gradients (nine numbers) per corner
-// it would vary from 0.60 to 3.3.
+// is the offset from the corner, and a and b are random vectors of the corner. The curl of a contribution (R. Bridson
+// et al., "Curl-noise for procedural fluid flow", 2007) is t² ((4t/3 - 1/2) b + (b·d) d + a × d) with t = 1/2 - |d|²,
+// and 0 for t < 0. The velocity and its first derivative are continuous. Vector a rotates the air about the corner; b
+// moves the air through the corner. If a and b are equally long, the mean square speed varies least over space: from
+// 0.68 to 1.38 times its mean. On a cubic lattice it varies from 0.62 to 1.34; with three gradients (nine numbers) per
+// corner it would vary from 0.60 to 3.3.
 //
 // The random vectors come from an integer hash of the lattice point and are identical on every machine. Over time the
 // noise blends from one independent pattern to the next; the squares of the weights sum to 1, which keeps its strength

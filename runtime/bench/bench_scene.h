@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene of the cases, and particle systems that differ by a single feature.
+// The scene of the benchmark cases, and particle systems that differ by a single feature.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ inline constexpr float kBenchLifetime = 0.5F;
 static_assert(kBenchLifetime > kBenchDt * (kBenchStepsMax + 2));
 inline constexpr float kBenchForever = 1e6F;  ///< seconds
 
-/// Snow as in samples/, but born in the whole box of the collider at once, so that particles collide from the first
+/// Snow as in samples/, but born all at once throughout the collider's bounds, so that particles collide from the first
 /// step on. Types 0…15 alternate; a system with a single type uses it for all particles.
 struct BenchScene {
     Collider collider;
@@ -48,8 +48,8 @@ struct BenchSystem {
     void begin(const BenchScene& scene);
 };
 
-/// kCrowd: randomly rotated bodies on a lattice in the box of the scene, with up to kCrowdColliders copies of the
-/// collider.
+/// kCrowd: randomly rotated bodies on a lattice in the collider's bounds, which share up to kCrowdColliders copies of
+/// the collider.
 enum class Solids : std::uint8_t { kNone, kCollider, kFourBodies, kCrowd };
 inline constexpr std::size_t kCrowdColliders = 50;
 /// Additional work of each step: none, new poses of bodies (at most kCrowdMoves of a crowd), or read-back of events.
@@ -70,7 +70,7 @@ struct BenchVariant {
     float share = kCrowdFill;  ///< side of a body, as a fraction of the lattice spacing
 };
 
-/// Returns "no_collider", "collider" (the reference), the features one by one, and crowds of bodies.
+/// Returns the variants: "no_collider", "collider" (the reference), one per feature, and crowds of bodies.
 [[nodiscard]] std::vector<BenchVariant> benchVariants();
 
 /// Creates a system with room for all births of the scene. Default variant: "collider".

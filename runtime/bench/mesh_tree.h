@@ -3,8 +3,8 @@
 // (shaders/bench/mesh_tree.glsl): an exact rival of depth maps.
 //
 // Nodes have up to four children, whose boxes take 8 bits per face, rounded outwards. Splits minimise the surface area
-// heuristic over bins of centroids. Triangles are stored in leaf order. The side of a point is that of the pseudonormal
-// of the closest face, edge or vertex, which is exact for closed meshes: Bærentzen and Aanæs, "Signed distance
+// heuristic over bins of centroids. Triangles are stored in leaf order. The pseudonormal of the closest face, edge or
+// vertex decides whether a point is inside, without error for closed meshes: Bærentzen and Aanæs, "Signed distance
 // computation using the angle weighted pseudonormal", IEEE TVCG 11 (2005).
 #pragma once
 
@@ -30,23 +30,24 @@ struct MeshTree {
     static constexpr std::size_t kTexels = 3;
 
     Bounds box;
-    /// Three texels per node, the root first. Bytes and codes of a word start with child 0 in the lowest bits:
-    ///     0: lowest corner as float bits; exponents of the box unit along x, y, z in 8 bits each, plus 127
+    /// Three texels per node, the root first. Bytes and codes of a word start with child 0 in the lowest bits. Faces of
+    /// child boxes are multiples of a power of 2 (the box unit of the axis) above the node's lowest corner:
+    ///     0: lowest corner as float bits; log2 of the box units of x, y, z, plus 127, in 8 bits each
     ///     1: first child node (24 bits) and codes of children 0, 1; first triangle (24 bits) and codes of children 2, 3;
     ///        lower faces x; lower faces y
-    ///     2: lower faces z; upper faces x, y, z; in box units from the lowest corner
+    ///     2: lower faces z; upper faces x, y, z
     /// Child nodes are consecutive, and so are the triangles of the leaves of a node.
     std::vector<glm::uvec4> nodes;
     /// Three texels per triangle: the corners as float bits, each with the index of the triangle across the edge to the
     /// next corner, or of the triangle itself if there is none.
     std::vector<glm::uvec4> triangles;
-    /// Three per triangle: the vertices of its corners.
+    /// Three per triangle: the vertex indices of its corners.
     std::vector<std::uint32_t> vertices;
     /// Per vertex: the angle-weighted pseudonormal, of unit length or zero; w is unused.
     std::vector<glm::vec4> normals;
     std::uint32_t stack = 0;  ///< entries that a depth-first traversal needs
-    std::size_t open_edges =
-        0;  ///< sides of triangles without exactly one opposite side; 0 for a closed manifold
+    /// Edges of triangles without exactly one opposite edge; 0 for a closed manifold.
+    std::size_t open_edges = 0;
     std::size_t dropped = 0;  ///< triangles without area
 
     [[nodiscard]] std::uint64_t bytes() const {

@@ -25,7 +25,8 @@ struct Rival {
     std::vector<Texture> textures;
     std::function<void(const GlProgram&)> set;  ///< sets the other uniforms of the current program
     std::uint64_t bytes = 0;                    ///< size of the textures
-    /// Adds a float to the state of each particle: the sampler u_kept, and the output or image unit 2. Initially -1.
+    /// Adds a float, initially -1, to the state of each particle. The shader reads it from the sampler u_kept and
+    /// writes it to fragment output 2 or image unit 2.
     bool keeps = false;
 };
 
@@ -40,11 +41,12 @@ struct Rival {
 
 class RivalStep {
   public:
-    /// Creates a system with one particle per birth of the scene, a multiple of ParticleSystem::kStateWidth.
-    /// Errors: kUsage (births with an age above 0), kUnsupported (compute), kFailure.
+    /// Creates a system with one particle per birth of the scene.
+    /// Errors: kUsage (births that are not a multiple of ParticleSystem::kStateWidth, or not of age 0), kUnsupported
+    /// (no compute shaders), kFailure.
     [[nodiscard]] static Result<RivalStep> create(Rival rival, const BenchScene& scene, StepPath path);
 
-    /// Spawns all particles and runs a first step. Keeps no reference.
+    /// Spawns all particles and runs a first step. Keeps no reference to the scene.
     void begin(const BenchScene& scene);
     void step();
     [[nodiscard]] std::uint64_t bytes() const { return rival_.bytes; }

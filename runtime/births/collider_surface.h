@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Extracts a triangle surface from a collider's field, for users of the surface such as emitters.
+// Extracts a triangle surface from a collider's field, for emitters and other users.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,8 @@ inline constexpr std::uint32_t kSurfaceCellsMax = 512;
 
 /// Extracts the boundary between inside and outside (evaluate()) within the collider's bounds by dual contouring (Ju et
 /// al. 2002). Each grid cell on the boundary gets a vertex that best fits the planes in the cell. Edges and corners
-/// thus stay sharp, and a curve of radius r is off by cell² / 8 r. Parts thinner than a cell that contain none of its
-/// corners are lost. Costs cells³ evaluations of all maps.
+/// thus stay sharp, and a curve of radius r is off by cell² / (8 r). Parts thinner than a cell are lost if they contain
+/// no corner of the grid. Costs cells³ evaluations of all maps.
 /// \param cells  along the longest side of the bounds, 2 … kSurfaceCellsMax.
 /// Errors: kUsage (cells), kInvalidInput (empty bounds, or no surface in them).
 [[nodiscard]] Result<ColliderSurface> colliderSurface(const Collider& collider,

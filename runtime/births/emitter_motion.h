@@ -24,7 +24,7 @@ using BirthFilter = std::function<std::vector<bool>(std::span<const Birth> birth
 inline constexpr std::uint64_t kFilteredMax = std::uint64_t{1} << 20;
 
 /// The trajectory of an emitter. Its points are in emitter space; `keys` transform them into the space of a body, and
-/// `body` transforms that into the world. Scales affect positions, but not velocities.
+/// `body` transforms body space into world space. Scales affect positions, but not velocities.
 struct EmitterMotion {
     std::vector<PoseKey> keys;  ///< empty: emitter space is body space
     std::vector<PoseKey> body;  ///< one key: a static body; empty: body space is world space
@@ -34,7 +34,7 @@ struct EmitterMotion {
 };
 
 /// Transforms births into the world. Each birth uses the emitter's pose at `time` minus its `age`.
-/// \param time  start of the first step of the births, in seconds on the clock of the keys.
+/// \param time  start of the step in which the births first move, in seconds on the clock of the keys.
 /// \param own   velocities of the emitting points in emitter space, also inherited; empty: zero.
 /// \param velocities  receives the world-space velocities of the emitting points; may be null.
 void carry(const EmitterMotion& motion, double time, std::span<Birth> births,
@@ -42,7 +42,7 @@ void carry(const EmitterMotion& motion, double time, std::span<Birth> births,
 
 /// Calls emit() for each emitter in turn; if there is too little room, earlier emitters have priority.
 /// \param motions  transform and filter the births; one for each emitter, or empty. Rejected births use no room.
-/// \param time     start of the interval of `dt` seconds, on the clock of the motions.
+/// \param time     as in carry(); the births occur in the `dt` seconds before it.
 /// \return the sum of the values that emit() returned.
 std::uint64_t emitAll(std::span<Emitter> emitters, double dt, std::uint64_t room, std::vector<Birth>& births,
                       std::span<const EmitterMotion> motions = {}, double time = 0.0);

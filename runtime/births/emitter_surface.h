@@ -34,7 +34,7 @@ class EmitterSurface : public BirthSurface {
     /// \param triangles  indices into positions, counter-clockwise seen from outside. Triangles without area or weight
     /// are ignored.
     /// \param weights    density of births at each position, ≥ 0, interpolated linearly; empty: 1 everywhere.
-    /// Errors: kUsage (an invalid index or number), kLimit (more than kTrianglesMax), kInvalidInput (no weighted area).
+    /// Errors: kUsage (an invalid index or weight), kLimit (more than kTrianglesMax), kInvalidInput (no weighted area).
     [[nodiscard]] static Result<EmitterSurface> create(std::span<const glm::uvec3> triangles,
                                                        std::vector<float> weights,
                                                        std::vector<glm::vec3> positions);

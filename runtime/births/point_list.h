@@ -18,7 +18,7 @@ namespace relief {
 inline constexpr std::uint64_t kPointBytesMax = std::uint64_t{256} << 20;
 
 /// Parses a point file. The first line determines the format:
-///   - PLY (text, or binary of either byte order) with an element "vertex" that has x, y and z, and optionally nx, ny
+///   - PLY (text, or binary of either byte order) whose first element, "vertex", has x, y and z, and optionally nx, ny
 ///     and nz, of any type. Its other properties and all later elements are skipped.
 ///   - Comma-separated text with x,y,z or x,y,z,nx,ny,nz in each line. One header line is skipped, as are empty lines,
 ///     lines that start with '#', spaces around numbers, and trailing carriage returns.

@@ -22,10 +22,10 @@ namespace relief {
 /// The oriented box of a body in the world.
 struct BodyBox {
     glm::vec3 center{0.0F};
-    glm::mat3 half{0.0F};  ///< columns: from the centre to its sides, mutually perpendicular
+    glm::mat3 half{0.0F};  ///< columns: from the centre to three faces, mutually perpendicular
     float margin = 0.0F;   ///< added around the box
     std::uint32_t body = 0;
-    bool unbounded = false;  ///< intersects every point; stored in a separate list
+    bool unbounded = false;  ///< contains every point; stored in a separate level
 
     /// Returns half the sides of the enclosing axis-aligned box.
     [[nodiscard]] glm::vec3 extent() const {
@@ -55,9 +55,9 @@ struct BodyGrid {
     std::vector<Entry> entries;  ///< each list is sorted by body
 
     /// Builds a grid.
-    /// \param boxes  finite unless unbounded; no coordinate exceeds 1e9 cells.
-    /// \param cell_size  cell size relative to the longest side of a body, rounded up by less than a factor of 2.
-    /// Smaller cells give shorter lists but more entries.
+    /// \param boxes  finite unless unbounded.
+    /// \param cell_size  cell size relative to the longest side of a body, rounded up by less than a factor of 2, or
+    /// more if a coordinate would exceed 1e9 cells. Smaller cells give shorter lists but more entries.
     [[nodiscard]] static BodyGrid of(std::span<const BodyBox> boxes, float cell_size);
 };
 

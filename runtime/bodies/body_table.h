@@ -42,23 +42,23 @@ struct TableBody {
 class BodyTable {
   public:
     /// \param maps  blockMaps() of all bodies; bodies may share maps.
-    /// \param placed  true if each body has exactly one map of patches; it is then stored in world space, so that
-    /// points need only one transform to find their cell.
+    /// \param placed  true if each body has exactly one map of patches; each body then stores its own map in world
+    /// space, so that points need only one transform to find their cell.
     BodyTable(std::vector<BlockMap> maps, std::vector<TableBody> bodies, bool placed);
 
     [[nodiscard]] std::size_t size() const { return bodies_.size(); }
     [[nodiscard]] const TableBody& operator[](std::size_t body) const { return bodies_[body]; }
 
-    /// Sets the poses at the end of the next step; the poses of the previous call become those at its start. Bodies
-    /// beyond poses.size() are unchanged.
+    /// Sets the poses that bodies reach at the end of the next step; the step starts from the poses of the previous
+    /// call. Bodies beyond poses.size() are unchanged.
     /// \return true if a body moved.
     bool setPoses(std::span<const Pose> poses);
     /// Replaces the map of all bodies whose first map is `first_map`.
-    /// \param box  encloses the inside of the new map. If it exceeds the previous boxes, all bodies are sorted into
-    /// cells again.
+    /// \param box  encloses the inside of the new map. If the box of a body does not contain it, the body's box grows
+    /// and both broad phases are rebuilt.
     /// \return false, without changes, if the format or flags differ: the shader was not compiled for them.
     [[nodiscard]] bool setMap(std::uint32_t first_map, const BlockMap& map, const std::optional<Bounds>& box);
-    /// Sets the radius of the largest ball that shaders will query.
+    /// Raises the maximum radius of the balls that shaders will query; smaller radii have no effect.
     void setReach(float radius);
 
     /// Returns the texels of the texture, row by row; its height does not exceed its width.
@@ -89,7 +89,7 @@ class BodyTable {
     std::vector<BlockMap> maps_;  // with their placement
     std::vector<TableBody> bodies_;
     std::vector<std::uint8_t> moves_;    // has moved since creation
-    std::vector<std::uint8_t> settles_;  // moved in the last call
+    std::vector<std::uint8_t> settles_;  // moved in the last setPoses()
     float reach_ = 0.0F;
     std::size_t first_body_ = 0;    // texel index
     std::size_t first_moving_ = 0;  // texel index of the grid of moving bodies

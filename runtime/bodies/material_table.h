@@ -15,8 +15,8 @@ namespace relief {
 /// Materials of one body; must match materials.glsl.
 struct MaterialHead {
     glm::vec4 cube{0.0F};  ///< lowest corner, object space, and 1 / side
-    /// Texel indices of the first material (0: none) and of the top grid; log2 of the cells along the cube and along the
-    /// top grid.
+    /// x, y: texel indices of the first material (0: none) and of the top grid; z, w: log2 of the number of cells along
+    /// the cube and along the top grid.
     glm::ivec4 grids{0};
 };
 
@@ -24,10 +24,10 @@ struct MaterialTable {
     std::vector<std::string>
         names;  ///< unique names, in the order of the bodies; empty: there are no materials
     std::vector<glm::uvec4> texels;  ///< texture texels, row by row; empty if `names` is
-    int log2_width = 0;              ///< of the row length; the height does not exceed it
-    int bricks = 0;                  ///< maximum number of nested bricks
+    int log2_width = 0;              ///< log2 of the row length, which is at least the height
+    int bricks = 0;                  ///< maximum number of nested bricks (4³ grids) below the top grid
     bool responds = false;           ///< a material changes the reaction of particles
-    bool loses = false;              ///< a material costs lifetime
+    bool loses = false;              ///< a material shortens lifetimes
     MaterialHead head;               ///< for a single body
 };
 

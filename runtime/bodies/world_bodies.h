@@ -18,8 +18,8 @@
 
 namespace relief {
 
-/// Returns the bodies in world order, with poses and responses. They point to colliders of `world`, which must outlive
-/// their upload.
+/// Returns the bodies in world order, with poses and responses. The bodies point to colliders of `world`, which must
+/// exist until WorldTextures::create() returns.
 [[nodiscard]] std::vector<ColliderBody> worldBodies(const LoadedWorld& world);
 /// Returns the poses of all bodies, in world order.
 [[nodiscard]] std::vector<Pose> worldPoses(const World& world);

@@ -80,9 +80,9 @@ class WorldTextures : public ShaderCollider {
     [[nodiscard]] Result<void> exchange(std::size_t body, const Collider& collider,
                                         std::optional<std::size_t> first);
 
-    /// Sets the poses at the end of the next step; the poses of the previous call become those at its start. Call it
-    /// before each step while anything moves, and once after it stops. Bodies beyond poses.size() are unchanged. Scales
-    /// must not change. The cost grows with the number of bodies that have ever moved.
+    /// Sets the poses that bodies reach at the end of the next step; the step starts from the poses of the previous
+    /// call. Call it before each step while any body moves, and once after all have stopped. Bodies beyond poses.size()
+    /// are unchanged. Scales must not change. The cost grows with the number of bodies that have ever moved.
     void setPoses(std::span<const Pose> poses);
 
     /// Returns one slot for each map of a live body, in order; empty for other bodies. They point into this object;

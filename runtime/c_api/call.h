@@ -76,7 +76,7 @@ class CallErrors {
     [[nodiscard]] std::uint64_t count() const { return count_; }
 
     void fail(const char* message) noexcept;
-    /// Records that creating an object of this kind failed with last(); its NULL may be passed to other functions.
+    /// Records that creating an object of this kind failed with last(); the caller may pass the NULL to other calls.
     void creationFailed(HandleKind kind) noexcept;
     void made(HandleKind kind) noexcept { of(kind).clear(); }
     /// The unread error that a NULL of this kind represents, or empty.

@@ -26,10 +26,10 @@ namespace relief {
 struct AnimatedBody {
     std::uint32_t body;  // index in the world's textures
     AnimatedCollider collider;
-    MeshTrail trail;                    // motion of its mesh; `shown` is its clock
+    MeshTrail trail;                    // motion of its mesh; `shown` is the time of the last pose
     std::optional<MeshPose> next = {};  // applied by the next relief_textures_set_poses()
     bool fresh = true;                  // no pose was set yet; the first pose is not motion
-    double shown = 0.0;                 // number of poses in the trail
+    double shown = 0.0;                 // number of calls of show()
 
     void show(const MeshPose& pose, bool jumps) {
         trail.show(

@@ -3,7 +3,7 @@
  *
  * librelief.so exports only these functions; librelief_c.a contains the same ones. No C++ exception leaves them.
  *
- * Errors. Arguments are validated. An invalid argument never crashes; the exceptions are arrays shorter than their
+ * Errors. Arguments are validated. No call crashes on invalid arguments; the exceptions are arrays shorter than their
  * count and strings without a terminating zero. A failed call changes nothing. relief_error() returns one line that
  * names the argument and the fix; relief_error_count() counts failures. On failure, functions that create an object
  * return NULL, functions of type int and int64_t return a negative number, counts are 0, and strings are "". Output
@@ -13,8 +13,8 @@
  * handle of another type and an arbitrary value are errors. Free each handle once, with the free function of its type,
  * in any order: particles and renderers keep their textures alive. Freeing NULL does nothing. A NULL returned by a
  * failed call carries its error: relief_textures_create(relief_collider_load(path)) fails with the error of the load.
- * Some arguments may be NULL, such as the textures of particles. If creating an object of their type failed, NULL is
- * rejected with that error until the thread calls relief_error() or creates an object of that type.
+ * Some arguments may be NULL, such as the textures of particles. If creating an object of the argument's type failed,
+ * NULL is rejected with that error until the thread calls relief_error() or creates an object of that type.
  *
  * OpenGL. Functions marked (GL) need a current OpenGL context on the calling thread: OpenGL 3.3, or OpenGL ES 3.0 with
  * renderable float textures. Use the same context for all objects that work together. The functions restore the GL
@@ -87,7 +87,7 @@ typedef struct relief_sample {
     int32_t map;     /* the map that decides; -1: no map votes */
 } relief_sample;
 
-/* Evaluates the field that particles collide with at `count` points. `points` holds 3 * count floats. A non-finite
+/* Evaluates, at `count` points, the field that particles collide with. `points` holds 3 * count floats. A non-finite
  * point is an error; the other points are still evaluated. */
 void relief_collider_query(const relief_collider* collider, const float* points, size_t count,
                            relief_sample* samples);
@@ -258,7 +258,7 @@ void relief_particles_free(relief_particles* particles);
 int relief_particles_set(relief_particles* particles, const relief_particles_options* options);
 /* Queues births for the next step and returns the number accepted. Needs no context. */
 size_t relief_particles_spawn(relief_particles* particles, const relief_birth* births, size_t count);
-/* Advances the particles. `seconds`: above 0, up to 1e9. Compiles a program if colliders or options need another. */
+/* Advances the particles. `seconds`: above 0, up to 1e9. Recompiles the program if colliders or options require it. */
 int relief_particles_step(relief_particles* particles, float seconds);
 relief_counts relief_particles_counts(const relief_particles* particles);
 /* Reads the particles back, which waits for the GPU. Writes at most `capacity` particles, in index order. Returns the
@@ -327,7 +327,7 @@ typedef struct relief_view {
  * bounds of the bodies. The collider may be freed afterwards. */
 relief_renderer* relief_renderer_create(const relief_textures* textures, const relief_collider* collider);
 void relief_renderer_free(relief_renderer* renderer);
-/* Draws the particles over the framebuffer's contents, with its depth test. `options`: NULL for all 0. */
+/* Draws the particles over the framebuffer's contents, tested against its depth buffer. `options`: NULL for all 0. */
 int relief_renderer_draw(relief_renderer* renderer, const relief_particles* particles,
                          const relief_renderer_options* options, const relief_view* view);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One collider on the GPU, in its own object space. runtime/bodies adds worlds of bodies and materials.
+// One collider on the GPU, in its own object space. runtime/bodies adds materials, and worlds of bodies.
 //
 //     const Collider bunny = *readContainer(bytes);
 //     ColliderTextures textures = *ColliderTextures::create(bunny);
@@ -32,7 +32,7 @@ class ColliderTextures : public ShaderCollider {
     [[nodiscard]] int mapCount() const override { return maps_.count(); }
     [[nodiscard]] std::size_t bytes() const override { return maps_.bytes(); }
 
-    /// Moves the maps out, for layers that extend a single collider.
+    /// Moves the maps out, for WorldTextures.
     [[nodiscard]] MapTextures takeMaps() && { return std::move(maps_); }
 
   private:

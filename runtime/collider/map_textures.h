@@ -32,7 +32,7 @@ class MapTextures {
     MapTextures(std::span<const PlacedMap> maps, const MapLayout& layout);
 
     void setBlock(std::span<const std::byte> block) const;
-    /// Implement the ShaderCollider functions of the same names for maps and block.
+    /// These functions implement those of ShaderCollider with the same names, for maps and block.
     void attach(GLuint program, const ShaderCollider::Binding& binding) const;
     void bind(const ShaderCollider::Binding& binding) const;
     void bindStorage(int binding) const;

@@ -39,12 +39,12 @@ class ShaderCollider {
     /// Returns the bytes of maps and materials on the GPU.
     [[nodiscard]] virtual std::size_t bytes() const = 0;
 
-    /// Sets the radius of the largest ball that a shader will query, so that the broad phase of a world finds all
-    /// bodies that the ball touches.
+    /// Raises the maximum radius of the balls that shaders will query, so that the broad phase of a world finds all
+    /// bodies that such a ball touches. Smaller radii have no effect.
     virtual void reach(float /*radius*/) const {}
-    /// Returns 0 for a single collider in its own space.
+    /// Returns the number of bodies; 0 for a single collider in its own space.
     [[nodiscard]] virtual std::size_t bodyCount() const { return 0; }
-    /// Returns a number that changes with every change of a pose or a live body.
+    /// Returns a number that changes with every change of a pose, a map or a live body.
     [[nodiscard]] virtual std::uint64_t revision() const { return 0; }
 
     /// Returns the names of all materials, indexed by the numbers that shaders use. Equal names in several colliders

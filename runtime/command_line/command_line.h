@@ -15,8 +15,8 @@ class App;
 
 namespace relief {
 
-/// Adds --help and --version. Call it before options and verbs are added. Help begins with the examples, which are the
-/// lines of the footer. \param help  the help text of --help.
+/// Adds --help and --version. Call it before options and verbs are added. The help begins with the examples of
+/// describeApp(). \param help  describes --help itself.
 void setUpHelp(CLI::App& app, const std::string& help = "Print this help and exit");
 /// Adds --help and --manual to a verb. --manual prints the help with all details; the manual page is made from it.
 void setUpVerbHelp(CLI::App& verb);
@@ -26,13 +26,13 @@ void setUpVerbHelp(CLI::App& verb);
 /// Appends to the details of an option. Does nothing if the app has no such option.
 void addDetails(CLI::App& app, const std::string& name, const std::string& details);
 
-/// A heading in the help, and its options: "--budget". Names that an app lacks have no effect.
+/// A heading in the help, and the names of its options, such as "--budget". Names that an app lacks have no effect.
 struct OptionGroup {
     std::string title;
     std::vector<std::string> options;
 };
-/// Lists the options under headings, in this order. An option that is named twice appears under the first heading. Call
-/// it once all options are added. Options without a heading follow under "Options".
+/// Lists the options under headings, in this order. An option that is named twice appears under the first heading.
+/// Options without a heading follow under "Options". Call it after all options are added.
 void groupOptions(CLI::App& app, const std::vector<OptionGroup>& groups);
 
 struct AppDeleter {

@@ -10,7 +10,7 @@
 namespace relief {
 
 struct ProgressOptions {
-    std::string name;                   ///< the quoted path of the work
+    std::string name;                   ///< quoted path of the input file
     bool drawn = true;                  ///< false: never draw the line
     std::optional<float> seconds = {};  ///< time limit from construction to finish(); nullopt: none
 };

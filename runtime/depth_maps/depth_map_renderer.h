@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Renders a moving mesh on the GPU to front-back maps with 16-bit depths, decoded as planes. Texels follow
-// formats/README.md. They match those of `relief bake`, which casts one ray through the centre of each texel, to within
-// one unit in the last place of the depth.
+// Renders a moving mesh on the GPU to front-back maps with 16-bit depths, whose texels decode to planes. Texels follow
+// formats/README.md. They match plane fits to a single ray, through the texel centre, to within one unit in the last
+// place of the depth. `relief bake` fits planes to several rays per texel.
 //
 // The rasteriser only determines the triangle that a texel's ray hits. A texel's plane is computed from that triangle
 // because rasterisers snap vertices to a grid of 1/256 pixel. Texels with an edge near their centre may get the
 // adjacent triangle, or the surface behind a silhouette. The plane is rounded outwards to the next depth code. If it is
 // too steep to be stored, the texel stores a plane that faces the viewer. Silhouettes between texel centres are
-// missing; only the ray caster searches for them.
+// missing; only `relief bake` searches for them.
 #pragma once
 
 #include <cstdint>
@@ -29,8 +29,8 @@ class DepthMapRenderer {
 
     /// Renders a whole map, from texel (0, 0), over the previous one.
     /// \param map  must pass validateFrame(); MapFormat::kFrontBackFixed and Decode::kPlane, within the size given to
-    /// create(); `texels` may be empty. If `encloses` is set, its rays start in free space. Otherwise, a surface hit
-    /// from its inner side leaves the texel empty.
+    /// create(); `texels` may be empty. If the map has `encloses` set, rays start in free space. Otherwise, a texel
+    /// stays empty if its ray hits the inner side of a surface.
     void render(GpuMesh& mesh, const DepthMap& map) const;
     /// Like render(), inside a PassState of the caller.
     void renderInPass(GpuMesh& mesh, const DepthMap& map) const;

@@ -11,7 +11,7 @@
 //                      /t\                             triangles if possible)
 //                     a---c               slots < triangles + vertices; usually as many as triangles
 //
-//     bytes on the GPU = 24 or 32 · vertices + 4 · slots + 44 · triangles
+//     bytes on the GPU = 24 · vertices (32 if the driver pads RGB32F) + 4 · slots + 44 · triangles
 #pragma once
 
 #include <cstddef>
@@ -43,7 +43,7 @@ class GpuMesh {
     /// finite may be missing or drawn anywhere.
     /// Errors: kUsage (no such buffer, an offset that is not a multiple of 4, a buffer that is too short).
     [[nodiscard]] Result<void> setPositions(GLuint buffer, std::size_t offset = 0);
-    /// Resets the motion to zero, after a jump or once the vertices have come to rest.
+    /// Resets the motion to zero. Call it after a jump, or when the vertices have come to rest.
     void settle();
 
     [[nodiscard]] std::uint32_t triangleCount() const { return triangle_count_; }
@@ -53,16 +53,16 @@ class GpuMesh {
 
     // Inputs of passes. Item i lies at (i & ((1 << shift) − 1), i >> shift).
 
-    /// RGB32F, or RGBA32F if the GL cannot copy triples: xyz of vertex i.
+    /// RGB32F: xyz of vertex i.
     [[nodiscard]] GLuint positions() const { return positions_[current_].name(); }
     /// The positions before the last setPositions(), for the motion of the surface.
     [[nodiscard]] GLuint previousPositions() const;
     [[nodiscard]] int vertexShift() const { return vertex_shift_; }
     /// RGBA32UI: the vertices of triangle i, its provoking corner last; w is 0.
     [[nodiscard]] GLuint corners() const { return corners_.name(); }
-    /// RGBA32UI for each triangle: the bits of its right-handed unit normal as floats (0 if it has no area), and in w
-    /// its packed index (normal_index.h) plus 65536 times that of the opposite normal. Updated with one draw if the
-    /// positions have changed since the last call. Call it inside a PassState because it changes GL state.
+    /// RGBA32UI for each triangle: xyz, its right-handed unit normal as float bits (0 if it has no area); w, the packed
+    /// index of the normal (normal_index.h) plus 65536 times the index of the opposite normal. Updated with one draw if
+    /// the positions have changed since the last call. Call it inside a PassState because it changes GL state.
     [[nodiscard]] GLuint planes();
     [[nodiscard]] int triangleShift() const { return triangle_shift_; }
     /// Draws all triangles with the current program; attribute 0 is the slot's vertex, an unsigned integer. Binds a

@@ -76,8 +76,8 @@ class ParticleRenderer {
     [[nodiscard]] static Result<ParticleRenderer> create(const std::optional<ColliderView>& collider,
                                                          StepPath path = StepPath::kAuto);
 
-    /// Draws over the target's contents (linear or sRGB, as the target requires) with its depth test; writes no depth.
-    /// Does not read back or wait for the GPU.
+    /// Draws over the target's contents (linear or sRGB, as the target requires), tested against its depth buffer.
+    /// Writes no depth. Does not read back or wait for the GPU.
     /// \param order   drawing order; without a texture, particles are drawn in order of index.
     /// \param behind  for style.soft_distance: window depths of a picture with the same camera and size, not attached
     ///                to the target, such as ColliderRenderer::depth(). Null: style.soft_distance has no effect.

@@ -330,7 +330,7 @@ export class ParticleSystem {
      * @param dt  seconds, 0 to 1 (default: the scene's). In a frame loop, pass Math.min(seconds since last frame, 1 / 30).
      */
     step(dt?: number): void;
-    /** Draws the particles over the contents of the target, with its depth test. Writes no depth. */
+    /** Draws the particles over the contents of the target, tested against its depth buffer. Writes no depth. */
     draw(options: DrawOptions): void;
     /**
      * Draws the meshes of the scene's `render.meshes` (from the option `files`) with their colours and
