@@ -2,8 +2,8 @@
 // Lists the events of a step on the GPU, and reads them back to the CPU some steps later.
 //
 // The step writes the event of each particle into two textures (shaders/events/step_event.glsl). On either step path,
-// fragment shaders build the list from them: sums of kEventsPerCount elements in kEventLevels levels count the events
-// before each index, and every texel of the list looks up its own event (a histogram pyramid, Ziegler et al. 2006).
+// fragment shaders build each list with a histogram pyramid of kEventLevels levels (Ziegler et al. 2006): a texel of a
+// level sums kEventsPerCount counts of the level below, and texel k of the list descends the levels to event k.
 #pragma once
 
 #include <array>
@@ -42,7 +42,7 @@ class EventList {
     };
     /// Maximum (bodies + 1) · (material names + 1) that events can distinguish.
     static constexpr std::size_t kPlacesMax = (std::size_t{1} << 24) / (kEventFlags * kEventDirections);
-    /// A list that was read back; ids are modulo 2^24.
+    /// The lists of one step, read back; ids are modulo 2^24.
     struct Collected {
         StepEvents events;
         std::uint64_t number = 0;
@@ -57,9 +57,9 @@ class EventList {
     /// Builds the lists and requests their read-back. Call it inside a PassState.
     /// \return false, without effect, if kInFlightMax requests are pending.
     bool request(const Step& step);
-    /// Returns the oldest list if the GPU has finished it; never waits.
+    /// Returns the lists of the oldest pending request if the GPU has finished them; never waits.
     [[nodiscard]] std::optional<Collected> poll();
-    /// Waits for the oldest list; nullopt if none is pending.
+    /// Waits for the lists of the oldest pending request; nullopt if no request is pending.
     /// Errors: kFailure (no response from the GPU for ten seconds, or its memory cannot be read).
     [[nodiscard]] Result<std::optional<Collected>> wait();
     [[nodiscard]] int inFlight() const { return in_flight_; }
@@ -72,7 +72,7 @@ class EventList {
     /// surface, velocity and identity (shaders/events/event_list.frag). Each list starts in a new row.
     [[nodiscard]] std::span<const GlTexture, 4> textures() const { return list_; }
     /// Returns a texture of one texel: the number of events of the first list in x, of the second in y, and so on. Each
-    /// list stores at most EventOptions::max_per_step of them.
+    /// list stores at most EventOptions::max_per_step events.
     [[nodiscard]] const GlTexture& total() const { return counts_[kLevels - 1].texture; }
 
   private:
@@ -81,7 +81,7 @@ class EventList {
         GlTexture texture;
         GlFramebuffer target;
     };
-    /// A pending list. Requests are collected in order.
+    /// The pending lists of one step. Requests are collected in order.
     struct Request {
         std::uint64_t tag = 0;  // copied from Step, as are the next three
         std::uint64_t number = 0;
@@ -97,8 +97,8 @@ class EventList {
     [[nodiscard]] Result<void> createPrograms();
     [[nodiscard]] std::uint32_t listWidth() const;
     [[nodiscard]] std::uint32_t longest() const;
-    /// Computes the layout for a number of particles. \return rows of all lists.
-    /// \param first_row  receives the first row of each list; a row beyond all others for lists that do not exist.
+    /// Assigns rows to the lists of a step of `particles` particles. \return the total number of rows.
+    /// \param first_row  receives the first row of each list, and for missing lists a row beyond all lists.
     std::uint32_t layOut(std::uint32_t particles, std::array<std::uint32_t, kEventLists>& first_row) const;
     void useFilter(const GlProgram& program) const;
     void count(const Step& step) const;
@@ -107,7 +107,7 @@ class EventList {
     /// Collects the oldest request, which the GPU has finished; nullopt if its memory was lost.
     [[nodiscard]] std::optional<Collected> collect();
     [[nodiscard]] static bool readFloats(const Request& request, std::size_t first, std::span<float> out);
-    /// Appends the events of a list. \param values  its texels, plane by plane.
+    /// Appends the events of a list. \param values  its texels in each texture of list_, one texture after the other.
     void decode(const Request& request, std::span<const float> values, StepEvents& to) const;
 
     std::vector<EventOptions> lists_;

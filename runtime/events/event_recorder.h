@@ -12,8 +12,8 @@
 
 namespace relief {
 
-/// Starts recording events with the next step; nullopt stops it (the default), after which steps have no extra cost.
-/// Recompiles the step if recording starts or stops. Pending lists are lost.
+/// Starts recording events with the next step; nullopt stops recording. Recording is off by default and then costs
+/// nothing. Recompiles the step if recording starts or stops. Pending lists are lost.
 /// Errors: kUsage (invalid options), kLimit, kUnsupported (too few draw buffers), kFailure.
 [[nodiscard]] Result<void> setEvents(ParticleSystem& particles, const std::optional<EventOptions>& options);
 /// Records several lists, each with its own selection; an event may be in more than one.
@@ -25,13 +25,13 @@ namespace relief {
 /// \param tag  returned with the events, for example the number of the step.
 /// \return false, without effect, if EventList::kInFlightMax lists are pending or events are not recorded.
 bool requestEvents(ParticleSystem& particles, std::uint64_t tag);
-/// Returns the oldest list if the GPU has finished it; never waits.
+/// Returns the lists of the oldest pending request if the GPU has finished them; never waits.
 [[nodiscard]] std::optional<StepEvents> pollEvents(ParticleSystem& particles);
-/// Waits for the oldest list; nullopt if none is pending.
+/// Waits for the lists of the oldest pending request; nullopt if no request is pending.
 /// Errors: kFailure (no response from the GPU for ten seconds, or its memory cannot be read).
 [[nodiscard]] Result<std::optional<StepEvents>> waitEvents(ParticleSystem& particles);
 [[nodiscard]] int eventsInFlight(const ParticleSystem& particles);
-/// Returns the list of the last request on the GPU, for your own shaders; null without setEvents().
+/// Returns the GPU's lists for the last request, for your own shaders; null without setEvents().
 [[nodiscard]] const EventList* eventList(const ParticleSystem& particles);
 
 }  // namespace relief

@@ -18,8 +18,8 @@ struct EventOptions {
     bool lasting = false;
     bool deaths = false;     ///< deaths by age and by collision (OnCollision::kDie)
     float min_speed = 0.0F;  ///< ignores slower hits; world units/s, ≥ 0
-    std::uint32_t max_per_step =
-        65'536;  ///< 1…kCapacityMax; further events, which have the highest indices, are dropped
+    /// 1…ParticleSystem::kCapacityMax. Further events, those with the highest indices, are dropped.
+    std::uint32_t max_per_step = 65'536;
     std::optional<std::uint32_t> type{};  ///< only events of this type
     std::optional<int> material{};        ///< only hits on this material, see ParticleEvent::material
     friend bool operator==(const EventOptions&, const EventOptions&) = default;
@@ -28,7 +28,7 @@ struct EventOptions {
 /// A hit, a death, or both (a hit that kills). A particle has at most one event in a step.
 struct ParticleEvent {
     std::uint32_t id = 0;     ///< see ParticleState::id
-    std::uint32_t index = 0;  ///< index of its texel
+    std::uint32_t index = 0;  ///< index of the particle's texel
     std::uint32_t type = 0;
     double time = 0.0;  ///< seconds since the start, as in ParticleSystem::time()
     /// Contact point or place of death; world space. The surface is assumed flat within the step.
@@ -44,14 +44,14 @@ struct ParticleEvent {
     int material = -1;       ///< at the contact: an index into WorldTextures::materialNames(); −1: none
 };
 
-/// The events of one step, in ascending order of index, list by list.
+/// The events of one step: one list after the other, each in ascending order of index.
 struct StepEvents {
-    std::uint64_t tag = 0;      ///< as requested
+    std::uint64_t tag = 0;      ///< passed to requestEvents()
     double time = 0.0;          ///< the end of the step, seconds
     std::uint32_t dropped = 0;  ///< events beyond EventOptions::max_per_step
     std::vector<ParticleEvent> events;
     struct List {
-        std::size_t size = 0;  ///< number of its `events`
+        std::size_t size = 0;  ///< number of events in the list
         std::uint32_t dropped = 0;
     };
     std::vector<List> lists{};  ///< one for each EventOptions

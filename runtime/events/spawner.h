@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Spawns particles where others hit or die: splashes, debris, sparks. Runs on the CPU, on the listed events of a
+// Spawns particles where others hit or die: splashes, debris, sparks. Runs on the CPU and reads the event lists of a
 // particle system. The same events, settings and seed give bit-identical births on every machine.
 #pragma once
 
@@ -40,9 +40,9 @@ struct SpawnSettings {
     /// Fraction of the parent's velocity that births inherit, ≥ 0. For hits, the approach speed along the normal is
     /// first removed from this velocity.
     float inherit = 0.0F;
-    /// Additional speed, uniform in [speed_min, speed_max] plus `kick` times the speed of the hit; world units/s, ≥ 0.
-    /// Its direction is around the normal of a hit, or around the velocity of a particle that dies of old age (upwards
-    /// if it is at rest).
+    /// Additional speed: uniform in [speed_min, speed_max], plus `kick` times ParticleEvent::speed; world units/s, ≥ 0.
+    /// Its direction lies in a cone around the normal of a hit, or around the velocity of a particle that dies of old
+    /// age (upwards if the particle is at rest).
     float speed_min = 0.0F;
     float speed_max = 0.0F;
     float kick = 0.0F;
@@ -58,11 +58,10 @@ class Spawner {
     Spawner(const SpawnSettings& settings, std::uint64_t seed, std::uint64_t stream = 0);
 
     /// Generates the births of a step's events, in order, with age 0. Births of hits touch the surface from outside.
-    /// Only the first `max_per_step` matching events are used; each later one only adds its minimum number of births to
-    /// the number rejected.
+    /// Only the first `max_per_step` matching events are used; each later event counts as `count_min` rejected births.
     /// \param types   of the particle system, for their radii.
     /// \param room    maximum number of births to generate.
-    /// \param births  receives the births at its end.
+    /// \param births  the births are appended to it.
     /// \return the number of births rejected because of `room` or `max_per_step`, or because the event has no finite
     /// position or velocity.
     std::uint64_t spawn(std::span<const ParticleEvent> events, std::span<const ParticleType> types,

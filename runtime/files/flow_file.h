@@ -30,12 +30,12 @@ struct FlowFile {
 void fields(FieldVisitor& visit, FlowFile& flow);
 [[nodiscard]] std::optional<FieldFault> check(FlowFile& flow, const GivenFields& given);
 
-/// Maximum absolute velocity, object units/s.
+/// Maximum absolute value of each velocity component, object units/s.
 inline constexpr float kFlowSpeedMax = 1e6F;
 
 /// Reads a flow from an untrusted file.
-/// Errors, with the file name: kIo; kInvalidInput (wrong length; a velocity that is not finite or above kFlowSpeedMax);
-/// kLimit (see FlowField).
+/// Errors, with the file name: kIo; kInvalidInput (wrong file size; a velocity that is not finite or above
+/// kFlowSpeedMax); kLimit (see FlowField).
 [[nodiscard]] Result<FlowField> loadFlow(const FlowFile& file);
 
 }  // namespace relief

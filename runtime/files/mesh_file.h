@@ -19,7 +19,7 @@ inline constexpr std::size_t kMeshBytesMax = std::size_t{1} << 30;
 inline constexpr std::size_t kMeshVerticesMax = 20'000'000;
 inline constexpr std::size_t kMeshTrianglesMax = 40'000'000;
 
-/// Reads a file by its extension, .obj or .ply in either case. The mesh passes checkMesh and has no normals.
+/// Reads an .obj or .ply file; the extension is case-insensitive. The mesh passes checkMesh and has no normals.
 /// Errors: kUnsupported (another extension); kIo; kInvalidInput, with the file and, for text, the line; kLimit (the
 /// maxima above).
 [[nodiscard]] Result<PictureMesh> loadPictureMesh(const std::filesystem::path& path);
@@ -37,7 +37,7 @@ struct NamedMesh {
 /// Like loadPictureMesh(), with groups and materials, which only .obj files can have.
 [[nodiscard]] Result<NamedMesh> loadNamedMesh(const std::filesystem::path& path);
 
-/// \param extension  ".obj" or ".ply". \param name  of the file in messages.
+/// \param extension  ".obj" or ".ply". \param name  file name for messages.
 /// Errors: kInvalidInput, kLimit, as above.
 [[nodiscard]] Result<PictureMesh> parsePictureMesh(std::span<const std::byte> bytes,
                                                    std::string_view extension, const std::string& name);

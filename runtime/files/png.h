@@ -28,7 +28,7 @@ struct RgbaPicture {
 inline constexpr std::uint32_t kPngReadSideMax = 8192;
 
 /// Decodes an untrusted PNG to 8-bit RGBA.
-/// \param name  of the file in messages.
+/// \param name  file name for messages.
 /// Errors: kInvalidInput (message of libpng), kLimit (a side above kPngReadSideMax).
 [[nodiscard]] Result<RgbaPicture> decodePng(std::span<const std::byte> bytes, std::string_view name);
 

@@ -14,8 +14,8 @@ namespace relief {
 /// waits instead.
 [[nodiscard]] bool waitToRead(const GlFence& fence, GLuint64 nanoseconds);
 
-/// Copies at least one byte of a buffer from `offset` on, through GL_PIXEL_PACK_BUFFER. Waits for the GPU.
-/// \return false if its memory was lost.
+/// Copies `out.size()` bytes, at least 1, from `offset` in the buffer, through GL_PIXEL_PACK_BUFFER. Waits for the GPU.
+/// \return false if the buffer's memory was lost.
 [[nodiscard]] bool readBuffer(const GlBuffer& buffer, std::size_t offset, std::span<std::byte> out);
 
 }  // namespace relief

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The image units and shader storage bindings of compute passes. These classes save state that PassState does not,
-// because few passes use it. Both require hasCompute().
+// The image units and shader storage bindings of compute passes. ImageUnits and StorageUnits save state that PassState
+// does not, because few passes use it; they require hasCompute().
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ class SavedRange {
   public:
     /// \param target  GL_UNIFORM_BUFFER, GL_SHADER_STORAGE_BUFFER or GL_TRANSFORM_FEEDBACK_BUFFER.
     SavedRange(GLenum target, GLuint index);
-    /// Restores the indexed binding and the generic one.
+    /// Restores the indexed binding; also binds its buffer to the generic binding of `target`.
     void restore() const;
 
   private:
@@ -58,7 +58,7 @@ class StorageUnits {
     /// Creates a buffer with undefined contents. Leaves it bound to the target.
     [[nodiscard]] static GlBuffer make(GLsizeiptr bytes);
     static void bind(GLuint unit, const GlBuffer& buffer);
-    /// Orders passes: later ones see earlier stores and do not overwrite data that earlier ones still read.
+    /// Orders passes: later passes see the stores of earlier passes and do not overwrite data that those still read.
     static void order();
 
   private:

@@ -22,8 +22,8 @@ struct GlContextOptions {
 
 class GlContext {
   public:
-    /// Creates a context of at least this version and makes it current on this thread. Prefers a version with compute
-    /// shaders. If EGL supports it, the context reports GPU resets (gl_fault.h).
+    /// Creates a context of at least the version of `api` and makes it current on this thread. Prefers a version with
+    /// compute shaders. If EGL supports it, the context reports GPU resets (gl_fault.h).
     /// Errors: kUnsupported, listing all attempts; also if float textures are not renderable or EGL's library is
     /// missing. kUsage if the device does not exist; the message contains the number of devices.
     [[nodiscard]] static Result<std::unique_ptr<GlContext>> create(const GlContextOptions& options);
@@ -37,7 +37,7 @@ class GlContext {
     [[nodiscard]] Result<void> makeCurrent();
 
     [[nodiscard]] GlApi api() const;
-    /// Returns "OpenGL 4.5 (Core Profile) Mesa 22.3.6, llvmpipe (…), surfaceless", for reports.
+    /// Returns text for reports, such as "OpenGL 4.5 (Core Profile) Mesa 22.3.6, llvmpipe (…), surfaceless".
     [[nodiscard]] const std::string& description() const;
     /// Returns true if the context renders on the CPU: slow, but it cannot hang.
     [[nodiscard]] bool software() const;

@@ -127,8 +127,8 @@ void bindPackBuffer(GlBuffer& buffer, GLsizeiptr bytes);
 [[nodiscard]] Result<GlProgram> makeProgram(std::string_view vertex, std::string_view fragment,
                                             std::string_view defines = {});
 
-/// Creates a program that runs a fragment shader over rectangles of pixels, with "base/quad.vert": for
-/// GlProgram::drawScreen().
+/// Creates a program from "base/quad.vert" and a fragment shader. GlProgram::drawScreen() runs it over a rectangle of
+/// pixels.
 [[nodiscard]] Result<GlProgram> makeScreenProgram(std::string_view fragment, std::string_view defines = {});
 
 /// Creates a program from a compute shader in the same subset of GLSL. Its version line is `#version 430 core` or
@@ -145,7 +145,7 @@ void bindPackBuffer(GlBuffer& buffer, GLsizeiptr bytes);
 [[nodiscard]] Result<std::vector<float>> readTextureFloats(const GlTexture& texture, GLsizei width,
                                                            GLsizei height);
 
-/// Copies bytes from the start of one buffer to another on the GPU.
+/// Copies bytes on the GPU, from the start of buffer `from` to `to_offset` in buffer `to`.
 void copyBuffer(const GlBuffer& from, const GlBuffer& to, GLsizeiptr to_offset, GLsizeiptr bytes);
 
 /// Binds a 3-D texture to a texture unit and leaves that unit active.

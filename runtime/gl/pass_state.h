@@ -11,9 +11,9 @@ namespace relief {
 /// covers: current program and vertex array; array, pack, unpack and uniform buffer; uniform block bindings 0 and 1;
 /// draw and read framebuffer; viewport and scissor box; active texture unit and, for the first kUnits units, 2-D
 /// texture, 3-D texture and sampler object; blending, depth, cull, scissor and stencil test, dithering,
-/// alpha-to-coverage, rasterizer discard, polygon offset and primitive restart (all off in a pass); blend functions and
-/// equations, depth function and mask, colour mask, clear colour; pixel store alignments and windows; on desktop GL
-/// also polygon mode, logic operation, program point size, point sprite origin and sRGB conversion.
+/// alpha-to-coverage, sample coverage, rasterizer discard, polygon offset and primitive restart (all off in a pass);
+/// blend functions and equations, depth function and mask, colour mask, clear colour; pixel store alignments and
+/// windows; on desktop GL also polygon mode, logic operation, program point size, point sprite origin, sRGB conversion.
 class PassState {
   public:
     static constexpr int kUnits = 11;

@@ -30,7 +30,7 @@ struct BlockMap {
 /// Returns the shader's u_relief_count.
 [[nodiscard]] glm::ivec4 blockHead(std::span<const PlacedMap> maps, const MapLayout& layout);
 [[nodiscard]] std::vector<BlockMap> blockMaps(std::span<const PlacedMap> maps, const MapLayout& layout);
-/// Returns the whole block of a single collider, std140: the head and the maps.
+/// Returns the whole block of a single collider, std140: u_relief_count, then the maps.
 [[nodiscard]] std::vector<std::byte> colliderBlock(std::span<const PlacedMap> maps, const MapLayout& layout);
 
 /// Returns lines for makeProgram for a single collider. They exclude code that no map needs, because a GL driver may

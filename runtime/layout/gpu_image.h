@@ -38,7 +38,7 @@ struct GpuImage {
     std::string defines;                           ///< lines to compile collider.glsl with
 };
 
-/// Returns the textures of placed maps. Live maps are empty and without motion.
+/// Returns the textures of placed maps. The texels and the motion of live maps are zero.
 [[nodiscard]] std::array<GpuTexture, kTexelKinds> mapTextures(std::span<const PlacedMap> maps,
                                                               const MapLayout& layout);
 

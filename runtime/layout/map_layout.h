@@ -39,8 +39,8 @@ class TexelLayout {
     void addRectangle(std::int32_t width, std::int32_t height) {
         rectangles_.push_back({0, 0, width, height});
     }
-    /// Chooses the smallest power of two that the height does not exceed as the width. Returns false if this width is
-    /// above `side_max`.
+    /// Chooses the width: the smallest power of two that is not below the resulting height. Returns false if this width
+    /// is above `side_max`.
     [[nodiscard]] bool finish(std::int32_t side_max);
 
     [[nodiscard]] std::int32_t log2Width() const { return log2_width_; }
@@ -64,7 +64,7 @@ class TexelLayout {
     std::int32_t height_ = 0;
 };
 
-/// The textures: one for each texel layout, in the order of the widths in the block.
+/// The three textures: one for each size of a texel, in the order of the log2 widths in u_relief_count.
 enum TexelKind : std::size_t { kFloatTexels = 0, kFixedTexels = 1, kFrontBackTexels = 2 };
 inline constexpr std::size_t kTexelKinds = 3;
 
@@ -73,8 +73,8 @@ inline constexpr std::size_t kTexelKinds = 3;
 /// The location of one map.
 struct MapPlace {
     TexelKind kind = kFloatTexels;
-    std::size_t first = 0;   ///< row-major index of its texel (0, 0) in the texture
-    std::int32_t pitch = 0;  ///< texels between its rows
+    std::size_t first = 0;   ///< row-major index of the map's texel (0, 0) in the texture
+    std::int32_t pitch = 0;  ///< texels from the start of a row to the start of the next
     TexelRectangle texels;   ///< live maps: where the map is rendered
     TexelRectangle motion;   ///< live maps: where its motion is rendered, in the float texture
     std::size_t motion_first = 0;
@@ -84,7 +84,7 @@ struct MapLayout {
     std::array<TexelLayout, kTexelKinds> textures;  ///< indexed by TexelKind
     std::vector<MapPlace> places;                   ///< one for each map, in order
 
-    /// First texel reserved for more patches, after those of the maps.
+    /// Row-major index of the first texel reserved for later patches, in the front-back texture.
     std::size_t room = 0;
 
     /// \param side_max  maximum side of a texture, texels.

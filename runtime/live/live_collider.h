@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A deforming collider: a mesh with moving vertices whose depth maps the GPU renders before each step of the particles
-// (Kolb, Latta and Rezk-Salama 2004, section 5). For each texel the GPU also stores the motion of the surface since the
-// previous update, for the relative velocity at contacts.
+// A deforming collider: a mesh with moving vertices. The GPU renders the mesh's depth maps before each step of the
+// particles (Kolb, Latta and Rezk-Salama 2004, section 5). For each texel the GPU also stores the motion of the surface
+// since the previous update, for the relative velocity at contacts.
 //
 //     LiveCollider live = *LiveCollider::create(positions, triangles, *liveMaps(box));
 //     ColliderBody body{.collider = &live.frames(), .live = true};
@@ -41,7 +41,7 @@ class LiveCollider {
     /// Every call needs a current context, restores the GL state that it changes, and does not wait.
     /// \param positions, triangles  the initial mesh, as required by GpuMesh::create.
     /// \param frames  maps from liveMaps(). The box of a map must contain the mesh at all times: geometry outside is
-    /// clipped, and a map that encloses everything treats it as free space.
+    /// clipped, and maps with DepthMap::encloses classify all points outside the box as free space.
     /// Errors: those of GpuMesh and DepthMapRenderer; kUsage (maps that are not from liveMaps()).
     [[nodiscard]] static Result<LiveCollider> create(std::span<const glm::vec3> positions,
                                                      std::span<const glm::uvec3> triangles, Collider frames);
@@ -49,7 +49,7 @@ class LiveCollider {
     /// Moves the vertices; update() renders them. Call it at most once between two updates, because update() records
     /// the motion of a single change.
     /// \param positions  object units, finite, as many as at creation.
-    /// Errors: kUsage (called twice, a different count, a vertex outside a map that encloses everything), kInvalidInput
+    /// Errors: kUsage (called twice, a different count, a vertex outside a map with DepthMap::encloses), kInvalidInput
     /// (not finite). The state is then unchanged.
     [[nodiscard]] Result<void> setPositions(std::span<const glm::vec3> positions);
     /// Moves the vertices to positions in a GPU buffer: tightly packed triples of floats from byte `offset` on. The GPU

@@ -2,7 +2,7 @@
 // Poses an animated mesh on the GPU, with shaders/live/skin.vert and transform feedback into a buffer, for
 // LiveCollider::setPositions(buffer) and for rendering the mesh.
 //
-//     bytes on the GPU = 40 · vertices + 8 · influences + 16 · deltas + 96 · joints + 32 · targets,
+//     bytes on the GPU = 40 · vertices + 8 · influences + 16 · deltas + 96 · joints + 32 · weights,
 //                        and the output buffer: 12 or 24 per vertex
 #pragma once
 
@@ -44,7 +44,7 @@ class SkinPass {
     GlTexture pose_;
     GlTexture influences_;
     GlTexture deltas_;
-    glm::ivec3 shifts_{0};  // of the three textures above
+    glm::ivec3 shifts_{0};  // log2 of the widths of the three textures above
     int joints_ = 0;
     std::vector<glm::vec4> texels_;  // staging for pose_, kept to avoid reallocation
 };

@@ -3,9 +3,9 @@
 // buffer, for LiveCollider::setPositions(buffer) and for rendering the mesh.
 //
 //     p + n · amplitude/3 · Σ_k sin(2π (p_k / wavelength − r_k frequency·t) + phase + k)
-//     for k = 0, 1, 2 of x, y, z; r = (1, 1.25, 0.8); n the normal of the vertex
+//     with k = 0, 1, 2 for x, y, z; p the vertex at rest, n its normal, t the time; r = (1, 1.25, 0.8)
 //
-//     bytes on the GPU = 24 · vertices, and the output buffers: 12 or 24 per vertex
+//     bytes on the GPU = 24 · vertices, and the output buffer: 12 or 24 per vertex
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -27,7 +27,7 @@ struct Wobble {
     friend bool operator==(const Wobble&, const Wobble&) = default;
 };
 
-/// Returns the vertices at a time by the formula above. CPU reference of WobblePass::run().
+/// Returns the vertices at `time`, in seconds, by the formula above. CPU reference of WobblePass::run().
 [[nodiscard]] std::vector<glm::vec3> wobbled(const Wobble& wobble, std::span<const glm::vec3> positions,
                                              std::span<const glm::vec3> normals, double time);
 
@@ -46,13 +46,13 @@ class WobblePass {
     /// not have transform feedback active.
     void run(double time);
 
-    /// Returns the output of bytes() bytes, rewritten by every run().
+    /// Returns the output, bytes() in size and rewritten by every run().
     [[nodiscard]] const GlBuffer& buffer() const { return feedback_.buffer(); }
     [[nodiscard]] std::size_t bytes() const { return feedback_.bytes(); }
 
   private:
     Wobble wobble_;
-    float step_ = 0.0F;
+    float step_ = 0.0F;  // step of the finite differences for normals, object units
     GlBuffer rest_;
     VertexFeedback feedback_;
 };

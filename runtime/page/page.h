@@ -22,8 +22,8 @@ namespace relief {
 /// Returns the page for a collider, without data.
 [[nodiscard]] std::string viewPage();
 
-/// Returns the page that plays scenes and worlds, without data: the file named by RELIEF_VIEW_PAGE, else the file of the
-/// installation, else the file of a web build next to this build.
+/// Returns the page that plays scenes and worlds, without data: the file named by RELIEF_VIEW_PAGE, else the file of
+/// the installation, else the file of a web build next to this build.
 /// Errors: kUnsupported (not found), kInvalidInput (of another release); those of readForPage().
 [[nodiscard]] Result<std::string> playerPage(FileGuard& files);
 
@@ -50,7 +50,7 @@ struct Page {
     std::optional<PageMesh> mesh = {};      ///< source mesh of the collider
     Json check = nullptr;                   ///< the report of `relief check`
     std::optional<std::string> scene = {};  ///< text of a scene.toml
-    /// Name in `files` of the collider that the panel describes; empty: `container`.
+    /// Key in `files` of the collider that the page's panel describes; if empty, the panel describes `container`.
     std::string shows = {};
     std::vector<std::byte> container = {};          ///< collider that the panel describes
     std::map<std::string, std::string> files = {};  ///< keyed by their names in the scene

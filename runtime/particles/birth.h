@@ -14,7 +14,7 @@ struct Birth {
     glm::vec3 position{0.0F};  ///< object units
     glm::vec3 velocity{0.0F};  ///< object units/s
     float lifetime = 1.0F;     ///< seconds, > 0
-    std::uint32_t type = 0;    ///< passed to the renderer, below 2^24
+    std::uint32_t type = 0;    ///< see ParticleSystem::setTypes(); at most kBirthTypeMax
     /// Age at the start of the next step, in seconds, ≥ 0. The particle system advances the particle by this time, so
     /// that births of one step do not all start at the same point.
     float age = 0.0F;

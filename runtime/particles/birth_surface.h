@@ -21,7 +21,7 @@ class BirthSurface {
     /// \param before, now  object units, one position per vertex; triangles with a non-finite corner do not emit.
     /// \param seconds      > 0; 0 after a jump: `before` is ignored.
     virtual void move(std::span<const glm::vec3> before, std::span<const glm::vec3> now, double seconds) = 0;
-    /// Returns the current sum of area · weight over the triangles; 0: the surface cannot emit.
+    /// Returns the current sum of area · weight (density of births) over the triangles; 0: the surface cannot emit.
     [[nodiscard]] virtual double area() const = 0;
     /// Returns the bounds of all current vertices.
     [[nodiscard]] virtual Bounds bounds() const = 0;

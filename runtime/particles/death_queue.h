@@ -19,7 +19,7 @@ class DeathQueue {
     void push(float time, std::uint32_t index);
 
     /// Removes all deaths with a time at or before `now`. `now` must not decrease except through rebase().
-    /// \param dead  receives the indices at its end, in an order that depends only on previous calls.
+    /// \param dead  the indices are appended to it, in an order that depends only on previous calls.
     void popUntil(float now, std::vector<std::uint32_t>& dead);
 
     /// Moves the clock back: every time becomes time − shift, as a float. Re-sorts all pending deaths.

@@ -34,8 +34,8 @@ inline constexpr std::array<std::string_view, 7> kWordsOf<EmitterShape>{"box",  
 
 /// An additional speed along a direction: the sum of a uniform and a normally distributed term, redrawn if negative.
 struct EmitterAim {
-    /// Axis of the cone, nonzero. nullopt: the normal at the emitting point, which is outwards for sphere and shell,
-    /// `normal` for a disc, the point's own normal for points, and the triangle's for a surface. Boxes have no normal.
+    /// Axis of the cone, nonzero; required for kBox, kPoint, and points without normals. nullopt: the normal at the
+    /// emitting point: outwards for sphere and shell, `normal` for a disc, PointList::normals, the triangle's normal.
     std::optional<glm::vec3> direction;
     float cone_degrees = 0.0F;  ///< half angle, 0…180; uniform over the solid angle
     float speed_min = 0.0F;     ///< object units/s, ≥ 0; uniform between both limits
@@ -88,12 +88,12 @@ class Emitter {
     /// \param stream    emitters with the same seed and different streams are independent.
     Emitter(EmitterSettings settings, std::uint64_t seed, std::uint64_t stream = 0);
 
-    /// Generates the births of the next `dt` seconds in order of time; at equal times, births of `rate` precede a burst.
+    /// Generates the births of the next `dt` seconds in time order; at equal times, births of `rate` precede a burst.
     /// After time t, with s = min(t − start, duration), a total of burst (1 + ⌊s / burst_every⌋) + ⌊rate · s⌋ births
     /// are due, independent of the step lengths; a burst at the end of the duration is omitted. The n-th birth does not
     /// depend on the step lengths either, except for its age.
     /// \param room    maximum number of births to generate: the free capacity of the particle system.
-    /// \param births  receives the births at its end.
+    /// \param births  the births are appended to it.
     /// \return the number of due births that exceed `room`; they are dropped.
     std::uint64_t emit(double dt, std::uint64_t room, std::vector<Birth>& births);
     /// Returns whether births are due in the next `dt` seconds.
@@ -135,7 +135,7 @@ class Emitter {
     float opening_ = 0.0F;    // oneMinusCosine() of the cone
     double elapsed_ = 0.0;    // seconds
     double remainder_ = 0.0;  // rounding error of elapsed_
-    // Due so far, including dropped births.
+    // Births of `rate` and number of bursts due so far, including dropped births.
     std::uint64_t steady_ = 0;
     std::uint64_t bursts_ = 0;
     std::vector<glm::vec3> place_velocities_;

@@ -107,7 +107,7 @@ class ParticleSystem {
     [[nodiscard]] Result<void> setForces(const Forces& forces);
     /// Sets the particle types. Birth::type is an index into them; larger values use the last one.
     /// Errors: kUsage (none or more than kParticleTypesMax, a number that is not finite, a mass below kParticleMassMin,
-    /// a negative radius, a factor outside 0…1, unknown bits).
+    /// a negative radius, restitution or friction outside 0…1, unknown bits in collides_with).
     [[nodiscard]] Result<void> setTypes(std::span<const ParticleType> types);
     [[nodiscard]] Result<void> setType(const ParticleType& type) { return setTypes({&type, 1}); }
     /// Sets the sweep length, world units. If above 0, a step tests its path in pieces of at most this length and never
@@ -159,7 +159,7 @@ class ParticleSystem {
     /// Returns the ParticleState::id of the last particle with this index.
     [[nodiscard]] std::uint32_t idOf(std::uint32_t index) const { return ids_[index]; }
     [[nodiscard]] std::span<const ParticleType> types() const { return types_; }
-    /// Returns an empty RGBA32F texture of the state's size, for the output of a feature.
+    /// Creates an RGBA32F texture of the state's size with undefined contents, for the output of a feature.
     [[nodiscard]] GlTexture makeStateTexture() const;
 
     // For renderers: particle i < extent() is at texel (i mod width, i / width). Births since the last step are not in
@@ -171,7 +171,7 @@ class ParticleSystem {
     [[nodiscard]] const GlTexture& positionsBefore() const { return position_[1 - current_]; }
     [[nodiscard]] std::uint32_t textureWidth() const { return width_; }
     [[nodiscard]] std::uint32_t extent() const { return drawn_extent_; }
-    [[nodiscard]] float clock() const;  ///< the time in the units of births()
+    [[nodiscard]] float clock() const;  ///< time() on the GPU's clock, as used in births()
 
     /// Reads the live particles in ascending order of index, without births since the last step. Waits for the GPU; for
     /// dumps and tests.
@@ -184,7 +184,7 @@ class ParticleSystem {
     explicit ParticleSystem(std::uint32_t capacity) : allocator_(capacity) {}
     [[nodiscard]] Result<void> createTextures();
     [[nodiscard]] Result<void> createPrograms();
-    /// Returns the wind that a feature adds; nullopt if there is none and Forces::wind applies.
+    /// Returns the wind of a feature, which replaces Forces::wind; nullopt if no feature has wind.
     [[nodiscard]] std::optional<glm::vec3> featureWind() const;
     [[nodiscard]] Result<void> checkFeatures(const ShaderCollider* collider) const;
     [[nodiscard]] StepVariant stepVariant() const;

@@ -18,7 +18,7 @@ struct ParticleType {
     float gravity = 1.0F;  ///< multiplies Forces::gravity, finite; negative: rises
     float mass = 1.0F;     ///< divides the drag; at least kParticleMassMin
     float radius = 0.0F;   ///< collision radius, world units, ≥ 0
-    /// ε, 0…1: fraction of the normal speed at the start of the step that is restored.
+    /// ε, 0…1: a bounce restores this fraction of the normal speed at the start of the step.
     float restitution = 0.0F;
     float friction = 0.0F;            ///< ν, 0…1: fraction of the tangential speed that is lost
     float friction_threshold = 0.0F;  ///< no friction below this speed, world units/s

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The interface of layers that extend the step of a particle system: defines and inputs of its program, and outputs in
-// addition to the state. runtime/air adds wind and force fields; runtime/events records hits and deaths.
+// The interface of features, which extend the step of a particle system: defines and inputs of its program, and outputs
+// in addition to the state. runtime/air adds wind and force fields; runtime/events records hits and deaths.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ class StepFeature {
     StepFeature& operator=(const StepFeature&) = delete;
     virtual ~StepFeature() = default;
 
-    /// Returns `#define` lines for makeProgram(); they make shaders/particles/step.frag include the layer's GLSL.
+    /// Returns `#define` lines for makeProgram(); they make shaders/particles/step.frag include the feature's GLSL.
     [[nodiscard]] virtual std::string defines() const = 0;
     /// Returns whether the step reads the collider's materials for this feature.
     [[nodiscard]] virtual bool readsMaterials() const { return false; }
@@ -38,7 +38,7 @@ class StepFeature {
     /// Returns the air velocity that the feature applies in place of Forces::wind, if any.
     [[nodiscard]] virtual std::optional<glm::vec3> wind() const { return std::nullopt; }
 
-    /// Called between two steps if a birth replaces the particle `id`.
+    /// Called for each birth. \param id  of the previous particle at `index`; 0 if there was none.
     virtual void replaced(std::uint32_t /*index*/, std::uint32_t /*id*/) {}
     /// Called before a step from `begin` to `end`, seconds, of the first `extent` particles; `collider` is null if
     /// there is none.

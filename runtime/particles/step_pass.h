@@ -33,7 +33,7 @@ struct Forces {
 /// Compile-time parameters. A change of any member requires another program.
 struct StepVariant {
     const ShaderCollider* collider = nullptr;       ///< null: only the floor is solid
-    std::vector<const StepFeature*> features = {};  ///< features with outputs, in order
+    std::vector<const StepFeature*> features = {};  ///< all features, in the order of their outputs
     bool verlet = false;
     bool sweep = false;
     bool radius = false;   ///< a type has a radius
@@ -77,7 +77,7 @@ class StepPass {
     [[nodiscard]] static Result<StepPass> create(StepVariant variant, const StepShader& shader = {});
 
     /// Makes the program current, sets its uniforms, and binds the collider's textures. If usesStorage(), also binds
-    /// shader storage binding kTourStorage.
+    /// the collider's uniform block as shader storage, at kTourStorage.
     void use(const Values& values) const;
     /// Steps the particles in the first `rows` rows of `width` texels into a framebuffer's textures. Call use() first.
     void draw(GLuint framebuffer, std::uint32_t width, std::uint32_t rows) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Camera animation by keys.
+// Camera animation by keyframes.
 #pragma once
 
 #include <glm/vec3.hpp>

@@ -3,10 +3,10 @@
 // particle reads a few texels (shaders/picture/particle_light.glsl) instead of tracing rays. The light is updated only
 // if the collider has moved or deformed.
 //
-//     bytes on the GPU ≈ 4 · kSunSide² + 2 · voxels: 1.0 MB, and 0.9 MB for a cube
+//     bytes on the GPU ≈ 4 · kSunSide² (1.0 MB) + 2 · voxels (0.9 MB for a cube)
 //
 // Accuracy. Light leaks behind surfaces: sunlight up to sunBias(), sky light up to 1.5 voxels. voxel() is 1/40 of the
-// collider's longest side. The sun map misses details thinner than four of its texels across the light.
+// collider's longest side. The sun map may miss details thinner than four of its texels, perpendicular to the light.
 #pragma once
 
 #include <cstdint>

@@ -19,7 +19,7 @@ struct ColliderView {
 };
 
 /// Returns the view of a world with the initial bounds of its bodies; enlarge the bounds if bodies leave them.
-/// \param textures  of worldBodies(world); must outlive the renderers.
+/// \param textures  created from worldBodies(world); must outlive the renderers.
 [[nodiscard]] ColliderView worldView(const LoadedWorld& world, const ShaderCollider& textures);
 
 /// Returns the unit vector towards the sun in all pictures: upper left, in front.

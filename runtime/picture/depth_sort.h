@@ -6,11 +6,11 @@
 // 3.4). After a complete sequence, both paths give the same order.
 //
 //     bytes on the GPU = 16 · texels, texels = capacity rounded up to a power of two (and to whole rows of kWidth):
-//         order  2 × RG32UI (double-buffered)    index of a particle, key
+//         order  2 × RG32UI (double-buffered)    index of a particle, key: float bits of the squared distance to eye
 //
-// Every update() recomputes all keys and continues the sequence. No pass makes the order worse, and the size of the
-// sorted region changes by powers of two (proofs: runtime/METHOD.md, "The depth sort"). If keys and extent do not
-// change, the order is exact after one complete sequence; otherwise it lags by the motion during one to two sequences.
+// Every update() recomputes all keys and continues the sequence. No pass makes the order worse, and the number of ranks
+// is a power of two (proofs: runtime/METHOD.md, "The depth sort"). If keys and extent do not change, the order is exact
+// after one complete sequence; otherwise the order lags by the motion during one to two sequences.
 #pragma once
 
 #include <cstdint>
@@ -63,13 +63,13 @@ class DepthSorter {
     /// Returns the number of ranks. Compute path: the extent. Fragment path: the least power of two not below the
     /// extent, or a larger one for up to two sequences after the extent has shrunk; 0 before the first particle.
     [[nodiscard]] std::uint32_t count() const { return count_; }
-    /// Returns the number of finished passes of the current sequence, below sequencePasses(count()) unless both are 0; 0 on the
-    /// compute path.
+    /// Returns the number of finished passes of the current sequence: 0…sequencePasses(count()) − 1, or 0 if
+    /// count() < 2. Always 0 on the compute path.
     [[nodiscard]] std::uint32_t passesDone() const { return passes_done_; }
 
     /// Returns the number of passes of a complete sequence: 210 for 2^20 particles.
     [[nodiscard]] static std::uint32_t sequencePasses(std::uint32_t extent);
-    /// Returns the passes per update() that complete a sequence within `frames` updates; `frames` > 0.
+    /// Returns the number of passes per update() that complete a sequence within `frames` updates; `frames` > 0.
     [[nodiscard]] static std::uint32_t passesPerFrame(std::uint32_t extent, std::uint32_t frames);
 
   private:
