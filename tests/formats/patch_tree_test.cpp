@@ -285,7 +285,7 @@ TEST(Materials, EveryFaultIsDetected) {
     };
     for (const Case& wrong : std::vector<Case>{
              {"a material tree, but no materials", [](auto& m) { m.list.clear(); }},
-             {"materials[1] has the name 'oak'", [](auto& m) { m.list[1].name = "oak"; }},
+             {"materials[1] repeats the name 'oak'", [](auto& m) { m.list[1].name = "oak"; }},
              {"materials[0] has a name that is not clean UTF-8", [](auto& m) { m.list[0].name = "\x80"; }},
              {"longer than 256 bytes", [](auto& m) { m.list[0].name.assign(257, 'a'); }},
              {"materials[2] has a restitution", [](auto& m) { m.list[2].restitution = 1.5F; }},
