@@ -139,7 +139,7 @@ class GroundBaker {
             if (format.found() || format.doubtful) {
                 return fail(ErrorCode::kLimit,
                             done.error().message + "; " +
-                                (format.found() ? cureBy(format) : "check --heights type and order too"));
+                                (format.found() ? fixBy(format) : "check --heights type and order too"));
             }
         }
         RELIEF_TRY(done);
@@ -338,7 +338,7 @@ class GroundBaker {
         }
     }
 
-    [[nodiscard]] std::string cureBy(const BetterFormat& format) const {
+    [[nodiscard]] std::string fixBy(const BetterFormat& format) const {
         return "its samples look like those of another format; try --heights " + toString(format) +
                (map_.hasLow() && format.type ? ", without low and high" : "") +
                (format.eight_bits ? ", unless they are 8 bits times 256" : "");
@@ -347,28 +347,28 @@ class GroundBaker {
     /// Returns the settings that probably do not match the file; empty if there are none.
     /// \param most  whether most of its squares are steep.
     [[nodiscard]] std::string causeOfSteep(bool most) const {
-        std::optional<OutlierSample> lone = map_.lone();
-        if (lone && lone->gap <= kSteepest * heights().spacing) {
-            lone.reset();
+        std::optional<OutlierSample> outliers = map_.outliers();
+        if (outliers && outliers->gap <= kSteepest * heights().spacing) {
+            outliers.reset();
         }
         const BetterFormat format = map_.betterFormat();
-        if (lone && format != BetterFormat{.type = SampleType::kInt16}) {
+        if (outliers && format != BetterFormat{.type = SampleType::kInt16}) {
             const std::string far =
-                std::string(" far ") + (lone->lowest ? "below" : "above") + " all others; if ";
-            return std::string("its ") + (lone->lowest ? "lowest" : "highest") +
-                   (lone->sample == lone->last
-                        ? " sample, " + shortest(lone->sample) + ", lies" + far +
-                              "it stands for no data, give --heights hole=" + shortest(lone->sample)
-                        : " samples, " + shortest(std::min(lone->sample, lone->last)) + " to " +
-                              shortest(std::max(lone->sample, lone->last)) + ", lie" + far +
+                std::string(" far ") + (outliers->lowest ? "below" : "above") + " all others; if ";
+            return std::string("its ") + (outliers->lowest ? "lowest" : "highest") +
+                   (outliers->sample == outliers->last
+                        ? " sample, " + shortest(outliers->sample) + ", lies" + far +
+                              "it stands for no data, give --heights hole=" + shortest(outliers->sample)
+                        : " samples, " + shortest(std::min(outliers->sample, outliers->last)) + " to " +
+                              shortest(std::max(outliers->sample, outliers->last)) + ", lie" + far +
                               "they stand for no data, save them as one value and give it as --heights hole");
         }
         if (format.found()) {
-            return cureBy(format) +
-                   (lone && lone->sample == lone->last
-                        ? std::string("; or, if its ") + (lone->lowest ? "lowest" : "highest") + " sample, " +
-                              shortest(lone->sample) +
-                              ", stands for no data, --heights hole=" + shortest(lone->sample)
+            return fixBy(format) +
+                   (outliers && outliers->sample == outliers->last
+                        ? std::string("; or, if its ") + (outliers->lowest ? "lowest" : "highest") +
+                              " sample, " + shortest(outliers->sample) +
+                              ", stands for no data, --heights hole=" + shortest(outliers->sample)
                         : "");
         }
         return most ? std::string("most of its squares are steep; check --heights spacing") +

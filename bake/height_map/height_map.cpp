@@ -119,7 +119,7 @@ void SampleRange::insertInside(Least& least, float sample) {
     }
 }
 
-std::optional<OutlierSample> SampleRange::lone() const {
+std::optional<OutlierSample> SampleRange::outliers() const {
     const double range = -double{high_[0]} - double{low_[0]};
     for (const Least* side : {&low_, &high_}) {
         for (std::size_t last = 0; last < kGroupMax; ++last) {
@@ -133,12 +133,12 @@ std::optional<OutlierSample> SampleRange::lone() const {
     return std::nullopt;
 }
 
-std::optional<OutlierSample> HeightMap::lone() const {
-    std::optional<OutlierSample> lone = range_.lone();
-    if (lone) {
-        lone->gap *= unit_;
+std::optional<OutlierSample> HeightMap::outliers() const {
+    std::optional<OutlierSample> outliers = range_.outliers();
+    if (outliers) {
+        outliers->gap *= unit_;
     }
-    return lone;
+    return outliers;
 }
 
 BetterFormat HeightMap::betterFormat() const {

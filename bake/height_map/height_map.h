@@ -63,7 +63,7 @@ class SampleRange {
         insert(high_, -sample);
     }
     /// Returns the outliers, with the gap in sample units; nullopt unless the other values outnumber them.
-    [[nodiscard]] std::optional<OutlierSample> lone() const;
+    [[nodiscard]] std::optional<OutlierSample> outliers() const;
 
   private:
     static constexpr std::size_t kGroupMax = 3;
@@ -104,7 +104,7 @@ class HeightMap {
     /// The settings, including those that a raw file's extension implies.
     [[nodiscard]] const HeightsSpec& spec() const { return spec_; }
     /// The outliers among the samples read so far, excluding holes.
-    [[nodiscard]] std::optional<OutlierSample> lone() const;
+    [[nodiscard]] std::optional<OutlierSample> outliers() const;
     /// Always empty for images.
     [[nodiscard]] BetterFormat betterFormat() const;
     /// Whether the file does not state the format of its samples.

@@ -133,7 +133,7 @@ void fields(FieldVisitor& visit, HeightsSpec& spec) {
           {.help = "Distance between samples, in metres",
            .range = {1e-6, 1e6},
            .must = "a length from 0.000001 to 1000000"});
-    visit("low", spec.low, number("Height of value 0 in metres; only for unsigned samples"));
+    visit("low", spec.low, number("Height of sample value 0 in metres; only for unsigned samples"));
     visit("high", spec.high,
           number("Height of the largest sample, 65535 or 255, in metres; only for unsigned samples"));
     visit("hole", spec.hole,

@@ -282,23 +282,23 @@ BetterFormat findBetterRawFormat(std::span<const std::byte> bytes, const Heights
         }
     }
     const RawFormat& found = formats.at(best);
-    BetterFormat likelier;
+    BetterFormat better;
     if (found.type != own.type) {
-        likelier.type = found.type;
+        better.type = found.type;
     }
     if (found.order != own.order) {
-        likelier.order = found.order;
-        likelier.eight_bits = values.low == 1;
+        better.order = found.order;
+        better.eight_bits = values.low == 1;
     }
-    if (!likelier.found()) {
+    if (!better.found()) {
         const SampleType sign = own.type == SampleType::kInt16 ? SampleType::kUint16 : SampleType::kInt16;
         const auto between = [&](SampleType type) {
             return variationOf(bytes, spec, {type, own.order}).value_or(Variation()).between;
         };
-        likelier.doubtful =
+        better.doubtful =
             !(roughness.at(best) < 0.5 * kNoise) || (own.bytes() == 2 && between(sign) < between(own.type));
     }
-    return likelier;
+    return better;
 }
 
 }  // namespace relief

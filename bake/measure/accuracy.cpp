@@ -49,8 +49,8 @@ std::vector<std::optional<FieldValue>> evaluateAt(const std::vector<TruthPoint>&
     return values;
 }
 
-WrongPercent wrongShare(const std::vector<TruthPoint>& points,
-                        const std::vector<std::optional<FieldValue>>& values) {
+WrongPercent wrongPercent(const std::vector<TruthPoint>& points,
+                          const std::vector<std::optional<FieldValue>>& values) {
     std::uint64_t false_inside = 0;
     std::uint64_t false_outside = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -155,7 +155,7 @@ Field nearestFieldOf(const Collider& collider) {
 }
 
 WrongPercent measureNear(const std::vector<TruthPoint>& points, const Field& field) {
-    return wrongShare(points, evaluateAt(points, field));
+    return wrongPercent(points, evaluateAt(points, field));
 }
 
 FieldAccuracy measureField(const TruthSamples& samples, const Field& field) {
@@ -163,10 +163,10 @@ FieldAccuracy measureField(const TruthSamples& samples, const Field& field) {
     FieldAccuracy accuracy;
     {
         const std::vector<std::optional<FieldValue>> values = evaluateAt(samples.near, field);
-        accuracy.near = wrongShare(samples.near, values);
+        accuracy.near = wrongPercent(samples.near, values);
         compareDistances(samples.near, values, accuracy);
     }
-    accuracy.uniform = wrongShare(samples.uniform, evaluateAt(samples.uniform, field));
+    accuracy.uniform = wrongPercent(samples.uniform, evaluateAt(samples.uniform, field));
     measureNormals(samples.surface, field, accuracy);
     accuracy.inside = measureInside(samples, field);
     accuracy.seconds = watch.seconds();
@@ -184,7 +184,7 @@ ColliderAccuracy measureCollider(const TruthSamples& samples, const MeshQuery& q
     ColliderAccuracy accuracy;
     accuracy.field = measureField(samples, fieldOf(collider));
     measureDistances(samples, nearestFieldOf(collider), accuracy.field);
-    accuracy.unseen_percent = Sights(collider.maps, query).hiddenPercent(samples.surface);
+    accuracy.unseen_percent = Sights(collider.maps, query).unseenPercent(samples.surface);
     accuracy.buried_percent = percent(buriedPoints(samples.surface), samples.surface.size());
     accuracy.gpu_bytes = collider.texelBytes();
     return accuracy;

@@ -105,7 +105,7 @@ bool Sights::isVisible(const SurfacePoint& point) const {
     return std::ranges::any_of(sights_, [&](const Sight& sight) { return sight.sees(point); });
 }
 
-double Sights::hiddenPercent(std::span<const SurfacePoint> points) const {
+double Sights::unseenPercent(std::span<const SurfacePoint> points) const {
     std::vector<char> unseen(points.size(), 0);
     forEachIndex(0, points.size(), 256,
                  [&](std::size_t i) { unseen[i] = !points[i].buried && !isVisible(points[i]) ? 1 : 0; });

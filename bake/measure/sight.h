@@ -58,7 +58,7 @@ class Sights {
 
     /// Unseen fraction of the points that are not buried, in percent. The result does not depend on the number of
     /// threads.
-    [[nodiscard]] double hiddenPercent(std::span<const SurfacePoint> points) const;
+    [[nodiscard]] double unseenPercent(std::span<const SurfacePoint> points) const;
 
   private:
     std::vector<Sight> sights_;

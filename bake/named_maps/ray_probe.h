@@ -8,8 +8,8 @@
 
 #include "bake/mesh/embree_mesh.h"
 #include "bake/mesh/triangle_plane.h"
+#include "bake/named_maps/projected_plane.h"
 #include "bake/named_maps/ray_scene.h"
-#include "bake/named_maps/seen_plane.h"
 #include "bake/views/view.h"
 
 namespace relief {

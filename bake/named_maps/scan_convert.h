@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "bake/mesh/loops.h"
+#include "bake/named_maps/projected_plane.h"
 #include "bake/named_maps/ray_scene.h"
-#include "bake/named_maps/seen_plane.h"
 #include "bake/views/view.h"
 
 namespace relief {

@@ -289,7 +289,7 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
            .details = "fast fits each plane to 1 ray per texel, normal to 16 and best to 36. Higher settings "
                       "sample patches finer and try more cells."});
     visit("prefer", request.prefer,
-          {.help = "Side given to doubtful space; neither causes the fewest errors",
+          {.help = "Side given to doubtful space; 'neither' gives the fewest errors",
            .fallback = "neither",
            .recorded = true,
            .details = "inside keeps particles out of walls, outside keeps free space free. Each removes most "
@@ -346,20 +346,20 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
          .details =
              "The runtime poses the collider. Three front-back maps along the axes, with --resolution texels "
              "a side, store its rest pose. Only --clips, --resolution, --quality, --prefer, --unit, --up and "
-             "the "
              "options of the groups Output and Limits also apply."});
     visit("clips", request.clips,
           {.help = "With --animated: add the animations of this glTF file, matched by node name; repeatable",
            .value = "FILE"});
-    visit("heights", request.heights,
-          {.help = "Bake ground from a height map (PNG, EXR or raw samples) instead of a mesh: KEY=VALUE,... "
-                   "such as spacing=1,low=0,high=500",
-           .value = "SPEC",
-           .recorded = true,
-           .details = "+x is the next column, +y up and +z the next row. A PNG is grey, of 8 or 16 "
-                      "bits. An EXR image has one channel of heights in metres; NaN marks holes. Raw samples "
-                      "are files .raw, .r16 or .hgt. Squares with a hole at a corner have no ground. Only "
-                      "--world and the options of the groups Output and Limits also apply."});
+    visit(
+        "heights", request.heights,
+        {.help = "Bake ground from a height map (PNG, EXR or raw samples) instead of a mesh: KEY=VALUE,... "
+                 "such as spacing=1,low=0,high=500",
+         .value = "SPEC",
+         .recorded = true,
+         .details = "+x is the next column, +y up and +z the next row. A PNG is grey, of 8 or 16 "
+                    "bits. An EXR image has one channel of heights in metres; NaN marks holes. Raw samples "
+                    "are files .raw, .r16 or .hgt. Squares with a hole at a corner have no ground. Only "
+                    "--world, options of the group Output, and all limits but --max-triangles also apply."});
     visit("timeout", request.timeout,
           {.help = "Time limit of the whole bake, in seconds; beyond it, exit with code 6 and write nothing",
            .unit = "s",

@@ -196,7 +196,7 @@ Result<void> classifyOpenParts(std::span<OpenPart> open, const PreparedMesh& mes
         } else if (const Shadow shadow = shadowOf(part.sheet);
                    sizeOf(part.sheet) >= kBodyExtent * mesh->bounds.longestSide() &&
                    length(shadow.signed_area) <= kMouthMax * length(shadow.area)) {
-            part.role.kind = OpenKind::kPossibleSolid;
+            part.role.kind = OpenKind::kPossiblyHoled;
         }
     });
     return {};

@@ -14,7 +14,7 @@
 
 namespace relief {
 
-enum class OpenKind : std::uint8_t { kHoled, kPossibleSolid, kJoined, kSheet, kTerrain };
+enum class OpenKind : std::uint8_t { kHoled, kPossiblyHoled, kJoined, kSheet, kTerrain };
 struct OpenRole {
     OpenKind kind = OpenKind::kSheet;
     int axis = 1;  ///< up axis of a terrain

@@ -222,7 +222,7 @@ class Shaper {
             OpenKind& kind = open_[i].role.kind;
             if (joined[i]) {
                 kind = OpenKind::kJoined;
-            } else if (kind == OpenKind::kHoled || kind == OpenKind::kPossibleSolid) {
+            } else if (kind == OpenKind::kHoled || kind == OpenKind::kPossiblyHoled) {
                 holed.push_back(&open_[i]);
             }
         }
@@ -240,7 +240,7 @@ class Shaper {
                 holed[i]->full = true;
                 add(part);
                 ++report_.solids_with_holes;
-            } else if (holed[i]->role.kind == OpenKind::kPossibleSolid) {
+            } else if (holed[i]->role.kind == OpenKind::kPossiblyHoled) {
                 holed[i]->role.kind = OpenKind::kSheet;
                 report_.closable_sheets += part.mesh ? 1 : 0;
             } else {
@@ -263,7 +263,7 @@ class Shaper {
     }
 
     static bool mayBeHoled(const OpenPart& part) {
-        return (part.role.kind == OpenKind::kHoled || part.role.kind == OpenKind::kPossibleSolid) &&
+        return (part.role.kind == OpenKind::kHoled || part.role.kind == OpenKind::kPossiblyHoled) &&
                part.as == ShapeAs::kAuto;
     }
 

@@ -130,10 +130,10 @@ double partTexel(const SurfacePart& part, const Collider& collider) {
 /// partFix().
 std::string partText(const PartAccuracy& accuracy, const SurfaceParts& parts, const Collider& collider) {
     const SurfacePart& part = parts.parts[accuracy.part];
-    const std::string cure = partFix(part, collider);
+    const std::string fix = partFix(part, collider);
     return lengthText(part.size(), collider.unit) + " long at " + positionText(part.bounds.center()) + ": " +
            percentText(accuracy.wrong.total()) + " of the points near it are on the wrong side, " +
-           partSideText(accuracy) + (cure.empty() ? "" : "; " + cure);
+           partSideText(accuracy) + (fix.empty() ? "" : "; " + fix);
 }
 
 }  // namespace
@@ -178,39 +178,39 @@ Verdict verdictOf(double wrong_percent, const PartsAccuracy& accuracy, const std
 }
 
 std::string partFix(const SurfacePart& part, const Collider& collider) {
-    std::string cure;
+    std::string fix;
     if (part.target_thickness < part.thickness) {
-        cure = "its shell is " + lengthText(part.thickness, collider.unit) + " thick; --thickness " +
-               shortest(parseFloat(roughly(part.target_thickness)).value_or(0.0F));
+        fix = "its shell is " + lengthText(part.thickness, collider.unit) + " thick; --thickness " +
+              shortest(parseFloat(roughly(part.target_thickness)).value_or(0.0F));
     }
     const double texel = partTexel(part, collider);
     const double right =
         kTexelsAcross * (part.kind == PartKind::kSheet ? part.target_thickness : middleExtent(part));
     const double needed = std::min(right, 0.5 * texel);
     const bool patches = collider.hasPatches();
-    if (!(needed > 0.0) || (patches && !cure.empty() && texel <= right)) {
-        return cure;
+    if (!(needed > 0.0) || (patches && !fix.empty() && texel <= right)) {
+        return fix;
     }
     if (patches) {
         const std::string finer = finerPatches(collider, needed);
-        cure += cure.empty()
-                    ? "the heights of its patches are " + lengthText(texel, collider.unit) + " apart; try "
-                    : ", and try ";
-        cure += finer.empty() ? "" : finer + ", or ";
+        fix += fix.empty()
+                   ? "the heights of its patches are " + lengthText(texel, collider.unit) + " apart; try "
+                   : ", and try ";
+        fix += finer.empty() ? "" : finer + ", or ";
     } else {
         std::uint32_t side = 0;
         for (const DepthMap& map : collider.maps) {
             side = std::max({side, map.width, map.height});
         }
         const double resolution = std::ceil(side * (texel / needed));
-        cure += cure.empty() ? "its texels are " + lengthText(texel, collider.unit) + " wide; " : " with ";
-        cure += "texels of " + lengthText(needed, collider.unit) + " need ";
+        fix += fix.empty() ? "its texels are " + lengthText(texel, collider.unit) + " wide; " : " with ";
+        fix += "texels of " + lengthText(needed, collider.unit) + " need ";
         if (resolution <= kMapSizeMax) {
             const std::string texels = std::to_string(static_cast<std::uint32_t>(resolution));
-            cure += "--resolution " + texels + " (--map: size=" + texels + "), or ";
+            fix += "--resolution " + texels + " (--map: size=" + texels + "), or ";
         }
     }
-    return cure + (part.node.empty() ? "a separate bake of this part" : "a separate bake of its node");
+    return fix + (part.node.empty() ? "a separate bake of this part" : "a separate bake of its node");
 }
 
 std::string partsText(const PartsAccuracy& accuracy, const SurfaceParts& parts, const Collider& collider) {

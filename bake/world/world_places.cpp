@@ -15,7 +15,7 @@ namespace {
 /// to a range, in units of the body's longest side.
 constexpr double kDistances = 40.0;
 constexpr double kLeast = 0.02;
-constexpr double kMaxValue = 1.2;
+constexpr double kMost = 1.2;
 
 void fillSlice(const WorldPlaceQuery& query, VerdictSlice& slice) {
     const glm::dvec3 half(0.5 * slice.side);
@@ -62,7 +62,7 @@ WorldPlace worldPlace(const WorldPlaceQuery& query, bool picture) {
         const double longest = own.body->scale * double{own.query->mesh().bounds.longestSide()};
         place.slice =
             verdictSlice(query.place, place.normal,
-                         std::clamp(kDistances * place.distance, kLeast * longest, kMaxValue * longest));
+                         std::clamp(kDistances * place.distance, kLeast * longest, kMost * longest));
         fillSlice(query, *place.slice);
     }
     return place;

@@ -35,11 +35,11 @@ std::string prettyNumber(double value) {
 
 /// Lists the values of small integer ranges: "0 … 2" would suggest that 0.5 is valid.
 std::string listOfWhole(const FieldReference& field) {
-    constexpr double kMaxValue = 4.0;
+    constexpr double kListedRange = 4.0;
     const FieldRange& range = field.info.range;
     const auto type = field.type.schema.find("type");
     std::string text;
-    if (type != field.type.schema.end() && *type == "integer" && range.high - range.low <= kMaxValue) {
+    if (type != field.type.schema.end() && *type == "integer" && range.high - range.low <= kListedRange) {
         for (double value = range.low; value <= range.high; ++value) {
             text += (text.empty() ? "" : ", ") + prettyNumber(value);
         }

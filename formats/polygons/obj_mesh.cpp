@@ -39,7 +39,7 @@ class ObjReader {
         if (mesh_.colors.size() != mesh_.positions.size()) {
             mesh_.colors.clear();
         }
-        for (const std::uint32_t vertex : in_others_) {
+        for (const std::uint32_t vertex : used_by_others_) {
             mesh_.used_by_others.resize(mesh_.positions.size(), 0);
             mesh_.used_by_others[vertex] = 1;
         }
@@ -201,7 +201,7 @@ class ObjReader {
     Result<void> readOther(bool line) {
         std::uint64_t count = 0;
         for (std::string_view word = text_.word(); !word.empty(); word = text_.word()) {
-            in_others_.push_back(RELIEF_TRY(vertexOf(word)));
+            used_by_others_.push_back(RELIEF_TRY(vertexOf(word)));
             ++count;
         }
         mesh_.others.lines += line && count > 0 ? count - 1 : 0;
@@ -232,7 +232,7 @@ class ObjReader {
     bool has_faces_ = false;    // a face uses name_
     bool by_material_ = false;  // usemtl followed such a face
     bool renamed_ = false;      // name_ or material_ was set after the last face
-    std::vector<std::uint32_t> in_others_;
+    std::vector<std::uint32_t> used_by_others_;
     std::uint64_t triangles_ = 0;
     std::uint64_t furthest_ = 0;  // largest vertex index of a face
     std::size_t furthest_line_ = 0;

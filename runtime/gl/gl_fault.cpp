@@ -44,7 +44,7 @@ void clearGlErrors() {
     }
 }
 
-Result<void> checkAllocated(const std::string& what, const std::string& cure) {
+Result<void> checkAllocated(const std::string& what, const std::string& fix) {
     const GLenum error = glGetError();
     if (error == GL_NO_ERROR) {
         return {};
@@ -52,21 +52,21 @@ Result<void> checkAllocated(const std::string& what, const std::string& cure) {
     clearGlErrors();
     RELIEF_TRY(checkGpu("allocating " + what));
     if (error == GL_OUT_OF_MEMORY) {
-        return fail(ErrorCode::kLimit, what + ": out of GPU memory; " + cure);
+        return fail(ErrorCode::kLimit, what + ": out of GPU memory; " + fix);
     }
     return fail(ErrorCode::kFailure,
-                what + ": the GL rejected the textures or buffers (error " + errorText(error) + "); " + cure);
+                what + ": the GL rejected the textures or buffers (error " + errorText(error) + "); " + fix);
 }
 
 Result<void> checkTextureSize(std::uint64_t width, std::uint64_t height, const std::string& what,
-                              const std::string& cure) {
+                              const std::string& fix) {
     GLint side_max = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side_max);
     if (std::max(width, height) > static_cast<std::uint64_t>(std::max(side_max, 0))) {
         return fail(ErrorCode::kLimit, what + " need a texture of " + std::to_string(width) + "x" +
                                            std::to_string(height) +
                                            " texels; this GL context supports sides up to " +
-                                           std::to_string(side_max) + "; " + cure);
+                                           std::to_string(side_max) + "; " + fix);
     }
     return {};
 }

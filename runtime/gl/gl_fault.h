@@ -26,14 +26,14 @@ void clearGlErrors();
 
 /// Checks that textures and buffers created since clearGlErrors() were allocated.
 /// \param what  for the message: "a picture of 960x720 pixels".
-/// \param cure  "choose a smaller size".
+/// \param fix  "choose a smaller size".
 /// Errors: kLimit (out of GPU memory), kFailure (a reset, another GL error).
-[[nodiscard]] Result<void> checkAllocated(const std::string& what, const std::string& cure);
+[[nodiscard]] Result<void> checkAllocated(const std::string& what, const std::string& fix);
 
 /// Checks that the GL supports 2-D textures of this size.
 /// Errors: kLimit, with the size and the GL's limit.
 [[nodiscard]] Result<void> checkTextureSize(std::uint64_t width, std::uint64_t height,
-                                            const std::string& what, const std::string& cure);
+                                            const std::string& what, const std::string& fix);
 
 /// Waits until the GPU has completed all commands.
 /// \param what  for messages: "steps 1 to 16".

@@ -139,7 +139,7 @@ std::uint64_t Emitter::emit(double dt, std::uint64_t room, std::vector<Birth>& b
     const Due due = dueAfter(dt);
     elapsed_ = due.elapsed;
     remainder_ = due.remainder;
-    place_velocities_.clear();
+    birth_surface_velocities_.clear();
     if (!due.started) {
         return 0;
     }
@@ -220,7 +220,7 @@ glm::vec3 Emitter::place(Birth& birth) {
         case EmitterShape::kSurface: {
             const BirthSurface::Place at = s.surface->draw(random_, birth.age);
             birth.position = at.position;
-            place_velocities_.push_back(at.velocity);
+            birth_surface_velocities_.push_back(at.velocity);
             return at.normal;
         }
     }

@@ -108,7 +108,9 @@ class Emitter {
     }
     /// Returns the surface velocity at each birth of the last emit(), for carry(); empty for all shapes except
     /// kSurface.
-    [[nodiscard]] std::span<const glm::vec3> birthSurfaceVelocities() const { return place_velocities_; }
+    [[nodiscard]] std::span<const glm::vec3> birthSurfaceVelocities() const {
+        return birth_surface_velocities_;
+    }
 
     [[nodiscard]] const EmitterSettings& settings() const { return settings_; }
 
@@ -138,7 +140,7 @@ class Emitter {
     // Births of `rate` and number of bursts due so far, including dropped births.
     std::uint64_t steady_ = 0;
     std::uint64_t bursts_ = 0;
-    std::vector<glm::vec3> place_velocities_;
+    std::vector<glm::vec3> birth_surface_velocities_;
 };
 
 }  // namespace relief

@@ -25,12 +25,12 @@ constexpr float kNoGround = -1e30F;
 constexpr std::uint32_t kIdMask = kBirthTypeMax;
 
 Result<void> checkTypes(std::span<const ParticleType> types) {
-    const auto fraction = [](float value) { return value >= 0.0F && value <= 1.0F; };
+    const auto isFraction = [](float value) { return value >= 0.0F && value <= 1.0F; };
     const auto finite = [](float value, float low) { return value >= low && std::isfinite(value); };
     for (const ParticleType& type : types) {
         if (!(finite(type.mass, kParticleMassMin) && finite(type.radius, 0.0F) &&
-              fraction(type.restitution) && std::isfinite(type.gravity) &&
-              type.collides_with <= kCollidesWithAll && fraction(type.friction) &&
+              isFraction(type.restitution) && std::isfinite(type.gravity) &&
+              type.collides_with <= kCollidesWithAll && isFraction(type.friction) &&
               finite(type.friction_threshold, 0.0F) && finite(type.lifetime_loss, 0.0F))) {
             return fail(
                 ErrorCode::kUsage,

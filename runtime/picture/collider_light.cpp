@@ -20,7 +20,7 @@ constexpr int kVoxelsPerSide = 40;  // along the longest side of the collider
 constexpr int kSkyRays = 16;
 constexpr float kSunBiasTexels = 1.5F;
 
-constexpr const char* kCure = "close other programs that use the GPU";
+constexpr const char* kFix = "close other programs that use the GPU";
 
 /// Sets the transform from object space to texture coordinates of a volume: scale · (p - shift).
 void setVolumeFrame(const GlProgram& program, const char* shift, const char* scale, const glm::vec3& first,
@@ -39,7 +39,7 @@ Result<void> ColliderLight::Volume::allocate() {
     const GLsizei rows = (size.z + tiles() - 1) / tiles();
     layers = makeTexture2D(GL_R8, tiles() * size.x, rows * size.y, GL_RED, GL_UNSIGNED_BYTE);
     texture = makeTexture3D(GL_R8, size, GL_RED, GL_UNSIGNED_BYTE, GL_LINEAR);
-    RELIEF_TRY(checkAllocated("the light around the collider", kCure));
+    RELIEF_TRY(checkAllocated("the light around the collider", kFix));
     target = RELIEF_TRY(makeFramebuffer({layers.name()}));
     return {};
 }
@@ -121,7 +121,7 @@ Result<void> ColliderLight::createTextures() {
     constexpr GLsizei kCoarseSide = kSunSide / kCoarseStride;
     coarse_ = makeTexture2D(GL_R32F, kCoarseSide, kCoarseSide, GL_RED, GL_FLOAT);
     sun_map_ = makeTexture2D(GL_R32F, kSunSide, kSunSide, GL_RED, GL_FLOAT);
-    RELIEF_TRY(checkAllocated("the sun map of the collider", kCure));
+    RELIEF_TRY(checkAllocated("the sun map of the collider", kFix));
     coarse_target_ = RELIEF_TRY(makeFramebuffer({coarse_.name()}));
     RELIEF_TRY(occupied_.allocate());
     RELIEF_TRY(sky_.allocate());

@@ -2,7 +2,7 @@
 // Evaluates a single collider in a step as a tour: one map of one point per iteration, so that each invocation
 // continues with the next piece of its path as soon as a point is decided. In a loop over pieces, all lanes of a warp
 // would wait for the lane that needs most maps. If reliefSolid() is inside, a tour gives the same result.
-struct ReliefQuery {
+struct ReliefTour {
     vec3 p;
     bool going;
     int map;          // next map
@@ -11,12 +11,12 @@ struct ReliefQuery {
     ReliefBest best;  // deepest vote so far; if outside, its distance is RELIEF_FAR_OUTSIDE
 };
 
-bool reliefActive(ReliefQuery tour) {
+bool reliefGoesOn(ReliefTour tour) {
     return tour.going;
 }
 
 // Starts at a point with map `start`.
-void reliefStart(inout ReliefQuery tour, vec3 p, int start) {
+void reliefEnter(inout ReliefTour tour, vec3 p, int start) {
     tour.p = p;
     tour.going = true;
 #if defined(RELIEF_MASKS)
@@ -32,7 +32,7 @@ void reliefStart(inout ReliefQuery tour, vec3 p, int start) {
 }
 
 // Evaluates the next map.
-void reliefAdvance(inout ReliefQuery tour) {
+void reliefAdvance(inout ReliefTour tour) {
     ReliefVote vote = reliefVote(tour.map, tour.p, false);
     // Ties go to the first map, as in reliefMaps().
     if (vote.distance > tour.best.distance || (vote.distance == tour.best.distance && tour.map < tour.best.map)) {
@@ -48,7 +48,7 @@ void reliefAdvance(inout ReliefQuery tour) {
 }
 
 // Returns the result; outside, the normal is zero and the map -1.
-ReliefField reliefResult(ReliefQuery tour) {
+ReliefField reliefToured(ReliefTour tour) {
     vec3 normal = vec3(0.0);
     if (tour.best.map >= 0) {
         normal = reliefDecode(tour.best.normal);

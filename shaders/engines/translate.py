@@ -114,7 +114,7 @@ def joined(text):
 
 
 def wrapped(line):
-    """Breaks a line of more than 120 columns at the comma in the fewest parentheses that fits; the last of several."""
+    """Breaks a line of more than 120 columns at the last fitting comma in the fewest parentheses."""
     if len(line) <= 120 or line.lstrip().startswith("//"):
         return line
     commas = [match.start() for match in re.finditer(", ", line[:120])]

@@ -81,13 +81,13 @@ Solid solid(vec3 p, float radius);
 #if defined(RELIEF_TOUR)
 
 // Returns the solid that a tour has found at p.
-Solid solidOf(ReliefQuery tour, vec3 p, float radius);
+Solid solidOf(ReliefTour tour, vec3 p, float radius);
 
 // As solid(); a tour of a single collider evaluates map `start` first.
 Solid solidFrom(vec3 p, float radius, int start) {
-    ReliefQuery tour;
-    reliefStart(tour, p, start);
-    while (reliefActive(tour)) {
+    ReliefTour tour;
+    reliefEnter(tour, p, start);
+    while (reliefGoesOn(tour)) {
         reliefAdvance(tour);
     }
     return solidOf(tour, p, radius);

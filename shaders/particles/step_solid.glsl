@@ -32,8 +32,8 @@ Solid solidOf(ReliefField field) {
 
 #if defined(RELIEF_TOUR)
 
-Solid solidOf(ReliefQuery tour, vec3 p, float radius) {
-    return solidOf(reliefResult(tour));
+Solid solidOf(ReliefTour tour, vec3 p, float radius) {
+    return solidOf(reliefToured(tour));
 }
 
 #else

@@ -43,15 +43,15 @@ Sweep sweepOf(vec3 p, vec3 v, float radius) {
 #if defined(RELIEF_TOUR)
     // A single loop over all maps of all pieces, ended by a flag: compilers turn a loop with a break into nested loops,
     // in which lanes wait for each other at every piece.
-    ReliefQuery tour;
-    reliefStart(tour, to, 0);
+    ReliefTour tour;
+    reliefEnter(tour, to, 0);
     int i = 1;
     bool going = true;
     while (going) {
-        if (reliefActive(tour)) {
+        if (reliefGoesOn(tour)) {
             reliefAdvance(tour);
         }
-        if (!reliefActive(tour)) {
+        if (!reliefGoesOn(tour)) {
             going = i < RELIEF_SWEEP && float(i) < pieces && tour.best.distance >= 0.0 &&
                     !(aboveGround(to, radius) < 0.0);
             if (going) {
@@ -60,7 +60,7 @@ Sweep sweepOf(vec3 p, vec3 v, float radius) {
                 to = p + (end * u_dt) * v;
                 ++i;
                 // The map that classified the last point as outside usually also classifies this point as outside.
-                reliefStart(tour, to, tour.map);
+                reliefEnter(tour, to, tour.map);
             }
         }
     }

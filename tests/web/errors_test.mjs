@@ -18,8 +18,8 @@ const kErrors = {
     "relief.load('/files/noise.relief')": /noise\.relief: .*(not|no) /,
     "relief.load('/files/cut.relief')": /cut\.relief: /,
     "relief.load(new ArrayBuffer(0))": /./,
-    "relief.load()": /load\(\) takes a URL/,
-    "relief.load(7)": /load\(\) takes a URL/,
+    "relief.load()": /load\(\) needs a URL/,
+    "relief.load(7)": /load\(\) needs a URL/,
     "new relief.Collider('text')": /Uint8Array/,
     // contexts
     "new relief.ParticleSystem(null, { collider })": /no WebGL2 context/,

@@ -251,7 +251,7 @@ test("a missing or damaged tile is reported once, and its coarse tile stays", { 
     assert.equal(got.lines.slice(2).length, count);
     assert.ok(got.lines.slice(2).every((line) => /'load' returned no Uint8Array/.test(line)));
     const expected = [/streamWorld\(\) needs a radius above 0/, /needs a radius above 0/, /memory must be a number/, /no option 'speed'/, /404/, /needs 'load'/,
-                      /No such file/, /resident colliders.*allow more/, /has no \[stream\]/, /'onWarning' must be a function/, /setPointsOfInterest\(\) takes a list/,
+                      /No such file/, /resident colliders.*raise the limit/, /has no \[stream\]/, /'onWarning' must be a function/, /setPointsOfInterest\(\) takes a list/,
                       /item 1 is invalid/, /setPointsOfInterest\(\): number 1 is NaN/, /use streamWorld\(\)/, /only the radius of 'stream' can change/, /only the radius of 'stream' can change/,
                       /stream needs .world/];
     assert.equal(got.errors.length, expected.length);

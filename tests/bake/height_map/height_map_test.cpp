@@ -281,7 +281,7 @@ TEST_F(HeightMaps, RawSamplesHaveATypeAndAByteOrder) {
 }
 
 /// 65² samples of ground about 40 m high, partly below sea level, written in every raw format and read as each.
-TEST_F(HeightMaps, LikelierRawFormatIsSuggested) {
+TEST_F(HeightMaps, BetterRawFormatIsSuggested) {
     std::vector<double> ground;
     for (int i = 0; i < 65 * 65; ++i) {
         ground.push_back(
@@ -361,7 +361,7 @@ TEST_F(HeightMaps, LikelierRawFormatIsSuggested) {
 }
 
 /// The wrong byte order scales heights below 256 m by 256. The wrong signedness makes pillars of 65 km.
-TEST_F(HeightMaps, LikelierFormatOfLowlandIsSuggested) {
+TEST_F(HeightMaps, BetterFormatOfLowlandIsSuggested) {
     const auto found = [&](double low, double high, const std::string& settings, int lone = 0) {
         std::vector<std::uint16_t> samples;
         for (int i = 0; i < 65 * 65; ++i) {
@@ -429,7 +429,7 @@ TEST_F(HeightMaps, OutlierSampleIsReported) {
         for (const float sample : samples) {
             range.add(sample);
         }
-        const std::optional<OutlierSample> found = range.lone();
+        const std::optional<OutlierSample> found = range.outliers();
         return found
                    ? std::string(found->lowest ? "low " : "high ") + std::to_string(std::lround(found->gap)) +
                          (found->sample == found->last ? "" : " of several")

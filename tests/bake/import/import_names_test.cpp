@@ -97,7 +97,7 @@ TEST(ImportNames, GltfNamesAreNodesMeshesAndMaterials) {
                  {{"second", "glass"}, {0, 2, 1, 2, 1, 2}},
                  {{"door-1"}, {1, 1, 1, 1, 1, 1}}});
     expectUnknown("c.gltf", text, {"door"}, "Names: ");
-    expectUnknown("s.stl", tetrahedronStl(), {"nothing"}, "names: ");
+    expectUnknown("s.stl", tetrahedronStl(), {"nothing"}, "; names: '");
     expectUnknown("p.ply", tetrahedronPly(), {"nothing"}, "the file has no names: use --as without a name");
 }
 
@@ -109,7 +109,7 @@ TEST(ImportNames, HostileNamesAreSanitized) {
     expectMarks(
         "h.gltf", text,
         {{{clean}, {1, 1, 0, 0, 0, 0}}, {{std::string(kSelectedNameBytesMax, 'y')}, {0, 0, 1, 1, 0, 0}}});
-    expectUnknown("h.gltf", text, {std::string(kSelectedNameBytesMax, 'z')}, "names: ");
+    expectUnknown("h.gltf", text, {std::string(kSelectedNameBytesMax, 'z')}, "; names: '");
     std::string many;
     for (int i = 0; i < 3000; ++i) {
         many += "g group" + std::to_string(i) + std::string(100, 'n') + "\nf 1 2 3\n";

@@ -31,7 +31,7 @@ Measured measuredPlaces(const TriangleMesh& mesh, const Collider& collider, std:
     const MeshQuery query = required(MeshQuery::build(mesh));
     const TruthSamples truth = sampleTruth(query, {.samples = samples});
     const Sights sights(collider.maps, query);
-    return {worstPlaces(truth, query, sights, collider), sights.hiddenPercent(truth.surface)};
+    return {worstPlaces(truth, query, sights, collider), sights.unseenPercent(truth.surface)};
 }
 
 std::vector<std::string> threeViews(const std::string& size) {

@@ -240,7 +240,7 @@ TEST_F(WorldTiles, OnlyChangesAreBakedDeterministically) {
     EXPECT_EQ(filesOf("w").size(), again.colliders.size() + static_cast<std::size_t>(coarse) + 1);
 }
 
-TEST(TilesMost, KeepsWorldsWithinTheLimits) {
+TEST(MaxTiles, KeepsWorldsWithinTheLimits) {
     EXPECT_EQ(maxTiles(1, 1), 64U);
     EXPECT_EQ(maxTiles(64, 64), 64U);
     EXPECT_EQ(maxTiles(65, 65), 32U);

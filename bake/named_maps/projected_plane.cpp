@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/named_maps/seen_plane.h"
+#include "bake/named_maps/projected_plane.h"
 
 #include <algorithm>
 #include <cmath>
