@@ -14,12 +14,12 @@ namespace relief {
 class Frame {
   public:
     static constexpr std::uint64_t kPixelsMax = std::uint64_t{1} << 26;
-    /// Up to this size, each pixel is the mean of 2 × 2 samples.
+    /// Up to this number of pixels, each pixel is the mean of 2 × 2 samples, if GL limits permit.
     static constexpr std::uint64_t kSmoothPixelsMax = 9'000'000;
 
     /// Needs a current context.
     /// \param width, height  pixels of the finished picture, ≥ 1.
-    /// Errors: kUsage (0), kLimit (above kPixelsMax, or GL limits), kUnsupported, kFailure.
+    /// Errors: kUsage (a side is 0), kLimit (above kPixelsMax, or GL limits), kUnsupported, kFailure.
     [[nodiscard]] static Result<Frame> create(std::uint32_t width, std::uint32_t height);
 
     /// Returns the target to draw to.

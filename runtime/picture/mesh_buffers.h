@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // GPU buffers of a PictureMesh.
 //
-//     bytes on the GPU = 24 · vertices + 4 · corners, plus 4 · vertices with colours
+//     bytes on the GPU = 24 · vertices + 4 · corners, plus 4 · vertices if the mesh has colours
 #pragma once
 
 #include "formats/base/result.h"
@@ -18,8 +18,7 @@ class MeshBuffers {
     [[nodiscard]] static Result<MeshBuffers> create(const PictureMesh& mesh);
 
     /// Replaces all vertices with the vertices in a GPU buffer (wobble_pass.h): 24 bytes each, position and normal as
-    /// floats.
-    /// The mesh must have been created with normals.
+    /// floats. Requires that the mesh passed to create() has normals.
     void setVertices(const GlBuffer& buffer) const;
 
     /// Replaces all vertices. \param mesh  with normals and the same number of vertices.

@@ -28,8 +28,8 @@ struct MeshStyle {
     float sun = 1.0F;                           ///< sunlight, 0 (overcast)…1
     float units_per_meter = 1.0F;  ///< world units per metre, > 0: scales grain, drifts and ambient occlusion
     float fog_distance = 0.0F;     ///< distance at which 63 % of the light is lost, world units; 0: no fog
-    float wet = 0.0F;              ///< wetness where rain reaches, 0…1
-    float snow = 0.0F;             ///< cover where snow reaches, 0…1
+    float wet = 0.0F;              ///< wetness of surfaces exposed to rain, 0…1
+    float snow = 0.0F;             ///< snow cover of level surfaces exposed to the sky, 0…1
     friend bool operator==(const MeshStyle&, const MeshStyle&) = default;
 };
 
@@ -57,7 +57,7 @@ class MeshRenderer {
     void setVertices(std::size_t mesh, const GlBuffer& buffer);
 
     /// Overwrites the target's colour and depth. Footprints persist between calls.
-    /// \param around  the part of the world with shadows, shelter and footprints; finite and not empty.
+    /// \param around  region of shadows, exposure to rain and snow, and footprints; finite and not empty.
     /// Errors: kUnsupported, kLimit (target size, out of memory), kUsage (no such mesh).
     [[nodiscard]] Result<void> draw(const CameraMatrices& camera, const MeshStyle& style,
                                     std::span<const MeshInstance> places, const Bounds& around,
@@ -90,7 +90,7 @@ class MeshRenderer {
                     bool moving) const;
     void drawMap(const ParallelMap& map, std::span<const MeshInstance> places, bool moving) const;
     [[nodiscard]] Result<void> checkPlaces(std::span<const MeshInstance> places) const;
-    /// Draws the map of resting meshes from above. Clears the footprints if `around` has changed.
+    /// Draws the map towards the zenith, without moving instances. Clears the footprints if `around` has changed.
     void drawZenith(std::span<const MeshInstance> places, const Bounds& around);
     void drawPrints(std::span<const MeshInstance> places, float units_per_meter);
 

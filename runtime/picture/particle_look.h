@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The appearance of particles over their age: key frames, and the texture that shaders/picture/sprite.glsl reads.
 //
-//     row = type     texel 0            turn, spin, first cell (-1: round dot), number of cells
+//     row = type     texel 0            rotation_spread, spin_spread, first cell (-1: round dot), number of cells
 //                    texel 1            lit, fade in, fade out, number of keys
 //                    texel 2            stretch
 //                    texels 3 + 2k      age, size, opacity, rotation of key k
 //                    texels 4 + 2k      linear colour of key k
 //
-// All rows are as long as the longest row.
+// Rows are padded to the length of the longest row.
 //
 // The tracks of a look may have keys at different ages. A row has a key at every age at which any track has a key; the
 // other tracks are interpolated there.
@@ -39,22 +39,22 @@ template <class T>
 using AgeTrack = std::vector<AgeKey<T>>;
 
 struct ParticleLook {
-    AgeTrack<float> size;          ///< diameter in object units, ≥ 0; empty: the style's
-    AgeTrack<glm::vec3> color;     ///< sRGB; interpolated in linear light; empty: the style's
-    AgeTrack<float> opacity;       ///< 0…1; empty: the style's
+    AgeTrack<float> size;          ///< diameter in object units, ≥ 0; empty: LookDefaults::size
+    AgeTrack<glm::vec3> color;     ///< sRGB; interpolated in linear light; empty: LookDefaults::color
+    AgeTrack<float> opacity;       ///< 0…1; empty: LookDefaults::opacity
     AgeTrack<float> rotation;      ///< radians, anticlockwise in the picture; empty: 0
     float rotation_spread = 0.0F;  ///< radians, ≥ 0: random initial rotation within ± rotation_spread
     float spin_spread = 0.0F;      ///< radians/s, ≥ 0: random angular speed within ± spin_spread
     /// Exposure time in seconds, ≥ 0. Above 0, a sprite is stretched back along its velocity by the distance travelled
-    /// in that time; rotation, turn and spin then have no effect. Only for quads.
+    /// in that time; rotation, rotation_spread and spin_spread then have no effect. Only for Sprite::kQuad.
     float stretch = 0.0F;
-    /// Returns the name of a setting that needs quads, or nullptr.
+    /// Returns the name of a member that needs Sprite::kQuad, or nullptr.
     [[nodiscard]] const char* needsQuads() const { return stretch > 0.0F ? "stretch" : nullptr; }
     /// Atlas cells shown from birth to death, counted row by row from the top left; nullopt: a round dot.
     std::optional<std::uint32_t> cell_first;
     std::uint32_t cell_last = 0;  ///< ≥ cell_first
     bool lit = true;              ///< false: the colour does not depend on light
-    /// Fade times after birth and before death, seconds; empty: the style's.
+    /// Fade times after birth and before death, seconds; nullopt: those of LookDefaults.
     std::optional<float> fade_in;
     std::optional<float> fade_out;
     friend bool operator==(const ParticleLook&, const ParticleLook&) = default;
@@ -94,7 +94,7 @@ template <class T>
     return (1.0F - t) * low.value + t * high.value;
 }
 
-/// The texture above; one row with the defaults if there are no looks.
+/// The texture described at the top of this file; one row with the defaults if there are no looks.
 struct PackedLooks {
     std::size_t width = 0;  ///< texels per row
     std::vector<glm::vec4> texels;

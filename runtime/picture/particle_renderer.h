@@ -52,15 +52,15 @@ struct ParticleStyle {
     const SpriteAtlas* atlas = nullptr;  ///< for the cells of looks; null: all particles are round dots
 };
 
-/// Drawing order, as from DepthSorter: RG32UI. Texel (i mod width, i / width) holds the index of the i-th particle in x;
-/// y is 0 if there is no particle. Indices beyond extent() are skipped.
+/// Drawing order, as from DepthSorter: RG32UI. Texel (i mod width, i / width) describes the i-th particle to draw: x is
+/// its index, and y is 0 if there is no particle. Indices from ParticleSystem::extent() on are skipped.
 struct ParticleOrder {
     const GlTexture* texture = nullptr;
-    std::uint32_t count = 0;  ///< ranks
+    std::uint32_t count = 0;  ///< number of texels to draw
 };
 
-/// Returns the path of ParticleRenderer that suits a path of simulation steps: kFragment for kFragment, otherwise
-/// kAuto. kAuto avoids tiles on software renderers, which paint them ten times slower than points.
+/// Returns the path for ParticleRenderer::create(), given the path of simulation steps: kFragment for kFragment,
+/// otherwise kAuto. kAuto does not paint by tiles on software renderers, where tiles take ten times as long as points.
 [[nodiscard]] inline StepPath picturePath(StepPath steps) {
     return steps == StepPath::kFragment ? steps : StepPath::kAuto;
 }
@@ -82,8 +82,8 @@ class ParticleRenderer {
     /// \param behind  for style.soft_distance: window depths of a picture with the same camera and size, not attached
     ///                to the target, such as ColliderRenderer::depth(). Null: style.soft_distance has no effect.
     /// Errors: kUsage (looks, see packLooks(); a stretched look with Sprite::kPoint; an invalid soft_distance; a camera
-    /// that is not finite),
-    /// kUnsupported, kFailure (shader compiler), kLimit (out of memory for the light around the collider).
+    /// that is not finite), kUnsupported, kFailure (shader compiler), kLimit (out of memory for the light around the
+    /// collider).
     Result<void> draw(const ParticleSystem& particles, const CameraMatrices& camera,
                       const ParticleStyle& style, const RenderTarget& target, const ParticleOrder& order = {},
                       const GlTexture* behind = nullptr);
@@ -110,7 +110,7 @@ class ParticleRenderer {
 
     std::optional<ColliderLight> light_;
     std::optional<TilePainter> tiles_;
-    bool needs_tiles_ = false;           // failure to compile them is an error
+    bool needs_tiles_ = false;           // fail if TilePainter does not compile
     std::array<GlProgram, 8> programs_;  // index bits: quads, atlas, stretched
     GlVertexArray no_attributes_;
     GlTexture no_order_;

@@ -36,8 +36,8 @@ inline constexpr float kCrease = 1.0F;  ///< radians
 /// \param crease  radians.
 [[nodiscard]] PictureMesh withNormals(const PictureMesh& mesh, float crease = kCrease);
 
-/// A mesh with moving vertices. Creases are found once, in the initial pose. A normal is the mean of the same triangles
-/// in every pose, weighted by area.
+/// A mesh with moving vertices. Creases are found once, in the initial pose. The normal of a vertex is the mean normal
+/// of the same triangles in every pose, weighted by area.
 class MovingMesh {
   public:
     /// \param mesh  validated by checkMesh().

@@ -6,7 +6,7 @@
 
 namespace relief {
 
-/// A framebuffer of the caller with colour and depth. Renderers draw to pixels (0, 0) … (width − 1, height − 1).
+/// The caller's framebuffer, with colour and depth. Renderers draw to pixels (0, 0) … (width − 1, height − 1).
 struct RenderTarget {
     GLuint framebuffer = 0;
     GLsizei width = 0;

@@ -6,16 +6,16 @@
 // that it overlaps. Entries are sorted by tile; each tile is painted front to back into a layer, which is then blended
 // over the target. The layer has 16 bits per channel, so its pixels may differ from those of drawn sprites by the
 // rounding of the target. In 8-bit targets they may also differ where sprites brighter than white lie behind others,
-// because drawing clips them first.
+// because drawing clamps each sprite to white first.
 //
-//     bytes on the GPU = 96 · room + 8 · pixels + up to 3 MB; room: up to 1.5 times the sprites, at least 65,536
+//     bytes on the GPU = 96 · room + 8 · pixels + up to 3 MB; room: up to 1.5 · sprites, at least 65,536
 //         sprites   48 bytes each
 //         entries   2 × 8 bytes (double-buffered), 3 per sprite
 //         layer     RGBA16F
 //
-// Nothing is read back. The buffer may be too small (for a thousand sprites as large as the picture), or a tile may
-// have more than 65,536 entries (a distant cloud). The GPU then leaves the layer empty, and an indirect draw draws the
-// sprites.
+// Nothing is read back. Tiles overflow if the entry buffer is too small (a thousand sprites as large as the picture) or
+// a tile has more than 65,536 entries (a distant cloud). The GPU then leaves the layer empty, and an indirect draw
+// draws the sprites.
 #pragma once
 
 #include <cstdint>
@@ -53,7 +53,7 @@ class TilePainter {
     /// non-default depth range, or a target whose depth is not a plain texture, such as a window.
     [[nodiscard]] bool prepare(std::uint32_t sprites, const RenderTarget& target);
 
-    /// The draw call of a sprite if tiles overflow.
+    /// The primitive that draws a sprite if tiles overflow, and its number of vertices.
     struct Vertices {
         GLenum mode;
         std::uint32_t count;

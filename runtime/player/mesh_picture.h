@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws the colliders of a scene as the meshes in render.meshes, animated and deformed, with the weather of the scene and
+// Draws the colliders of a scene as the meshes in render.meshes, animated and deformed, with the scene's weather and
 // the footprints that characters have left so far.
 #pragma once
 
@@ -23,7 +23,8 @@ class MeshPicture {
     [[nodiscard]] static Result<MeshPicture> create(const LoadedScene& loaded);
 
     /// Overwrites the target's colour and depth, with the sky as background. Adds the footprints since the previous
-    /// call, or since the beginning of the scene. A call with an earlier time than the previous call adds none.
+    /// call, or since the beginning of the scene. A call with an earlier time than the previous call adds only the
+    /// footprints at its own time.
     /// \param seconds  time of the scene. Errors: those of MeshRenderer::draw().
     [[nodiscard]] Result<void> draw(const CameraMatrices& camera, double seconds, const RenderTarget& target);
 

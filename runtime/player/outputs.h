@@ -45,7 +45,7 @@ class Outputs {
 
   private:
     [[nodiscard]] Result<void> writePicture(const ParticleSystem& particles, PlayerReport& report);
-    /// Errors: kFailure if a particle is lost, with the place of its type in the scene.
+    /// Errors: kFailure if isLost() is true for a particle, with the place of its type in the scene.
     [[nodiscard]] Result<std::vector<ParticleState>> readParticles(const ParticleSystem& particles) const;
     [[nodiscard]] Result<void> writeDump(std::span<const ParticleState> particles,
                                          const std::filesystem::path& path) const;

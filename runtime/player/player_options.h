@@ -25,7 +25,8 @@ struct GpuOptions {
     std::optional<std::size_t> device;  ///< EGL device index, checked when the context is created
     std::optional<double> timeout;      ///< seconds; 0: no limit
 
-    /// Returns the limit in milliseconds, rounded up, because 0 means no limit. Software renderers have a longer default.
+    /// Returns the limit in milliseconds. Rounds up, because 0 means no limit.
+    /// \param software  whether the renderer is a software renderer, whose default is longer.
     [[nodiscard]] std::chrono::milliseconds limit(bool software) const {
         return std::chrono::milliseconds(
             static_cast<std::int64_t>(std::ceil(timeout.value_or(software ? 600.0 : 60.0) * 1000.0)));

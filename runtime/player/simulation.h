@@ -30,8 +30,8 @@ struct SimulationOptions {
     Watchdog* watchdog = nullptr;     ///< may be null
     /// Called between steps before time 0; its exceptions propagate from create(). May be empty.
     std::function<void()> checkpoint = {};
-    /// Loads the colliders of a scene with a [stream]. Steps do not wait for the source, so runs may differ, and the
-    /// scene's camera is not a point of interest. Null: reads the files of the world; each step waits for its
+    /// Loads the colliders of a scene with a [stream]. Steps do not wait for the source, so runs may differ. The
+    /// scene's camera is then not a point of interest. Null: reads the files of the world; each step waits for its
     /// colliders.
     std::unique_ptr<ColliderSource> source = nullptr;
 };
@@ -51,16 +51,16 @@ class Simulation {
     /// \param dt  seconds, > 0, instead of time.dt.
     [[nodiscard]] Result<void> step(float dt);
 
-    /// Applies changed forces, collision, types, air, ground and poses of the scene passed to create(), and keeps all
-    /// particles. Capacity, integrator and colliders must be unchanged, except poses. A collider moves from its old pose
-    /// to the new one during the next step; the pose of a single collider in object space has no effect.
+    /// Applies changed forces, collision, types, air, ground, spawns and poses of the scene passed to create(), and
+    /// keeps all particles. Capacity, integrator and colliders must be unchanged, except poses. A collider moves from
+    /// its old pose to the new one during the next step; the pose of a single collider in object space has no effect.
     /// \param emitters  replace the current ones; nullopt: keep them.
     /// Errors: those of the setters of ParticleSystem.
     [[nodiscard]] Result<void> change(std::optional<std::vector<Emitter>> emitters);
 
-    /// Passes the events of each step to `sink`, in order, starting with the next step. Events of step n are passed when
-    /// step n + 2 begins, so that the CPU rarely waits for the GPU. The tag is the number of the step, from 1. Besides
-    /// new hits, the events include all events that [[spawn]] needs, up to kEventsMax per step.
+    /// Passes the events of each step to `sink`, in order, starting with the next step. Events of step n are passed
+    /// when step n + 2 begins, so that the CPU rarely waits for the GPU. StepEvents::tag is the number of the step,
+    /// from 1. The events are new hits and the events that [[spawn]] needs, together at most kEventsMax per step.
     /// \param min_speed  slower hits may be omitted.
     /// Errors: those of setEvents().
     using EventSink = std::function<Result<void>(const StepEvents&)>;
@@ -78,7 +78,8 @@ class Simulation {
     /// Returns the warnings since the last call: those of the scene (LoadedScene::warnings), and one line for each
     /// collider of a streamed world that failed to load.
     [[nodiscard]] std::vector<std::string> takeWarnings();
-    /// Returns the number of births of emitters and [[spawn]] rejected because the particle system was full.
+    /// Returns the number of births of emitters and [[spawn]] rejected by the capacity, a full event list or
+    /// SpawnSettings::max_per_step.
     [[nodiscard]] std::uint64_t rejected() const { return rejected_; }
     /// Sets the points around which a streamed world has full detail, in addition to the emitters and instead of the
     /// scene's camera. Takes effect with the next step.
@@ -88,16 +89,16 @@ class Simulation {
     [[nodiscard]] Result<void> setPose(std::size_t collider, std::optional<MeshPose> pose);
     /// Returns the mesh of a collider that plays clips; null for other colliders.
     [[nodiscard]] const AnimatedMesh* animatedMesh(std::size_t collider) const;
-    /// Uploads all wanted colliders of a streamed world that have arrived, without a byte limit. Requests the other
-    /// wanted colliders, and waits for them if the source can wait. Call it before a step.
-    /// Errors: those of WorldStream::finish.
+    /// Uploads the colliders of a streamed world that the points of interest need, without a byte limit. Waits for
+    /// colliders that are not loaded yet, if the source can wait. Call it before a step.
+    /// Errors: those of WorldStream::finish().
     [[nodiscard]] Result<void> load();
     /// Returns nullopt if no world is streamed.
     [[nodiscard]] std::optional<StreamCounts> streamCounts() const {
         return stream_ ? std::optional(stream_->counts()) : std::nullopt;
     }
-    /// Returns the current poses of the colliders, in the order of the scene. The pose of an animated collider is the
-    /// pose of its mesh().
+    /// Returns the current poses of the colliders, in the order of the scene. The pose of an animated collider places
+    /// mesh(), whose origin is the centre of the moving box (AnimatedCollider::placed()).
     [[nodiscard]] std::vector<Pose> poses() const { return posesNow(particles_->time()); }
     /// Returns the current mesh of a deforming collider; null for other colliders.
     [[nodiscard]] const GpuMesh* mesh(std::size_t collider) const;
@@ -131,7 +132,7 @@ class Simulation {
     [[nodiscard]] Result<void> makeTextures(const LoadedScene& loaded,
                                             std::unique_ptr<ColliderSource> source);
     [[nodiscard]] WorldTextures& mutableTextures() { return stream_ ? stream_->textures() : *textures_; }
-    /// Moves all clips to a time, in seconds; none on error. Later calls of posesNow() must pass the same time.
+    /// Moves all clips to a time, in seconds; on error, no clip. Later calls of posesNow() must pass the same time.
     [[nodiscard]] Result<void> playClips(double time);
     /// Moves the bodies. A body that jumps does not push particles.
     void setPoses(double time);
@@ -153,8 +154,8 @@ class Simulation {
     [[nodiscard]] Result<void> moveColliders(double time);
     /// Records the events that [[spawn]] and the sink need, if any.
     [[nodiscard]] Result<void> setEvents();
-    /// Returns a list for each [[spawn]], with the number of events that it can use. Returns none if there are more
-    /// than kEventLists [[spawn]], or if a sink needs all events.
+    /// Returns one list for each [[spawn]], limited to the number of events that the [[spawn]] can use. Returns an
+    /// empty vector if there are more than kEventLists [[spawn]], or if there is a sink.
     [[nodiscard]] std::vector<EventOptions> spawnEventLists() const;
     void spawnFrom(const StepEvents& step);
     /// Processes events until the events of at most `in_flight` steps are pending.
@@ -171,7 +172,7 @@ class Simulation {
     std::unique_ptr<WorldStream> stream_;      // used instead of textures_ if streamed
     bool stream_waits_ = true;
     std::optional<std::vector<PointOfInterest>> points_;
-    std::vector<PointOfInterest> emitter_balls_;  // of a streamed world
+    std::vector<PointOfInterest> emitter_balls_;  // emitterBalls(), for a streamed world
     std::vector<LiveBody> live_;
     std::vector<PlayedBody> played_;
     std::unique_ptr<ParticleSystem> particles_;
@@ -189,7 +190,7 @@ class Simulation {
     EventSink event_sink_;    // may be empty
     float sink_min_speed_ = 0.0F;
     std::uint64_t sink_from_ = 1;          // first step whose events go to the sink
-    std::vector<StepEvents> held_events_;  // of lists that were replaced
+    std::vector<StepEvents> held_events_;  // recorded with previous event lists
 };
 
 }  // namespace relief

@@ -38,10 +38,10 @@ struct SceneOverrides {
 struct LoadedScene {
     Scene scene;  ///< with overrides and all defaults
     World world;  ///< without bodies if the scene has no world
-    /// Colliders of the world; coarse ones if the scene streams it.
+    /// Colliders of the world, in its order; coarse colliders if the scene has a [stream].
     std::vector<std::shared_ptr<const Collider>> world_colliders;
     ContainerLimits limits;  ///< for colliders that are read later
-    /// Colliders of the scene, in its order; a file that is named several times is shared.
+    /// Colliders of the scene, in its order. Entries of the same file point to the same Collider.
     std::vector<std::shared_ptr<const Collider>> colliders;
     /// Per collider: its mesh if it deforms; its entry in `colliders` then has maps without texels.
     std::vector<std::optional<LiveMesh>> live;
@@ -62,9 +62,9 @@ struct LoadedScene {
 /// Maximum number of bodies that may overlap at a place; a particle is tested against each of them.
 inline constexpr std::size_t kOverlapMax = 1024;
 
-/// Checks that no body's centre lies in the bounds of more than kOverlapMax bodies, in their initial poses. Tests the
-/// centres of 64 bodies. A body without insideBox() counts at every centre.
-/// Errors: kLimit, with the number and the place.
+/// Checks that at most kOverlapMax bodies overlap at the centres of 64 sampled bodies, in their initial poses. A body
+/// overlaps a centre that is in its insideBox(), and every centre if insideBox() returns nullopt.
+/// Errors: kLimit, with the number of bodies and the centre.
 [[nodiscard]] Result<void> checkOverlap(const LoadedScene& loaded);
 
 /// Returns every file that a scene names, sorted, without the scene itself.

@@ -177,8 +177,8 @@ struct Scene {
     /// Position of the key, "scene.toml:3:8", for messages; empty without a scene file.
     std::string world_origin;
     std::optional<SceneStream> stream;  ///< nullopt: the whole world has full detail
-    /// Colliders of the file. Loading appends the bodies of the world that no table names. After loading, there is at
-    /// least one collider.
+    /// Colliders of the scene file. Loading appends the other bodies of the world (placeBodies()). After loading, there
+    /// is at least one collider.
     std::vector<SceneCollider> colliders;
     std::vector<MaterialResponse> materials;  ///< of all colliders, by name
     SceneTime time;
@@ -210,12 +210,13 @@ void fields(FieldVisitor& visit, Scene& scene);
 [[nodiscard]] std::uint32_t firstFrame(const Scene& scene);
 [[nodiscard]] std::uint32_t lastFrame(const Scene& scene);
 /// Returns whether a frame is due after a step: every `render.steps_per_frame` steps from the first frame on, and at
-/// the last.
+/// the last frame.
 [[nodiscard]] bool frameDue(const Scene& scene, std::uint32_t step);
 /// Returns the number of frames of the run.
 [[nodiscard]] std::uint32_t frameCount(const Scene& scene);
 
-/// Fills all optional values from the bounds of the collider. By default, snow falls on the collider, seen from the front.
+/// Fills all optional values from the bounds of the collider. By default, snow falls on the collider, and the camera is
+/// in front of it.
 /// Errors: kInvalidInput (with defaults, the camera is directly above or below its target).
 [[nodiscard]] Result<Scene> withDefaults(Scene scene, const Bounds& bounds);
 

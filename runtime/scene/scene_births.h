@@ -17,7 +17,7 @@
 
 namespace relief {
 
-/// The colliders of a LoadedScene, one entry each in every span. Borrowed.
+/// Non-owning views of the colliders of a LoadedScene. Every span has one entry per collider.
 struct SceneMeshes {
     std::span<const SceneCollider> colliders;
     std::span<const std::shared_ptr<const Collider>> containers;
@@ -27,11 +27,11 @@ struct SceneMeshes {
 
 /// Creates emitters, and reads their files of points and surfaces. Emitter i uses random stream i. If an emitter
 /// followsShape(), its surface has the vertices of the collider's mesh at time 0, in the same order; for a container
-/// without a mesh, it is colliderSurface().
-/// \param emitters  complete. \param meshes  of the colliders that `attach` refers to.
-/// Errors: those of loadPointList, loadNamedMesh and EmitterSurface::create; kInvalidInput (points with neither normals
-/// nor a direction; a group or material of a collider without a mesh; an unknown group or material, with a list of the
-/// known ones). Messages start with the place in the scene.
+/// without a mesh, the surface is colliderSurface().
+/// \param emitters  completed by completeEmitters(). \param meshes  of the colliders that `attach` refers to.
+/// Errors: those of loadPointList, loadNamedMesh and EmitterSurface::create; kInvalidInput (a speed or cone for
+/// points with neither normals nor a direction; a group of a collider without a mesh; a material of a collider without
+/// materials; an unknown group or material, with a list of known names). Messages start with the place in the scene.
 [[nodiscard]] Result<std::vector<Emitter>> makeEmitters(std::span<const SceneEmitter> emitters,
                                                         const SceneMeshes& meshes);
 

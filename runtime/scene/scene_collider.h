@@ -79,7 +79,7 @@ void fields(FieldVisitor& visit, SceneMaterialColor& material);
 struct SceneCollider {
     std::filesystem::path path;  ///< resolved against the scene's folder
     std::string origin;  ///< position of its key, "scene.toml:3:8", for messages; empty without a scene file
-    std::string node;    ///< node of a body of the world, which provides missing values; empty: none
+    std::string node;    ///< node of the world's body that provides missing values; empty: none
     /// For another tile of the node's mesh: the index of the collider that names the node. The tile moves and collides
     /// like that collider.
     std::optional<std::size_t> tile_of{};
@@ -93,8 +93,9 @@ struct SceneCollider {
     std::optional<glm::vec3> color;             ///< in pictures, sRGB
     std::vector<SceneMaterialColor> materials;  ///< materials with their own colours
     std::vector<SceneKey> given_keys;
-    // Filled by check(), or by placeBodies() for bodies of a world, which also complete the pose and keys above:
-    /// Whether the table has any key besides its file. If not, particles live in the collider's object space.
+    // Filled by check(), or by placeBodies() for bodies of a world. Both also complete given_pose and given_keys.
+    /// Whether the table sets a node, position, angle, scale, restitution, friction or keys. If not, and if this is the
+    /// only collider and does not deform, particles are in its object space.
     bool posed = false;
     Pose pose;
     std::vector<PoseKey> keys;  ///< ascending times; empty: fixed at `pose`

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The emitters of a scene, [emitter] or several [[emitter]], and its [[spawn]].
+// The emitters of a scene ([emitter] or several [[emitter]]) and its spawners ([[spawn]]).
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ struct SceneTouching {
     float min_speed = 0.0F;              ///< world units/s
 };
 
-/// A name, or several.
+/// Reads one name or a list of names, and writes a list.
 struct NameList {
     std::vector<std::string>& names;
 };
@@ -81,7 +81,7 @@ struct NormalSpeed {
 };
 void fields(FieldVisitor& visit, NormalSpeed& speed);
 
-/// Creates `aim` if the visitor fills fields; check() removes `aim` if none of its keys is set.
+/// Creates `aim` if visit.fills(); check() removes `aim` if none of its keys is set.
 void fields(FieldVisitor& visit, SceneEmitter& e);
 [[nodiscard]] std::optional<FieldFault> check(SceneEmitter& emitter, const GivenFields& given);
 
@@ -98,7 +98,7 @@ struct SceneSpawn : SpawnSettings {
 void fields(FieldVisitor& visit, SceneSpawn& spawn);
 [[nodiscard]] std::optional<FieldFault> check(SceneSpawn& spawn, const GivenFields& given);
 
-/// Fills missing values: boxes above the collider, from which snow falls.
+/// Fills missing values. By default, particles fall like snow from a box above the collider.
 /// \param bounds, scale  of the collider; scale is its size, > 0.
 /// \param seconds, capacity  of the run. Emitters without a rate share the capacity that the others leave.
 /// Errors: kInvalidInput if no capacity is left.
@@ -106,7 +106,7 @@ void fields(FieldVisitor& visit, SceneSpawn& spawn);
                                             float scale, double seconds, std::uint32_t capacity);
 
 /// Creates the spawners. Spawner i uses random stream kEmittersMax + i of its seed.
-/// \param materials  WorldTextures::materialNames(); other names never match.
+/// \param materials  WorldTextures::materialNames(); an on_material that is not among them never matches.
 [[nodiscard]] std::vector<Spawner> makeSpawners(std::span<const SceneSpawn> spawns,
                                                 std::span<const std::string> materials);
 

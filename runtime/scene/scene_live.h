@@ -15,7 +15,7 @@
 
 namespace relief {
 
-/// The mesh of a collider that deforms in waves, instead of a container.
+/// The mesh of a collider that deforms in waves. Such a collider has no container.
 struct LiveMesh {
     PictureMesh mesh;  ///< with one normal per vertex, so that waves do not tear it
     Wobble wobble;

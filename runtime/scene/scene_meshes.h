@@ -30,16 +30,16 @@ struct DrawnMeshes {
     std::optional<std::uint32_t> floor;  ///< mesh of the ground
 };
 
-/// Returns the files of render.meshes for the colliders of the scene, sorted, without reading them. For a
-/// collider of a world, the file is named by storedMeshName() of its mesh; for another collider, by its container. The
-/// mesh of an animated collider is in the container itself.
+/// Returns the files of render.meshes for the colliders of the scene, sorted, without reading them. The file of a world
+/// collider is named storedMeshName() of its mesh; the file of another collider has the name of its container.
+/// Colliders that deform need no file: they are drawn as the mesh that deforms.
 /// \param loaded  with render.meshes.
-/// Errors: kInvalidInput (no such file; a link out of the folder; a mesh without a name). Messages start with the place
-/// in the scene.
+/// Errors: kInvalidInput (no such file; a link to a file outside the folder; a mesh without a name).
+/// Messages start with the place in the scene.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> drawnFiles(const LoadedScene& loaded);
 
-/// Returns every file that any run of a scene may read, and that no output may replace: the files that it names, all
-/// fine and coarse containers of its world, and the existing files of drawnFiles(). Sorted, without the scene itself.
+/// Returns every file that any run of a scene may read, and that no output may replace: the files that the scene names,
+/// all fine and coarse containers of its world, and the existing files of drawnFiles(). Sorted, without the scene.
 [[nodiscard]] std::vector<std::filesystem::path> allFilesOf(const LoadedScene& loaded);
 
 /// Reads the drawn files. Errors: those of drawnFiles() and loadPictureMesh().
@@ -52,7 +52,8 @@ struct DrawnMeshes {
 /// Returns the style at a time in seconds.
 [[nodiscard]] MeshStyle meshStyle(const Scene& scene, double seconds);
 
-/// Returns the region with shadows: the whole world, or the part within render.shadow_distance of camera.target along x and z.
+/// Returns the region with shadows: the whole scene, or the part within render.shadow_distance of camera.target along x
+/// and z.
 [[nodiscard]] Bounds shadowBounds(const LoadedScene& loaded);
 
 }  // namespace relief

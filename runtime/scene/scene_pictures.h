@@ -14,7 +14,7 @@
 
 namespace relief {
 
-/// Validates the files that pictures of a complete scene need, without a GPU.
+/// Validates the files that pictures of a complete scene need. Does not use the GPU.
 /// Errors: those of loadAtlas() and loadColliderMesh(), except GPU limits.
 [[nodiscard]] Result<void> checkPictures(const Scene& scene, const Bounds& bounds);
 
@@ -29,7 +29,7 @@ namespace relief {
 [[nodiscard]] Result<std::unique_ptr<ColliderMesh>> loadColliderMesh(const Scene& scene,
                                                                      const Bounds& bounds);
 
-/// Returns the view of the colliders for renderers.
+/// Returns the ColliderView to pass to the renderers of the scene.
 [[nodiscard]] ColliderView colliderView(const LoadedScene& loaded, const WorldTextures& textures);
 
 /// Returns the style of the particles.

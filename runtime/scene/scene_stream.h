@@ -22,7 +22,7 @@ namespace relief {
                                                               std::span<const ColliderBody> bodies,
                                                               std::unique_ptr<ColliderSource> source);
 
-/// Returns a ball around all birth positions of each emitter, in the emitter's space.
+/// Returns one ball per emitter, around all its birth positions, in the emitter's space.
 [[nodiscard]] std::vector<PointOfInterest> emitterBalls(std::span<const Emitter> emitters);
 /// Returns the balls in world space, enlarged by a radius.
 /// \param motions  of the emitters.

@@ -16,8 +16,9 @@
 namespace relief {
 
 /// Computes the maximum length of a step's pieces (ParticleSystem::setSweep()) from the longest step and the fastest
-/// birth so far: half the thickness of the thinnest collider that such a step could pass through, 0 if there is none;
-/// more if a step would otherwise need over StepPass::kSweepPieces pieces. Ignores deforming colliders.
+/// birth so far. The length is 0 if no particle can pass through a collider in one step. Otherwise it is half the
+/// thickness of the thinnest collider that a particle can pass through, plus the particle's radius; it is larger if a
+/// step would need more than StepPass::kSweepPieces pieces. Ignores deforming colliders.
 class SceneSweep {
   public:
     SceneSweep() = default;

@@ -17,12 +17,12 @@
 namespace relief {
 
 /// A BirthFilter. A birth can touch only the nearest surface: a collider, or the ground if it is nearer. Ties go to the
-/// first collider. Ignores the emitter's own collider and deforming colliders. Runs on the CPU with the same containers
-/// on every machine; streamed worlds use their coarse containers.
+/// first collider. Ignores the emitter's own collider and deforming colliders. Runs on the CPU. Uses the coarse
+/// containers of a streamed world, so that births do not depend on which full containers are loaded.
 class TouchFilter {
   public:
-    /// \param loaded   provides the poses at the time of each birth; must outlive the filter. Only PoseKeys may change
-    ///   poses.
+    /// \param loaded   provides the poses at the time of each birth; must outlive the filter. Poses may change only
+    ///   along SceneCollider::keys.
     /// \param emitter  of that scene, with `touching`.
     TouchFilter(const LoadedScene& loaded, const SceneEmitter& emitter);
 

@@ -12,7 +12,7 @@ class TexelRanges {
   public:
     TexelRanges(std::size_t first, std::size_t count);
 
-    /// Allocates a range of at least one texel; nullopt if no free range is long enough.
+    /// Allocates `count` ≥ 1 texels. \return the first of them; nullopt if no free range is long enough.
     [[nodiscard]] std::optional<std::size_t> take(std::size_t count);
     /// Frees a whole range returned by take().
     void give(std::size_t first, std::size_t count);

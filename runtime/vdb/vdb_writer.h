@@ -31,7 +31,7 @@ struct NarrowBand {
     std::vector<float> distance;  ///< one per voxel; negative inside
 };
 
-/// A mesh with anticlockwise faces, seen from outside.
+/// A mesh whose faces are anticlockwise when seen from outside.
 struct GridSurface {
     std::vector<glm::vec3> points;
     std::vector<std::array<std::uint32_t, 3>> triangles;

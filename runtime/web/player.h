@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene that runs in a page: creates it, changes it, draws it, and describes it as JSON.
+// Creates, changes and draws a scene that runs in a page, and describes the scene as JSON.
 #pragma once
 
 #include <deque>
@@ -31,7 +31,7 @@ struct Player {
     std::optional<MeshPicture> meshes;  // created by the first drawPlayerMeshes()
     ParticleStyle style;
     std::vector<ParticleState> read;  // reused buffer
-    FetchedSource* source = nullptr;  // owned by the simulation; null unless the page fetches
+    FetchedSource* source = nullptr;  // owned by the simulation; null unless the page fetches colliders
     std::optional<glm::vec3> eye;     // camera position of the last picture
     std::vector<PointOfInterest> near;
     std::vector<std::string> warnings;  // not returned yet
@@ -45,7 +45,7 @@ struct Player {
         }
         simulation->setPoints(std::move(points));
     }
-    /// Collects the warnings of the simulation and returns their number.
+    /// Appends the simulation's warnings to `warnings`. \return the size of `warnings`.
     int takeWarnings() {
         for (std::string& line : simulation->takeWarnings()) {
             warnings.push_back(std::move(line));
@@ -64,8 +64,10 @@ struct Player {
 /// Parameters as for relief_player_create().
 [[nodiscard]] Result<Player*> createPlayer(const char* text, const char* path, bool shaded, bool fetches);
 
-/// Applies all changes of a scene except those of colliders, capacity, integrator and materials, which fail.
+/// Applies the changes of a scene. Ignores changes of flow and render.atlas.
 /// \param emitters  whether the emitters restart.
+/// Errors: kUsage if the world, capacity, integrator, materials or stream.memory change, or if a collider changes in
+/// more than its pose and clip.
 [[nodiscard]] Result<int> changePlayer(Player& player, const char* text, const char* path, bool emitters);
 
 [[nodiscard]] Result<int> drawPlayer(Player& player, const CameraMatrices& camera,

@@ -4,7 +4,7 @@
 
 namespace relief {
 
-/// Texels per map and per body, and total levels of both grids in a world (bodies/world.glsl).
+/// Texels per map and per body, and total levels of the grids of resting and of moving bodies (bodies/world.glsl).
 inline constexpr int kWorldMapTexels = 9;
 inline constexpr int kWorldBodyTexels = 8;
 inline constexpr int kWorldLevels = 16;

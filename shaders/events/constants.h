@@ -10,10 +10,12 @@ namespace relief {
 enum EventFlag : std::int32_t {
     kEventCollision = 1,
     kEventLasts = 2,  ///< with kEventCollision: there was also contact in the previous step
-    kEventDeath = 4,  ///< by age, or with kEventCollision by the collision
+    kEventDeath = 4,  ///< by the collision if kEventCollision is also set, otherwise by age
 };
 /// The step writes flags + kEventFlags · (direction + kEventDirections · (m + (materials + 1) · (body + 1))), below
-/// 2^24, where m is the index of the material's name + 1, or 0 without a material. Lists store flags + kEventFlags · m.
+/// 2^24. direction: axis and sign of the normal's largest component (step_event.glsl). m: index of the material's
+/// name + 1, or 0 without a material. materials: number of names. body: -1 for the floor. Lists store flags +
+/// kEventFlags · m.
 inline constexpr int kEventFlags = 8;
 inline constexpr int kEventDirections = 6;
 /// Each count sums this many counts of the level below; kEventLevels levels suffice for the largest system.

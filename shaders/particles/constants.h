@@ -26,7 +26,7 @@ enum class Contact : std::uint8_t {
 };
 
 /// The state texture stores the fraction of lifetime lost as the fractional part of the contact, in at least 7 bits for
-/// 65,536 bodies. Values of this size and above mean the whole lifetime.
+/// 65,536 bodies. Fractions of kLostMax and above count as 1.
 inline constexpr float kLostMax = 0.9921875F;
 
 /// Dead particles: their height, out of sight, and their collision count.

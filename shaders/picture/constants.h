@@ -8,7 +8,7 @@ namespace relief {
 inline constexpr int kRadixDigits = 256;
 /// Side of a tile in pixels (tile.glsl).
 inline constexpr int kTileSide = 16;
-/// Words of b_work.
+/// 32-bit words in the buffer b_work (tile.glsl).
 inline constexpr int kTileWords = 7;
 /// Maximum entries per tile; they are painted in a millisecond.
 inline constexpr int kTileEntriesMax = 1 << 16;
