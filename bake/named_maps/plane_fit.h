@@ -5,13 +5,13 @@
 // candidate is pushed towards the viewer until no sampled surface point lies in front of it, and is rounded so that
 // this remains true. The candidate with the least free space behind it wins:
 //
-//       viewer            A texel is outside in front of its plane, and inside behind it. A pushed plane never
+//       viewer            In front of its plane a texel is outside, behind it inside. A pushed plane never
 //      | | | | |          misclassifies the solid behind a sampled surface point. The fit minimises the space between
-//     --.-----.-- plane   plane and surface, which is wrongly inside. Other maps that see this space correct it, so
+//     --.-----.-- plane   plane and surface, which is wrongly inside. Other maps correct it where they see it, so
 //       |\   /|            additional views can only help.
 //      surface
 //
-// Both ends of a map are fitted in the same way, from the start of their rays.
+// The far surfaces of a map are fitted in the same way, along reversed rays.
 #pragma once
 
 #include <cstdint>
@@ -43,11 +43,11 @@ struct PlaneFitOptions {
     double pixel_cost = 0.0;  ///< mean free space per ray, in u, below which the fit stops
     bool cautious = false;    ///< the rays around the footprint constrain all planes, not only steep ones
     int refinements = 3;      ///< rounds of search among neighbouring normals; 0: none
-    /// Moves planes inwards by this fraction of the spread of the sampled points around them, in exchange for more free
-    /// space. Has no effect at steps, where the spread exceeds `span`/4.
+    /// Moves planes inwards by this fraction of the sampled points' spread; more free space, but also solid, is then
+    /// outside. Has no effect at steps, where the spread exceeds `span`/4.
     double inward_shift = 0.0;
-    /// Maximum distance of a point of the texel from its nearest ray, in texel diagonals. A plane whose normal has a
-    /// cosine below rays_apart with the rays drops by more than the diagonal between two rays.
+    /// Maximum distance of a point of the texel from its nearest ray, in texel diagonals. At a normal-ray cosine below
+    /// rays_apart, a plane drops by more than a texel diagonal over that distance.
     double rays_apart = 0.0;
     /// Rays start in free space. If false, a ray without a hit may be entirely in the solid.
     bool starts_free = true;

@@ -15,7 +15,7 @@ namespace relief {
 /// Groups corners of the same vertex that share a mitre.
 class CornerFans {
   public:
-    /// Splits fans of joined corners whose common mitre would leave a side thin, and cuts the sheet there.
+    /// Splits fans of joined corners whose common mitre would thin the shell, and cuts the sheet there.
     explicit CornerFans(Sheet& sheet);
 
     /// Per corner, the lowest corner that shares its mitre.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Classifies the parts of a mesh and builds the solid that is baked. Parts are connected by edges (equal positions
-// count as one vertex) between triangles of one kind:
+// Classifies the parts of a mesh and builds the solid that is baked. A part is connected by edges (equal positions
+// count as one vertex) and has one ShapeAs:
 //
 //   solid             closed
-//   solid with holes  open, but few rays escape from behind its surface, or cut off at the bottom: holes are closed
+//   solid with holes  open, but cut off at the bottom, or few rays escape from behind its surface: holes are closed
 //   sheet             visible from outside on both sides: becomes a shell (sheet.h)
 //   terrain           a height field that covers its rectangle: becomes the ground below it
 //
@@ -37,9 +37,9 @@ struct ShapeReport {
     std::uint64_t solids_with_holes = 0;
     std::uint64_t sheets = 0;
     std::uint64_t closable_sheets = 0;  ///< large sheets that would be solids if their holes were closed
-    /// Open shells within another shell, with rims too far apart to join; the space inside is solid.
+    /// Open parts in another one, but with rims too far apart to join them; the inside is filled.
     std::uint64_t unjoined_shells = 0;
-    /// Walls of two joined shells that may also be a clothed body: see isAmbiguous() in walls.h.
+    /// Walls of two joined shells that may be a character in clothes: isAmbiguous() in walls.h.
     std::uint64_t ambiguous_walls = 0;
     std::uint64_t terrains = 0;
     std::uint64_t voids = 0;  ///< sealed by sheets, and filled
@@ -49,7 +49,7 @@ struct ShapeReport {
     std::uint64_t near_copies = 0;
     double thickness = 0.0;          ///< of the thickest shell, object units; 0: no shells
     double thickness_min = 0.0;      ///< of the thinnest shell
-    double default_thickness = 0.0;  ///< the base of each part's thickness; 0: --thickness was given
+    double default_thickness = 0.0;  ///< each sheet adapts it; 0: --thickness given, or no shells
 
     /// "2 solids, 1 sheet"; empty if no shapes were made.
     [[nodiscard]] std::string text() const;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lists the events of a step on the GPU, and reads them back to the CPU some steps later.
 //
-// The step writes the event of each particle into two textures (shaders/events/step_event.glsl). On either step path,
+// The step writes the event of each particle into two textures (shaders/events/step_event.glsl). On either StepPath,
 // fragment shaders build each list with a histogram pyramid of kEventLevels levels (Ziegler et al. 2006): a texel of a
 // level sums kEventsPerCount counts of the level below, and texel k of the list descends the levels to event k.
 #pragma once

@@ -20,7 +20,7 @@ struct EventOptions {
     float min_speed = 0.0F;  ///< ignores slower hits; world units/s, ≥ 0
     /// 1…ParticleSystem::kCapacityMax. Further events, those with the highest indices, are dropped.
     std::uint32_t max_per_step = 65'536;
-    std::optional<std::uint32_t> type{};  ///< only events of this type
+    std::optional<std::uint32_t> type{};  ///< only this particle type
     std::optional<int> material{};        ///< only hits on this material, see ParticleEvent::material
     friend bool operator==(const EventOptions&, const EventOptions&) = default;
 };

@@ -12,7 +12,7 @@ const isTable = (value) => value !== null && typeof value === "object" && !Array
 /** Converts a scene to JSON. Non-finite numbers become strings, which the reader rejects with their key. */
 const jsonOf = (scene) => JSON.stringify(scene, (key, value) => {
     if (typeof value === "function" || typeof value === "symbol") {
-        throw new ReliefError(`a scene can contain numbers, strings, booleans, lists and tables, but no ${String(value)}`);
+        throw new ReliefError(`a scene can contain numbers, strings, booleans, lists and tables, but no ${typeof value}`);
     }
     return ArrayBuffer.isView(value) ? [...value] : typeof value === "number" && !Number.isFinite(value) ? String(value) : value;
 });

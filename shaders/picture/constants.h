@@ -13,7 +13,7 @@ inline constexpr int kTileWords = 7;
 /// Maximum entries per tile; they are painted in a millisecond.
 inline constexpr int kTileEntriesMax = 1 << 16;
 
-/// Texels before the keys in a row of looks, and texels per key.
+/// Texels before the keys in a row of u_looks, and texels per key.
 inline constexpr int kLookHeadTexels = 3;
 inline constexpr int kLookKeyTexels = 2;
 
