@@ -13,7 +13,7 @@ namespace relief {
 struct PatchConstants {
     glm::vec4 row[3] = {};  ///< object space to map space
     glm::vec4 size{0.0F};   ///< edge of a root cell; number of root cells along x, y and z
-    glm::ivec4 place{0};    ///< first texel; texels from root to root along y and z; levels below the roots
+    glm::ivec4 place{0};    ///< first texel; stride of roots along y and z, texels; levels below the roots
 };
 static_assert(sizeof(PatchConstants) == 80);
 

@@ -74,8 +74,8 @@ class DistanceVolume {
 
     /// Returns the range that clamps no value of the grid.
     [[nodiscard]] static double fullRange(const DistanceGrid& grid);
-    /// Returns the range of a narrow band: `reach` plus a voxel's diagonal, which clamps no node of a voxel within
-    /// `reach` of the surface. The lookup has the same signs as with the full range, except for rounding.
+    /// Returns the range of a narrow band: `reach` plus a voxel's diagonal, at most fullRange(). It clamps no node of a
+    /// voxel within `reach` of the surface. The lookup has the same signs as with the full range, except for rounding.
     [[nodiscard]] static double bandRange(const DistanceGrid& grid, double reach);
 
     [[nodiscard]] FieldValue at(const glm::vec3& p) const;

@@ -29,8 +29,9 @@ class SheetTruth {
     [[nodiscard]] std::optional<bool> inside(const glm::vec3& p) const;
 
     /// Draws area-weighted points of the sheets, and moves each along the normal by at most the thickness.
-    /// TruthPoint::distance is ±1, for the side. Omits points that are outside all sheets but inside the solid, if the
-    /// solid has other parts or voids. The result does not depend on the number of threads.
+    /// TruthPoint::distance is ±1, for the side. Omits points for which inside() is nullopt, and points that are outside
+    /// all sheets but inside the solid, if the solid has other parts or voids. The result does not
+    /// depend on the number of threads.
     /// \param solid  query of the shaped mesh.
     [[nodiscard]] std::vector<TruthPoint> sample(const MeshQuery& solid,
                                                  const AccuracyOptions& options) const;

@@ -105,7 +105,7 @@ class GltfBuffers {
     GltfBuffers(const GltfChunks& chunks, ImportFiles& files) : chunks_(chunks), files_(files) {}
 
     /// Returns the view that the member `bufferView` of `from` references. Errors: kInvalidInput, kUnsupported (another
-    /// compression).
+    /// compression, or those of unpackMeshopt()).
     [[nodiscard]] Result<GltfView> view(const GltfValue& from);
 
   private:

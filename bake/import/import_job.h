@@ -36,7 +36,7 @@ inline constexpr std::array<std::string_view, 8> kLengthUnits{"m", "cm", "mm", "
 struct SourceFrame {
     std::optional<double> metres;  ///< per unit of the file
     std::optional<UpAxis> up;
-    /// The file's coordinates are left-handed: its z is negated.
+    /// The file is left-handed; assimp has already negated z.
     bool mirrored = false;
     /// An invalid unit or axis in the file, as a clause: "its unit is -1 m". "": none.
     std::string unit_fault{};
@@ -90,7 +90,7 @@ struct ImportLimits {
     std::uint64_t triangles = 20'000'000;
 };
 
-/// Excludes `names`, which have options of their own.
+/// Excludes `names` and `materials`, set elsewhere.
 void fields(FieldVisitor& visit, ImportOptions& options);
 void fields(FieldVisitor& visit, ImportLimits& limits);
 

@@ -18,7 +18,7 @@ namespace relief {
 ///
 /// The header OFF is optional and may have the prefixes ST, C and N. The counts of vertices, faces and, optionally,
 /// edges follow. Vertices and faces may span several lines. The rest of their last line, usually colours, is skipped.
-/// Several vertices or faces may share a line if the counts in the header then match. Faces that share a line have no
+/// A line may hold several vertices or faces if the header's counts fit this reading. Faces that share a line have no
 /// colours; vertices that share a line have as many numbers after their coordinates as the prefixes require.
 [[nodiscard]] Result<PolygonMesh> readOff(std::span<const std::byte> bytes);
 

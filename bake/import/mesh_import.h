@@ -27,7 +27,7 @@ namespace relief {
 /// names. Skinned glTF meshes get the pose of the file's nodes; skinned meshes of other formats and morphed meshes keep
 /// their modelled shape, with a warning. Reads only regular files below the mesh's folder (import_files.h).
 /// Errors, each naming the file: kIo (missing, a folder, not readable), kUnsupported (format or feature), kInvalidInput
-/// (malformed, no triangles, or as for finishMesh), kUsage (a name that no triangle has), kLimit.
+/// (malformed, no triangles, or as for finishMesh), kUsage (an unmatched entry of `names`), kLimit.
 [[nodiscard]] Result<TriangleMesh> importMesh(const std::filesystem::path& path,
                                               const ImportOptions& options = {});
 

@@ -92,8 +92,8 @@ class MeshQuery {
     /// Whether no void meets the box. Conservative: may return false for a box that meets none.
     [[nodiscard]] bool awayFromVoids(const glm::dvec3& low, const glm::dvec3& high) const;
 
-    /// Returns a counter of the bodies that contain `p`. To follow a path from `p`, pass bodyOf() each crossed triangle
-    /// to cross(). On open meshes, the counter at the end of the path can differ from inside().
+    /// Returns a counter of the bodies that contain `p`. To follow a path from `p`, call BodyCounter::cross()
+    /// with the bodyOf() of each crossed triangle. On open meshes, the counter at the end can differ from inside().
     [[nodiscard]] BodyCounter bodiesAt(const glm::vec3& p) const;
     /// The body of a triangle: 0 if the winding number decides, else the number of a body that uses parity.
     [[nodiscard]] std::uint32_t bodyOf(std::uint32_t triangle) const {

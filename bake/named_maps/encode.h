@@ -30,12 +30,11 @@ class NormalTable {
     std::vector<NormalIndex> table_;
 };
 
-/// Encodes rows of a map from the hits of both ends (empty for an end that the map does not keep), on the calling
-/// thread.
+/// Encodes rows of a map from the hits of each RayEnd (empty if the map does not keep it), on the calling thread.
 ///
 /// Normals are those of the triangles, towards the free space in which the ray started. If a ray may start inside,
-/// surfaces hit from their inner side are omitted. A cube whose centre lies on the surface stores the centre as the
-/// surface for such a ray instead: everything behind the centre is inside.
+/// surfaces hit from their inner side are omitted. If a cube's centre is on the surface, a ray that hits an inner side
+/// stores the centre instead: everything behind it is inside.
 /// \return the number of texels with a surface.
 std::uint64_t encodeRows(const RayScene& scene, const NormalTable& normals, const View& view,
                          const RowRange& rows, std::span<const Hit> near_hits, std::span<const Hit> far_hits,

@@ -47,7 +47,7 @@ struct PlaneFitOptions {
     /// outside. Has no effect at steps, where the spread exceeds `span`/4.
     double inward_shift = 0.0;
     /// Maximum distance of a point of the texel from its nearest ray, in texel diagonals. At a normal-ray cosine below
-    /// rays_apart, a plane drops by more than a texel diagonal over that distance.
+    /// rays_apart, a plane drops by more than about a texel diagonal over that distance.
     double rays_apart = 0.0;
     /// Rays start in free space. If false, a ray without a hit may be entirely in the solid.
     bool starts_free = true;

@@ -31,7 +31,8 @@ void fields(FieldVisitor& visit, const WorldBakeJson& report);
 
 // --- Check.
 
-/// Returns the worse of gradeOf(accuracy.all) and the grade of the parts: poor if any is lost, fair if any is coarse.
+/// Returns the worse of gradeOf(accuracy.all) and the grade of the parts: poor if accuracy.lost is not empty, fair
+/// if accuracy.coarse > 0.
 [[nodiscard]] Verdict verdictOf(const WorldAccuracy& accuracy, const std::string& unit);
 
 /// Returns the contents of the world, and its accuracy. \param accuracy  null without a level.

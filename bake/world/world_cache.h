@@ -17,7 +17,7 @@ namespace relief {
 /// Returns the options of a request that affect the bytes of a container, as words of a command line.
 [[nodiscard]] std::vector<std::string> cacheOptions(const BakeRequest& request, std::uint32_t compress);
 
-/// The file names of the containers of one mesh: `front`, the name of a tile, `back`.
+/// The file names of the containers of one mesh: `front` + name of a tile + `back`.
 struct ContainerNames {
     std::string front;
     std::string back;
@@ -38,7 +38,7 @@ struct ContainerNames {
 void copyContainerInfo(const Collider& from, std::span<const std::byte> bytes, WorldColliderResult& collider);
 
 /// Finds the colliders of a mesh in the folder of a world.
-/// \param whole  the result of the mesh, with the file of the whole mesh.
+/// \param whole  copied to each result; `file` is names.fileOf("").
 /// \param expected  the entry of the mesh, without outputs.
 /// \return empty unless all are up to date.
 [[nodiscard]] std::vector<WorldColliderResult> upToDate(const std::filesystem::path& folder,

@@ -48,7 +48,7 @@ struct WorldAccuracy {
     std::vector<std::size_t> worst;    ///< bodies with misclassified points, worst first, at most ten
     std::vector<WorldPlace> places;    ///< of `worst`, in the same order
     std::vector<LostParts> lost;       ///< meshes that lose parts, in the order of the level
-    std::size_t coarse = 0;            ///< number of meshes with coarse parts that are not in `lost`
+    std::size_t coarse = 0;            ///< meshes not in `lost` whose coarse parts lower the grade
     IgnoredParts ignored;              ///< of all meshes; sizes in world space
     std::vector<std::string> warnings;
     std::vector<std::string> dependencies;  ///< files that the level references

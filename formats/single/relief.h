@@ -27,8 +27,8 @@
  * Optional macros for the implementation:
  *     RELIEF_MALLOC(bytes), RELIEF_FREE(pointer)   replace malloc and free; define both
  *     RELIEF_NO_STDIO                              omits relief_load()
- *     RELIEF_UNPACKED_MAX                          maximum bytes of unpacked texels (default: 64 MiB), or 16 times the
- *                                                  size of the container if that is larger
+ *     RELIEF_UNPACKED_MAX                          maximum bytes that a compressed container may unpack to (default:
+ *                                                  64 MiB), or 16 times the size of the container if that is larger
  *
  * The C API of Relief's library is a different header, relief_runtime.h. A program can use both, in different files. */
 #ifndef RELIEF_H

@@ -31,7 +31,7 @@ struct CurlNoise {
 
     float amplitude = 0.0F;  ///< root mean square speed, object units/s, ≥ 0; 0: no noise
     /// Approximate radius of the largest eddies, object units, > 0. The RMS of an octave's velocity derivatives is 5.4 ·
-    /// its RMS speed / scale. Lattice edges are 1.10 and 1.27 scales long.
+    /// its RMS speed / its own scale. Lattice edges are 1.10 and 1.27 scales long.
     float scale = 1.0F;
     int octaves = 2;  ///< 1 … kOctavesMax; each has half the size, speed and lifetime of the previous one
     /// Object units/s, ≥ 0. An eddy is replaced every size / drift seconds.

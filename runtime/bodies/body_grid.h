@@ -56,8 +56,9 @@ struct BodyGrid {
 
     /// Builds a grid.
     /// \param boxes  finite unless unbounded.
-    /// \param cell_size  cell size relative to the longest side of a body, rounded up by less than a factor of 2, or
-    /// more if a coordinate would exceed 1e9 cells. Smaller cells give shorter lists but more entries.
+    /// \param cell_size  cell size relative to the longest side of a body, rounded up by less than a factor of 2;
+    /// larger if a coordinate would exceed 1e9 cells, or if the body's level is merged into a coarser one. Smaller
+    /// cells give shorter lists but more entries.
     [[nodiscard]] static BodyGrid of(std::span<const BodyBox> boxes, float cell_size);
 };
 

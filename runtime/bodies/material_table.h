@@ -15,8 +15,8 @@ namespace relief {
 /// Materials of one body; must match materials.glsl.
 struct MaterialHead {
     glm::vec4 cube{0.0F};  ///< lowest corner, object space, and 1 / side
-    /// x, y: texel indices of the first material (0: none) and of the top grid; z, w: log2 of the number of cells along
-    /// the cube and along the top grid.
+    /// x, y: texel indices of the first material (0: none) and of the top grid; z, w: log2 of the cells per side of the
+    /// cube in the full octree and in the top grid.
     glm::ivec4 grids{0};
 };
 

@@ -34,8 +34,8 @@ void fields(FieldVisitor& visit, FlowFile& flow);
 inline constexpr float kFlowSpeedMax = 1e6F;
 
 /// Reads a flow from an untrusted file.
-/// Errors, with the file name: kIo; kInvalidInput (wrong file size; a velocity that is not finite or above
-/// kFlowSpeedMax); kLimit (see FlowField).
+/// Errors, with the file name: kIo; kUsage (components other than 2 or 3; those of checkFlow()); kInvalidInput (wrong
+/// file size; a velocity that is not finite or above kFlowSpeedMax); kLimit (see FlowField).
 [[nodiscard]] Result<FlowField> loadFlow(const FlowFile& file);
 
 }  // namespace relief

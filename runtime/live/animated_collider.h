@@ -10,8 +10,8 @@
 //                 walker.update(textures, 0);
 //                 particles.step(dt);
 //
-// The maps cover the largest extent of any pose, not the whole path. The box has a constant size. On the GPU its centre
-// is the origin of object space; placed() accounts for this offset.
+// The maps cover the largest extent of any pose, not the whole path. The box has a constant size. On the GPU its
+// centre, middle(), is the origin; placed() accounts for this offset.
 #pragma once
 
 #include <cstdint>

@@ -107,7 +107,8 @@ class ParticleSystem {
     [[nodiscard]] Result<void> setForces(const Forces& forces);
     /// Sets the particle types. Birth::type is an index into them; larger values use the last one.
     /// Errors: kUsage (none or more than kParticleTypesMax, a number that is not finite, a mass below kParticleMassMin,
-    /// a negative radius, restitution or friction outside 0…1, unknown bits in collides_with).
+    /// a negative radius, friction threshold or lifetime loss, restitution or friction outside 0…1, unknown bits in
+    /// collides_with).
     [[nodiscard]] Result<void> setTypes(std::span<const ParticleType> types);
     [[nodiscard]] Result<void> setType(const ParticleType& type) { return setTypes({&type, 1}); }
     /// Sets the sweep length, world units. If above 0, a step tests its path in pieces of at most this length and never

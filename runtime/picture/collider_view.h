@@ -42,7 +42,7 @@ struct LightRays {
 /// Sets the uniforms of light.glsl; leaves the program current.
 void setLightUniforms(const GlProgram& program, const ColliderView& view, const LightRays& rays);
 
-/// The first pass traces every kCoarseStride-th ray of a row or column.
+/// A coarse first pass traces one ray per kCoarseStride² pixels.
 inline constexpr GLsizei kCoarseStride = 4;
 
 /// Sets the uniforms of trace.glsl; leaves the program current.

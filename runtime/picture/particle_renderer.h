@@ -72,7 +72,7 @@ class ParticleRenderer {
     /// \param path      kCompute: paint by compute shaders (tile_painter.h) if the depth of the target is a plain
     ///                  texture, with equal results except for rounding. kAuto: kCompute on GPUs whose drivers compile
     ///                  it. Normally picturePath() of the path of the particle system.
-    /// Errors: kUnsupported (kCompute without compute shaders), kFailure (shader compiler).
+    /// Errors: kUnsupported (kCompute without compute shaders), kFailure (shader compiler), kLimit (out of memory).
     [[nodiscard]] static Result<ParticleRenderer> create(const std::optional<ColliderView>& collider,
                                                          StepPath path = StepPath::kAuto);
 
@@ -82,8 +82,8 @@ class ParticleRenderer {
     /// \param behind  for style.soft_distance: window depths of a picture with the same camera and size, not attached
     ///                to the target, such as ColliderRenderer::depth(). Null: style.soft_distance has no effect.
     /// Errors: kUsage (looks, see packLooks(); a stretched look with Sprite::kPoint; an invalid soft_distance; a camera
-    /// that is not finite), kUnsupported, kFailure (shader compiler), kLimit (out of memory for the light around the
-    /// collider).
+    /// that is not finite), kUnsupported, kFailure (shader compiler), kLimit (out of memory for the looks, or for
+    /// the light around the collider).
     Result<void> draw(const ParticleSystem& particles, const CameraMatrices& camera,
                       const ParticleStyle& style, const RenderTarget& target, const ParticleOrder& order = {},
                       const GlTexture* behind = nullptr);

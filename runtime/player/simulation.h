@@ -55,7 +55,7 @@ class Simulation {
     /// keeps all particles. Capacity, integrator and colliders must be unchanged, except poses. A collider moves from
     /// its old pose to the new one during the next step; the pose of a single collider in object space has no effect.
     /// \param emitters  replace the current ones; nullopt: keep them.
-    /// Errors: those of the setters of ParticleSystem.
+    /// Errors: those of the setters of ParticleSystem, setAir(), waitEvents() and relief::setEvents().
     [[nodiscard]] Result<void> change(std::optional<std::vector<Emitter>> emitters);
 
     /// Passes the events of each step to `sink`, in order, starting with the next step. Events of step n are passed
@@ -78,8 +78,8 @@ class Simulation {
     /// Returns the warnings since the last call: those of the scene (LoadedScene::warnings), and one line for each
     /// collider of a streamed world that failed to load.
     [[nodiscard]] std::vector<std::string> takeWarnings();
-    /// Returns the number of births of emitters and [[spawn]] rejected by the capacity, a full event list or
-    /// SpawnSettings::max_per_step.
+    /// Returns the number of due births of emitters and [[spawn]] that were rejected, for example because of the
+    /// capacity, a full event list or SpawnSettings::max_per_step.
     [[nodiscard]] std::uint64_t rejected() const { return rejected_; }
     /// Sets the points around which a streamed world has full detail, in addition to the emitters and instead of the
     /// scene's camera. Takes effect with the next step.

@@ -41,7 +41,8 @@ struct LoadedScene {
     /// Colliders of the world, in its order; coarse colliders if the scene has a [stream].
     std::vector<std::shared_ptr<const Collider>> world_colliders;
     ContainerLimits limits;  ///< for colliders that are read later
-    /// Colliders of the scene, in its order. Entries of the same file point to the same Collider.
+    /// Colliders of the scene, in its order. Entries of the same file share one Collider, except colliders that deform
+    /// or play clips; with a [stream], tables and the world do not share.
     std::vector<std::shared_ptr<const Collider>> colliders;
     /// Per collider: its mesh if it deforms; its entry in `colliders` then has maps without texels.
     std::vector<std::optional<LiveMesh>> live;

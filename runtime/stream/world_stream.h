@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A world whose colliders are streamed to the GPU on demand. Their coarse colliders are always resident, so that no
 // particle falls through. A thread loads the full maps. Each update uploads a limited number of bytes. If there is no
-// room, it evicts the full maps that no point of interest needs, the least recently needed first.
+// room, it evicts full maps that no point of interest needs, or that do not fit beside nearer needed ones, the least
+// recently needed first.
 //
 //     auto world = *WorldStream::open("level/world.json", {.gpu_bytes = 64 << 20});
 //     particles.setCollider(&world->textures());
@@ -34,13 +35,13 @@ namespace relief {
 
 struct StreamOptions {
     std::uint64_t gpu_bytes = std::uint64_t{256} << 20;     ///< for all texels, including coarse colliders
-    std::uint64_t upload_bytes = std::uint64_t{128} << 10;  ///< copied per update, at least 8
+    std::uint64_t upload_bytes = std::uint64_t{128} << 10;  ///< limit per update, at least 8
     /// Maximum number of colliders in memory that are being loaded or wait for their upload, at least 1.
     std::size_t under_way = 2;
 };
 
 struct StreamCounts {
-    std::size_t wanted = 0;       ///< streamed colliders that intersect the ball of a point
+    std::size_t wanted = 0;       ///< streamed colliders that a point of interest needs
     std::size_t present = 0;      ///< wanted colliders that are resident with full maps
     std::size_t failed = 0;       ///< colliders that could not be loaded
     std::uint64_t gpu_bytes = 0;  ///< total resident

@@ -64,10 +64,12 @@ struct Player {
 /// Parameters as for relief_player_create().
 [[nodiscard]] Result<Player*> createPlayer(const char* text, const char* path, bool shaded, bool fetches);
 
-/// Applies the changes of a scene. Ignores changes of flow and render.atlas.
+/// Applies the changes of a scene. Ignores changes of flow and render.atlas, and of the deform settings, resolution and
+/// colours of colliders.
 /// \param emitters  whether the emitters restart.
-/// Errors: kUsage if the world, capacity, integrator, materials or stream.memory change, or if a collider changes in
-/// more than its pose and clip.
+/// Errors: kUsage if the world, number of colliders, capacity, integrator, materials, stream.memory or the presence of
+/// [stream] change; if a collider changes in more than position, axis, angle and clip; or if a collider moves that has
+/// keys, or is the only one and neither has a pose nor deforms.
 [[nodiscard]] Result<int> changePlayer(Player& player, const char* text, const char* path, bool emitters);
 
 [[nodiscard]] Result<int> drawPlayer(Player& player, const CameraMatrices& camera,

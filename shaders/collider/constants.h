@@ -17,7 +17,7 @@ enum MapFlag : std::int32_t {
 /// A step evaluates this many maps of a collider without a loop, and the others in a loop.
 inline constexpr int kUnrolledMaps = 8;
 
-/// Shader storage binding of the block ReliefMaps (maps.glsl) if collider_tour.glsl evaluates the collider.
+/// Shader storage binding of the block ReliefMapsStorage (maps.glsl) if collider_tour.glsl evaluates the collider.
 inline constexpr int kTourStorage = 0;
 
 }  // namespace relief

@@ -15,7 +15,7 @@ struct ReliefCollider {
     vec4 row_y;
     vec4 row_z;
     vec4 size;    // edge of a root cell; number of root cells along x, y and z
-    ivec4 place;  // index of the first texel; texels from root to root along y and z; levels below the roots
+    ivec4 place;  // index of the first texel; stride of roots along y and z, texels; levels below the roots
 };
 struct ReliefSurface {
     vec3 normal;     // outwards, of unit length; zero outside the root cells

@@ -17,7 +17,7 @@ struct ReliefCollider {
     float4 row_y;
     float4 row_z;
     float4 size;   // edge of a root cell; number of root cells along x, y and z
-    int4 place;    // index of the first texel; texels from root to root along y and z; levels below the roots
+    int4 place;    // index of the first texel; stride of roots along y and z, texels; levels below the roots
 };
 struct ReliefSurface {
     float3 normal;   // outwards, of unit length; zero outside the root cells

@@ -11,7 +11,7 @@ struct ReliefCollider {
     row_y: vec4f,
     row_z: vec4f,
     size: vec4f,   // edge of a root cell; number of root cells along x, y and z
-    place: vec4i,  // index of the first texel; texels from root to root along y and z; levels below the roots
+    place: vec4i,  // index of the first texel; stride of roots along y and z, texels; levels below the roots
 }
 struct ReliefSurface {
     normal: vec3f,  // outwards, of unit length; zero outside the root cells
