@@ -93,7 +93,7 @@ struct FieldSample {
 /// The data that a simulation step needs: inside or outside, and the normal if inside.
 struct InsideSample {
     bool inside = false;
-    glm::vec3 normal{0.0F};  ///< of the inside vote closest to 0; zero if the point is outside
+    glm::vec3 normal{0.0F};  ///< of the inside vote whose distance is closest to 0; zero if outside
     /// Inside: the map of that vote. Outside: the first map that classifies the point as outside, or −1.
     int map = -1;
 };
@@ -102,7 +102,8 @@ struct InsideSample {
 /// outside. The first element of Collider::maps should be the map that decides most often.
 [[nodiscard]] InsideSample evaluateInside(const Collider& collider, const glm::vec3& p);
 
-/// Returns a box that contains the solid, from the volumes of maps that enclose it; nullopt if no map does.
+/// Returns a box that contains the solid: the intersection of the volumes of maps that enclose it; nullopt if no map
+/// does.
 [[nodiscard]] std::optional<Bounds> insideBox(const Collider& collider);
 /// Returns a box that contains Collider::bounds and, if there is one, insideBox(). The solid of ground extends below
 /// `bounds`.

@@ -25,7 +25,7 @@ inline constexpr double kObjectPerMapTolerance = 1e-3;  ///< relative error of o
 // All Results fail with kInvalidInput, or with kLimit for too many texels. Messages name the field and its value.
 // Functions for one map do not name the map; callers add it with inMap().
 
-/// Returns problems of bounds (first), unit, provenance and materials.
+/// Returns the problems of the bounds, which come first, and of the unit, provenance and materials.
 [[nodiscard]] std::vector<Issue> descriptionIssues(const Collider& collider);
 
 /// Validates a map except its texels, which may be missing.
@@ -40,7 +40,7 @@ inline constexpr double kObjectPerMapTolerance = 1e-3;  ///< relative error of o
 /// Prefixes an error with the index of its map.
 [[nodiscard]] Error inMap(std::size_t index, const Error& error);
 
-/// Returns the name that containers store for a mesh, which also names its file in the folder render.meshes of a scene:
+/// Returns the name that containers store for a mesh, and that its file in the folder render.meshes of a scene has:
 /// cleanUtf8() with '_' for '/' and '\', because node names may look like paths; truncated to kMeshNameMax bytes.
 [[nodiscard]] std::string storedMeshName(std::string name);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stores the samples from which a ground tree is built, and height ranges in a quadtree over the squares between them.
+// Stores the samples for building a ground tree, and a quadtree of height ranges over the squares between samples.
 // A cell of the quadtree is called a column: it has the outline of a stack of cells of the ground tree.
 #pragma once
 

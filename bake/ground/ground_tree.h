@@ -16,9 +16,9 @@
 //
 // Every stored height differs from its sample by at most half a code step of its leaf. 255 steps span the range of the
 // leaf's 25 samples plus a 512th of the leaf's side; this span is rounded up by at most a sixteenth. The same bound
-// holds for the surface, because both surfaces are bilinear between the samples. Neighbouring leaves differ by at most
-// the sum of their bounds. Squares that rise by more than kSteepest times their side are the exception: there the
-// surface may be displaced sideways by up to kAside times the side.
+// holds for the surface, because the stored and the true surface are both bilinear between the samples. Neighbouring
+// leaves differ by at most the sum of their bounds. Squares that rise by more than kSteepest times their side are the
+// exception: there the surface may be displaced sideways by up to kAside times the side.
 #pragma once
 
 #include <cstdint>

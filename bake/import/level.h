@@ -21,10 +21,10 @@ inline constexpr std::size_t kLevelMeshesMax = 4096;
 inline constexpr std::size_t kLevelBodiesMax = 65'536;
 
 struct Level {
-    std::string name;  ///< file name
+    std::string name;  ///< name of the file or folder
     std::string unit;  ///< "m" or ""
-    /// After finishMesh(), each in its own space. `content_hash` covers positions and triangles. Any two differ in
-    /// geometry, marks or materials.
+    /// After finishMesh(), each in its own space. `content_hash` covers positions and triangles. No two meshes are
+    /// equal in geometry, TriangleMesh::marks and materials.
     std::vector<TriangleMesh> meshes;
     std::vector<LevelBody> bodies;          ///< in file order; every mesh has at least one
     std::vector<std::string> dependencies;  ///< as in TriangleMesh
@@ -63,14 +63,14 @@ class LevelMeshes {
 /// Imports a file as importLevelInWorker() does. In a folder, imports each mesh file as one mesh without a
 /// transform, sorted by name; skips other files and subfolders.
 /// \param path  a file or a folder.
-/// Errors: those of importLevelInWorker; for a folder also kUsage (names), kInvalidInput (no mesh file, or only some
-/// with a unit), kLimit.
+/// Errors: those of importLevelInWorker; for a folder also kUsage (ImportOptions::names is not empty), kInvalidInput
+/// (no mesh file, or only some with a unit), kLimit.
 [[nodiscard]] Result<Level> importLevel(const std::filesystem::path& path, const ImportOptions& options = {},
                                         const ImportLimits& limits = {});
 
 /// Splits a level into its meshes, finishes them, and merges equal ones. Skips meshes without area and their bodies,
 /// with a warning.
-/// \param all        with name and hash; its lists of meshes and bodies are untrusted.
+/// \param all        with a name; its lists of meshes and bodies are untrusted.
 /// \param materials  as in LevelMeshes::add().
 /// Errors, without the file path: kInvalidInput (inconsistent lists, or no mesh left).
 [[nodiscard]] Result<Level> splitLevel(TriangleMesh all, bool materials = true);

@@ -31,7 +31,7 @@ using Field = std::function<std::optional<FieldValue>(const glm::vec3&)>;
 /// \param collider  borrowed.
 [[nodiscard]] Field nearestFieldOf(const Collider& collider);
 
-/// Misclassified points, as percentages of all points of their kind.
+/// Misclassified points, as percentages of all points measured.
 struct WrongPercent {
     double false_inside = 0.0;   ///< points that are outside in truth
     double false_outside = 0.0;  ///< points that are inside in truth
@@ -55,12 +55,12 @@ struct InsideAccuracy {
 
 struct FieldAccuracy {
     WrongPercent near;     ///< points near the surface
-    WrongPercent uniform;  ///< points in the box
-    /// |f − true signed distance| over points near the surface with a distance, object units. The 99th percentile uses
-    /// the nearest rank.
+    WrongPercent uniform;  ///< points in the mesh's box
+    /// |f − true signed distance| over points near the surface with a known distance, object units. The 99th percentile
+    /// uses the nearest rank.
     double distance_mean = 0.0;
     double distance_p99 = 0.0;
-    double far_percent = 0.0;      ///< points near the surface that are outside without a distance
+    double far_percent = 0.0;      ///< points near the surface with the distance kFarOutside
     double unknown_percent = 0.0;  ///< points near the surface without a value
     /// Angle between the normals of field and surface, in degrees, over the surface points that are not buried and
     /// where the field has a normal.

@@ -21,13 +21,14 @@ inline constexpr double kPartCoarse = 10.0;
 inline constexpr double kPartLost = 25.0;
 
 /// Minimum length of a lost part that counts, as a fraction of the asset's diagonal: about twice the standard deviation
-/// of points near the surface. In metres, at most kNoticeableMetres, because a person notices a brick on a landscape.
-/// Smaller parts and coarse parts count if they make more than kGoodPercent of these points wrongly outside.
+/// of the offset of points near the surface. If the unit is metres, at most kNoticeableMetres, because a person notices
+/// a brick on a landscape. Smaller lost parts and coarse parts count if together they make more than kGoodPercent of
+/// the points near the surface wrongly outside.
 inline constexpr double kNoticeableShare = 0.01;
 inline constexpr double kNoticeableMetres = 0.1;
 /// A lost part may exist with a slightly different surface. It is therefore tested again at this distance, a fraction
 /// of the minimum length above, and counts only if it is lost there, too. The distance is about half the standard
-/// deviation of points near the surface. Default shells extend beyond small sheets by less than this distance.
+/// deviation above. Default shells extend beyond small sheets by less than this distance.
 inline constexpr double kNoticeableExcess = 0.25;
 
 }  // namespace relief

@@ -15,7 +15,7 @@ namespace relief {
 
 struct SelfCheck {
     WrongPercent wrong;                  ///< near the surface
-    std::optional<PartsAccuracy> parts;  ///< set if there are several
+    std::optional<PartsAccuracy> parts;  ///< set if there are several parts
 };
 
 /// Measures with 4000 points near the surface, and at most 64 near each of the 1024 largest parts.

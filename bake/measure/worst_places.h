@@ -35,21 +35,22 @@ struct WorstPlace {
     Bounds box;                         ///< of its wrong points
     std::uint64_t points = 0;           ///< number of wrong points
     double contribution_percent = 0.0;  ///< of all wrong points near the surface
-    double false_inside_percent = 0.0;  ///< of its points: wrongly classified as inside
+    double false_inside_percent = 0.0;  ///< of its wrong points: classified as inside
     int map = -1;                       ///< the map that decides its points most often; −1: no map votes
-    double map_percent = 0.0;           ///< of its points: decided by that map
+    double map_percent = 0.0;           ///< of its wrong points: decided by that map
     /// Longer side of that map's texels at `position`, object units; 0 without a map.
     double texel = 0.0;
     WrongCause cause = WrongCause::kTexel;  ///< the most frequent cause of its points
-    double cause_percent = 0.0;             ///< of its points: wrong due to that cause
+    double cause_percent = 0.0;             ///< of at most 200 of its wrong points: due to that cause
 
     /// Object units.
     [[nodiscard]] double size() const { return box.longestSide(); }
 };
 
-/// Finds the places with the most wrong points near the surface, in descending order. A place is a cell of 3 % of the
-/// longest side, with connected cells at most three cells away: those with at least a quarter as many wrong points, and
-/// their neighbours. The result does not depend on the number of threads.
+/// Finds the places with the most wrong points near the surface, in descending order. A place starts at its worst
+/// cell, a cube with 3 % of the mesh's longest side. It grows over neighbouring cells with at least a quarter as many
+/// wrong points, up to three cells away, and includes the neighbours of these cells within that distance. The result
+/// does not depend on the number of threads.
 /// \param query   of the mesh of `samples`.
 /// \param sights  of the collider's maps, in the baked mesh.
 /// \param count   maximum number of places.

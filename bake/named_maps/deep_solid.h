@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Deep solid: points around which the whole cross-section of the texel is solid. No plane may cut them off.
 //
-// The rays of a footprint end at the surface. A steep plane cuts far deeper, where no ray detects the lost solid. This
-// test therefore intersects a few lines along the texel with the solid. A ball around P with the texel's diagonal as
-// its radius covers the texel's cross-section:
+// The rays that sample a texel (plane_fit.h) end at the surface. A steep plane cuts far deeper, where no ray detects
+// the lost solid. This test therefore intersects a few lines along the texel with the solid. A ball around P with the
+// texel's diagonal as its radius covers the texel's cross-section:
 //
 //     |‾‾|‾‾‾‾‾‾|‾‾|      If one of the lines is outside anywhere in the ball, P is not deep, and may be cut off
 //     |  |  .P  |  |      to improve the points near the surface.
@@ -47,7 +47,7 @@ class DeepSolid {
 
     /// Sets up the lines of texel_.
     void place();
-    /// The depths of a half-space on the corner rays: up to a depth, or from a depth on.
+    /// The half-space contains points of the corner rays only at depths up to `up_to`, or from `from` on.
     struct Reach {
         double up_to;
         double from;

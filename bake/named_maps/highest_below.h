@@ -2,9 +2,9 @@
 // Finds the plane that lies below all points of a set and has the highest mean over them. This is the supporting plane
 // of a texel (plane_fit.h) whose rays are parallel and all hit a surface.
 //
-// The plane contains the facet of the points' lower convex hull on the vertical line through their mean, the origin.
-// The search starts from three points whose triangle contains the origin. While some point is below their plane, the
-// lowest such point replaces one of the three (the dual simplex method):
+// The lower convex hull of the points has a facet on the vertical line through their mean, the origin. The plane
+// contains this facet. The search starts from three points whose triangle contains the origin. While some point is
+// below their plane, the lowest such point replaces one of the three (the dual simplex method):
 //
 //      ·       ·
 //        \   ·          · points, heights upwards

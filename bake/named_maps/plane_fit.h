@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fits supporting planes: the planes that texels store if the map's decode is "plane".
+// Fits supporting planes: the planes that texels store if DepthMap::decode is Decode::kPlane.
 //
 // A block of rays samples the footprint of a texel. Candidate planes have normals of the sampled surfaces. Each
 // candidate is pushed towards the viewer until no sampled surface point lies in front of it, and is rounded so that
@@ -7,7 +7,7 @@
 //
 //       viewer            In front of its plane a texel is outside, behind it inside. A pushed plane never
 //      | | | | |          misclassifies the solid behind a sampled surface point. The fit minimises the space between
-//     --.-----.-- plane   plane and surface, which is wrongly inside. Other maps correct it where they see it, so
+//     --.-----.-- plane   plane and surface, which is wrongly inside. Other maps that see this space correct it, so
 //       |\   /|            additional views can only help.
 //      surface
 //

@@ -47,7 +47,7 @@ struct PatchNode {
     bool split = false;
     bool turned = false;   ///< a single surface has the outside below it
     bool walls = true;     ///< the inside lies between the surfaces of a pair
-    bool in_void = false;  ///< a node without triangles lies in a void
+    bool in_void = false;  ///< a node without triangles lies in a void (struct Voids)
     DepthPlanes planes = DepthPlanes::kNone;
     /// Weighted error of each shape that was tried: volume, object units cubed.
     std::array<double, kPatchShapes.size()> errors;

@@ -16,7 +16,7 @@ namespace relief {
 
 inline constexpr std::size_t kEnclosureProbes = 512;
 
-/// How well a mesh encloses its inside. Probes are points spread evenly over the surface. Opposite pairs of rays
+/// How well a mesh encloses its inside. Probes are points spread evenly over the surface. Pairs of opposite rays
 /// classify both sides of each probe by crossing parity.
 struct Enclosure {
     double one_sided =
@@ -49,8 +49,8 @@ using BorderLoop = std::vector<BorderStep>;
 /// precision. Keeps name, hash and bounds. A hole is a loop of odd edges (mesh_edges.h) that visits no vertex twice.
 ///
 /// Returns the mesh unchanged if it is closed or not nearly closed: a terrain, a sheet, or a bowl without thickness, up
-/// to half a sphere. About one ray in seven may lead out through a hole. Also returns it unchanged if the caps would
-/// swap parts of inside and outside, as with panels whose seams do not meet.
+/// to half a sphere. In a nearly closed mesh, at most about one ray in seven leads out through a hole. Also returns the
+/// mesh unchanged if the caps would swap parts of inside and outside, as with panels whose seams do not meet.
 /// \param probes  number of test points on the surface, and in the box; fewer suffice for a small part of a mesh.
 /// Errors: those of MeshQuery::build.
 [[nodiscard]] Result<PreparedMesh> closeHoles(const PreparedMesh& mesh,

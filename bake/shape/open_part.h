@@ -40,7 +40,7 @@ struct OpenPart {
 struct ClosedPart {
     std::optional<PreparedMesh> mesh;
     bool balanced = true;  ///< Part::balanced
-    bool is_body = true;   ///< a body, possibly cut off at its foot; false: a vessel
+    bool is_body = true;   ///< a body such as a statue, possibly cut off at its foot; false: a vessel
 };
 
 /// Closes a part. Returns no mesh if the holes cannot be closed, or if the result encloses nothing.

@@ -20,7 +20,7 @@ namespace relief {
 [[nodiscard]] std::string percentText(double percent);
 /// "41.3 %" for 0.413.
 [[nodiscard]] std::string fractionText(double share);
-/// "1 hole", "3 holes". \param plural  if not `what` with an s: "vertices"
+/// "1 hole", "3 holes". \param plural  such as "vertices"; empty: `what` with an s
 [[nodiscard]] std::string countText(std::uint64_t count, std::string_view what, std::string_view plural = {});
 
 /// "m"; "object units" for "".

@@ -244,7 +244,7 @@ constexpr void describeVariant(FieldType& type, const std::variant<Types...>* /*
     };
 }
 
-/// \tparam Given  T, or const T for a value that is only written
+/// \tparam Given  T, or const T for a value that is output but never read from a file
 template <class Given>
 constexpr FieldType describe() {
     using T = std::remove_const_t<Given>;

@@ -43,11 +43,11 @@ enum class FieldForm : std::uint8_t {
     kList,    ///< std::vector, or any contiguous range if write-only
     kOptional,
     kVariant,  ///< write-only
-    kSpan,     ///< FieldSpan; the next four likewise
-    kPair,
-    kMaybe,
-    kFile,
-    kGroup,
+    kSpan,     ///< FieldSpan (formats/base/field.h)
+    kPair,     ///< FieldPair
+    kMaybe,    ///< FieldMaybe
+    kFile,     ///< FieldFile
+    kGroup,    ///< FieldGroup
     kStruct,
     kCustom,  ///< FieldType::custom, or read_form and form_text
 };
@@ -95,7 +95,7 @@ struct FieldType {
     std::string (*form_text)(const void* value) = nullptr;
 };
 
-/// Returns the description of T. Use const T for values that are only written.
+/// Returns the description of T. Use const T for values that are output but never read from a file.
 template <class T>
 [[nodiscard]] const FieldType& fieldType();
 

@@ -13,7 +13,7 @@
 namespace relief {
 
 /// Starts recording events with the next step; nullopt stops recording. Recording is off by default and then costs
-/// nothing. Recompiles the step if recording starts or stops. Pending lists are lost.
+/// nothing. Recompiles the step's shaders if recording starts or stops. Pending lists are lost.
 /// Errors: kUsage (invalid options), kLimit, kUnsupported (too few draw buffers), kFailure.
 [[nodiscard]] Result<void> setEvents(ParticleSystem& particles, const std::optional<EventOptions>& options);
 /// Records several lists, each with its own selection; an event may be in more than one.

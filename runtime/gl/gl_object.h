@@ -135,7 +135,7 @@ void bindPackBuffer(GlBuffer& buffer, GLsizeiptr bytes);
 /// `#version 310 es`, and RELIEF_COMPUTE is defined. Requires hasCompute(). Errors: those of makeProgram.
 [[nodiscard]] Result<GlProgram> makeComputeProgram(std::string_view compute, std::string_view defines = {});
 
-/// Creates a program with only a vertex shader, whose outputs transform feedback writes interleaved, in order. Errors:
+/// Creates a program with only a vertex shader. Transform feedback writes its `outputs` interleaved, in order. Errors:
 /// those of makeProgram.
 [[nodiscard]] Result<GlProgram> makeFeedbackProgram(std::string_view vertex,
                                                     std::span<const char* const> outputs,

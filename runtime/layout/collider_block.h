@@ -33,8 +33,8 @@ struct BlockMap {
 /// Returns the whole block of a single collider, std140: u_relief_count, then the maps.
 [[nodiscard]] std::vector<std::byte> colliderBlock(std::span<const PlacedMap> maps, const MapLayout& layout);
 
-/// Returns lines for makeProgram for a single collider. They exclude code that no map needs, because a GL driver may
-/// execute every branch for every map. A program is therefore specific to a collider.
+/// Returns the `defines` of makeProgram for a single collider. They exclude code that no map needs, because a GL driver
+/// may execute every branch for every map. A program is therefore specific to a collider.
 [[nodiscard]] std::string colliderDefines(std::span<const PlacedMap> maps, const MapLayout& layout);
 /// Returns the lines that both single colliders and worlds need: widths of the textures, formats and flags.
 [[nodiscard]] std::string mapDefines(std::span<const PlacedMap> maps, const MapLayout& layout);

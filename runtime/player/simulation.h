@@ -132,7 +132,7 @@ class Simulation {
     [[nodiscard]] Result<void> makeTextures(const LoadedScene& loaded,
                                             std::unique_ptr<ColliderSource> source);
     [[nodiscard]] WorldTextures& mutableTextures() { return stream_ ? stream_->textures() : *textures_; }
-    /// Moves all clips to a time, in seconds; on error, no clip. Later calls of posesNow() must pass the same time.
+    /// Moves all clips to a time, in seconds; on error, moves none. Later calls of posesNow() must pass the same time.
     [[nodiscard]] Result<void> playClips(double time);
     /// Moves the bodies. A body that jumps does not push particles.
     void setPoses(double time);
