@@ -35,7 +35,7 @@ CLI::App& addVerb(CLI::App& app, CommonOptions& common, const std::string& name,
                   const std::string& description, const std::string& example);
 
 /// Runs `each` for every file. With several files, it logs errors immediately and continues with the next file.
-/// Errors: that of a single file; for several files, the code of the first failure, and the number of failures.
+/// Errors: the error of a single file; for several files, the first error's code and the number of failures.
 [[nodiscard]] Result<void> forEachFile(const std::vector<std::string>& files,
                                        const std::function<Result<void>(const std::string& file)>& each);
 
@@ -61,7 +61,7 @@ void addSlice(CLI::App& app, Action& action);
 void addView(CLI::App& app, Action& action);
 void addExport(CLI::App& app, Action& action);
 
-/// Adds the verbs to an app named "relief". `action` must outlive it.
+/// Adds the verbs to an app named "relief". `action` must outlive the app.
 void defineRelief(CLI::App& app, Action& action);
 
 /// Parses the command line and runs the verb.

@@ -19,7 +19,7 @@ inline constexpr std::uint32_t kEngineTextureWidth = 2048;
 /// Maximum number of texels: 16,384 rows.
 inline constexpr std::size_t kEngineTexelsMax = std::size_t{kEngineTextureWidth} * 16384;
 
-/// Returns the map of patches of a collider with one map.
+/// Returns the patch map of a collider that has no other map.
 /// Errors: kUsage (several maps, or a map of another format).
 [[nodiscard]] Result<const DepthMap*> engineMap(const Collider& collider);
 

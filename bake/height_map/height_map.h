@@ -23,7 +23,7 @@ namespace relief {
 
 inline constexpr std::uint64_t kHeightSamplesMax = std::uint64_t{1} << 28;
 
-/// Opens raw samples without a header. Type, byte order and width are settings, because the file does not state them.
+/// Opens raw samples without a header. `spec` states their type, byte order and width, because the file does not.
 /// \param bytes  untrusted; must outlive the rows.
 /// Errors, without the file name: kInvalidInput (not a whole number of rows or, without a width, not a square).
 [[nodiscard]] Result<std::unique_ptr<SampleRows>> openRawRows(std::span<const std::byte> bytes,
@@ -51,7 +51,7 @@ struct BetterFormat {
 /// Up to three extreme values, lowest or highest, far from all others: the gap is more than half the range.
 struct OutlierSample {
     float sample = 0.0F;  ///< the extreme, as stored in the file
-    float last = 0.0F;    ///< the value next to the gap; equals `sample` if there is only one
+    float last = 0.0F;    ///< the value next to the gap; equals `sample` if it is the only outlier
     bool lowest = false;
     double gap = 0.0;  ///< to the next value, metres
 };
@@ -88,7 +88,7 @@ class HeightMap {
   public:
     /// Reads the file and, for an image, its header. Rows are decoded on demand.
     /// Errors, prefixed with the file: those of readFile; kInvalidInput, kUnsupported (not a supported image); kLimit
-    /// (more than kHeightSamplesMax samples); kUsage (settings that do not apply to the image, or are missing); those
+    /// (more than kHeightSamplesMax samples); kUsage (settings that do not apply to the file, or are missing); those
     /// of openImageRowsInWorker.
     [[nodiscard]] static Result<HeightMap> open(const std::filesystem::path& path, const HeightsSpec& spec,
                                                 const ImportLimits& limits = {});
@@ -109,7 +109,7 @@ class HeightMap {
     [[nodiscard]] BetterFormat betterFormat() const;
     /// Whether the file does not state the format of its samples.
     [[nodiscard]] bool isRaw() const { return !image_; }
-    /// Whether samples map to heights from `low` to `high`.
+    /// Whether samples map to heights from spec().low to spec().high.
     [[nodiscard]] bool hasLow() const { return rows_->most() > 0; }
 
     /// Reads the next row.

@@ -32,7 +32,7 @@ class Canvas {
     [[nodiscard]] double textWidth(const std::string& words) const;
     void circle(double x, double y, double radius, double line, const Color& color);
     /// \param color  returns the colour of a pixel (column, row), from the upper left.
-    /// \param zoom  pixels per image pixel, with sharp edges
+    /// \param zoom  canvas pixels per pixel of the drawn image, with sharp edges
     void image(double x, double y, std::uint32_t width, std::uint32_t height, double zoom,
                const std::function<Color(std::uint32_t, std::uint32_t)>& color);
     /// Encodes the image. Errors: kFailure with Cairo's message.

@@ -36,7 +36,7 @@ struct BakeOptions {
     std::uint32_t resolution = 512;  ///< texels along a side, for maps whose spec has no size
     Quality quality = Quality::kNormal;
     Prefer prefer = Prefer::kNeither;
-    std::uint64_t budget = 0;  ///< limit of patches in bytes, only recorded in the collider; 0: not recorded
+    std::uint64_t budget = 0;  ///< maximum bytes of patches; only recorded in the collider; 0: not recorded
     /// MapSpec::texel for bakePatchesWithin(), object units; bake() ignores it. 0: limited only by the budget.
     float texel = 0.0F;
     std::optional<Bounds> roots_contain{};  ///< PatchOptions::roots_contain
@@ -79,8 +79,8 @@ struct Baked {
 /// Returns a warning if a mesh is more than 1000 times its size away from the origin, else nullopt.
 [[nodiscard]] std::optional<std::string> coarseFloatsWarning(const TriangleMesh& mesh);
 /// Estimates the percentage of points near the surface that are misclassified only because floats are coarse at the
-/// mesh, regardless of the maps. Depends on the spacing of floats at the farthest corner, relative to the standard
-/// deviation of the points' distance from the surface. At most 50.
+/// coordinates of the mesh, regardless of the maps. Depends on the spacing of floats at the farthest corner, relative
+/// to the standard deviation of the points' distance from the surface. At most 50.
 [[nodiscard]] double wrongByFloats(const TriangleMesh& mesh);
 /// Returns whether coarse floats cause more than half of `wrong_percent`, so that more bytes do not help.
 [[nodiscard]] inline bool floatsLimit(const TriangleMesh& mesh, double wrong_percent) {

@@ -22,12 +22,12 @@ class Sight {
     /// Borrows both arguments.
     Sight(const DepthMap& map, const MeshQuery& query);
 
-    /// Returns true if a free line within the volume leads from a start of the map's rays to a point kSurfaceStep in
-    /// front of the surface, so that the map can represent the surface. Always true for patches.
+    /// Returns true if an unobstructed line within the volume leads from a start of the map's rays to a point
+    /// kSurfaceStep in front of the surface, so that the map can represent the surface. Always true for patches.
     [[nodiscard]] bool sees(const SurfacePoint& point) const;
 
-    /// Returns the start of a free line of sight to a point in object space. nullopt: there is none, so even the finest
-    /// texels would not classify the point as outside.
+    /// Returns the start of an unobstructed line of sight to a point in object space. nullopt: there is none, so even
+    /// the finest texels would not classify the point as outside.
     [[nodiscard]] std::optional<glm::dvec3> reaches(const glm::dvec3& p) const;
 
   private:

@@ -22,7 +22,7 @@ struct EmbreeMesh {
     /// Robust, with filter functions per ray. Medium build quality never splits triangles, so a ray hits each at most
     /// once and crossings can be counted.
     std::unique_ptr<RTCSceneTy, Release> scene;
-    /// Embree's coordinates are (p − center) · scale: floats are most precise there, and no product overflows.
+    /// Embree's coordinates are (p − center) · scale: floats are most precise near 0, and no product overflows.
     glm::dvec3 center{0.0};
     double scale = 1.0;  ///< a power of two
 

@@ -92,7 +92,7 @@ void forEachEdge(const std::vector<EdgeUse>& uses, const Visit& visit) {
 struct TriangleNeighbours {
     static constexpr std::uint32_t kNone = 0xffffffff;
     std::vector<glm::uvec3>
-        across;  ///< per triangle and side, from corner i to the next; kNone for other edges
+        across;  ///< per triangle: [i] is across the side from corner i to the next; kNone for other edges
     std::vector<std::array<bool, 3>> same;  ///< both triangles traverse the edge in the same direction
 };
 [[nodiscard]] TriangleNeighbours neighboursOf(const std::vector<EdgeUse>& uses);

@@ -77,8 +77,8 @@ class PreparedMesh {
     [[nodiscard]] const std::vector<OddEdge>& oddEdges() const;
     /// Whether there is no odd edge. Then all rays from a point have the same crossing parity.
     [[nodiscard]] bool closed() const { return oddEdges().empty(); }
-    /// Whether the winding number classifies points, not the parity of ray crossings: in a closed mesh after
-    /// windOutwards if hasSeveralShells(), and in a union if all bodies are 0.
+    /// Whether the winding number, not the parity of ray crossings, classifies points. True for a closed mesh after
+    /// windOutwards if hasSeveralShells(), and for a union if all bodies are 0.
     [[nodiscard]] bool woundShells() const;
     /// Returns −1 if the mesh is closed and inside out (triangles are clockwise seen from outside), else 1. Here,
     /// closed means that the triangles' area vectors sum to zero; the sign is that of the enclosed volume.
@@ -87,8 +87,8 @@ class PreparedMesh {
     /// Returns the Embree scene, which lives as long as any copy of this handle. Errors: those of EmbreeMesh::build.
     [[nodiscard]] Result<const EmbreeMesh*> tree() const;
 
-    /// Returns the mesh after windOutwards. Keeps derived data that the change cannot affect, and all of it if no
-    /// triangle is flipped.
+    /// Returns the mesh after windOutwards. Keeps derived data that the change cannot affect, and all derived data
+    /// if no triangle is flipped.
     /// \param turn  per triangle: swap its second and third corners.
     [[nodiscard]] PreparedMesh woundOutwards(const std::vector<bool>& turn) &&;
     /// The argument of woundOutwards; empty if no triangle was flipped.
@@ -104,7 +104,7 @@ class PreparedMesh {
     [[nodiscard]] PreparedMesh withVoids(Voids voids) &&;
     [[nodiscard]] const Voids& voids() const { return state_->voids; }
 
-    /// Wraps `mesh`, which is this mesh with caps, and keeps whether it is wound outwards.
+    /// Wraps `mesh`, which is this mesh with caps. The result is wound outwards if this mesh is.
     [[nodiscard]] PreparedMesh capped(TriangleMesh mesh) const;
 
   private:

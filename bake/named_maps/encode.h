@@ -30,7 +30,7 @@ class NormalTable {
     std::vector<NormalIndex> table_;
 };
 
-/// Encodes rows of a map from the hits of each RayEnd (empty if the map does not keep it), on the calling thread.
+/// Encodes rows of a map on the calling thread. The hits of a RayEnd are empty if the map does not keep that end.
 ///
 /// Normals are those of the triangles, towards the free space in which the ray started. If a ray may start inside,
 /// surfaces hit from their inner side are omitted. If a cube's centre is on the surface, a ray that hits an inner side

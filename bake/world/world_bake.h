@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bakes a level into a world. Each distinct mesh becomes a container, or several tiles if it is very large
-// (world_tiles.h). Containers that are up to date are kept. The file that places them (formats/world) is written last.
+// (world_tiles.h). Containers that are up to date are kept. The file that places all containers (formats/world) is
+// written last.
 //
 // The file name of a container is its mesh's name and a hash of everything that the container depends on. A bake thus
 // never replaces a container that the previous world references: if anything fails, that world remains intact.

@@ -43,7 +43,7 @@ struct LostParts {
 };
 
 struct WorldAccuracy {
-    WrongPercent all;                  ///< of all points; each body has the same number
+    WrongPercent all;                  ///< of all points; each body has the same number of points
     std::vector<BodyAccuracy> bodies;  ///< in the order of the level
     std::vector<std::size_t> worst;    ///< bodies with misclassified points, worst first, at most ten
     std::vector<WorldPlace> places;    ///< of `worst`, in the same order

@@ -40,13 +40,13 @@ class TemporaryFile {
     [[nodiscard]] int createOnce(const std::filesystem::path& folder, mode_t mode);
 
     Descriptor file_;
-    Descriptor lock_;       // lock of the closed file until it is renamed
+    Descriptor lock_;       // keeps the file locked from fill() to renameTo()
     Slot* slot_ = nullptr;  // entry in the list of names
 };
 
 /// Call at the start of main(). SIGINT, SIGTERM, SIGHUP and SIGQUIT then remove the temporary files before their
-/// default action; a shell reports 128 + n. Ignored signals, as under nohup, stay ignored. SIGXFSZ is ignored so that
-/// the failed write reports EFBIG.
+/// default action; a shell reports 128 + the signal number. Ignored signals, as under nohup, stay ignored. SIGXFSZ is
+/// ignored so that the failed write reports EFBIG.
 void endCleanlyOnSignals();
 
 }  // namespace relief

@@ -6,8 +6,8 @@
 #include <vector>
 
 #define TOML_HEADER_ONLY 1
-// toml++ asserts that a key starts with a valid character, although its next lines report an error otherwise. Hostile
-// files must not abort a debug build.
+// toml++ asserts that a key starts with a valid character, although the code after the assertion reports an error.
+// Hostile files must not abort a debug build.
 #define TOML_ASSERT(expression) static_cast<void>(0)
 #include <toml++/impl/preprocessor.h>
 // toml++ 3.0's character classification marks the no-match case, such as an unquoted é, as unreachable instead of

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Helpers for the fields() of reports, in addition to formats/base/field.h. Reports are never read, so their fields()
-// may visit expressions as well as members.
+// Helpers for the fields() of reports, in addition to formats/base/field.h. Relief never parses reports, so their
+// fields() may visit expressions as well as members.
 #pragma once
 
 #include <cmath>

@@ -54,7 +54,7 @@ struct PolygonMesh {
     /// Counts that are not derived from the polygons: lines, points and free forms.
     MeshParts others;
     std::vector<std::uint8_t>
-        used_by_others;  ///< for each position, 1 if lines or points use it; empty if none are used
+        used_by_others;  ///< for each position, 1 if lines or points use it; empty if they use no position
 };
 
 /// Creates the error "line 12: WHAT", kInvalidInput.

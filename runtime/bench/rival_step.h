@@ -42,8 +42,8 @@ struct Rival {
 class RivalStep {
   public:
     /// Creates a system with one particle per birth of the scene.
-    /// Errors: kUsage (births that are not a multiple of ParticleSystem::kStateWidth, or not of age 0), kUnsupported
-    /// (no compute shaders), kFailure.
+    /// Errors: kUsage (a number of births that is not a multiple of ParticleSystem::kStateWidth, or an age other than
+    /// 0), kUnsupported (no compute shaders), kFailure.
     [[nodiscard]] static Result<RivalStep> create(Rival rival, const BenchScene& scene, StepPath path);
 
     /// Spawns all particles and runs a first step. Keeps no reference to the scene.

@@ -7,8 +7,8 @@
 //
 // Between the two ends of a step, vertices move along straight lines at constant speed. For rotation at ω rad/s at
 // distance r from the axis, positions are off by at most r (ω dt)² / 8 and velocities by r ω² dt / 2. Areas are those
-// at the end of the step. On a stretching surface, some births therefore change triangles if the step length changes;
-// their fraction is of the order of the stretch within a step.
+// at the end of the step. On a stretching surface, some births therefore fall on other triangles if the step length
+// changes; their fraction is of the order of the stretch within a step.
 #pragma once
 
 #include <cstddef>

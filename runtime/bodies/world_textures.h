@@ -63,7 +63,7 @@ class WorldTextures : public ShaderCollider {
     [[nodiscard]] static Result<WorldTextures> create(std::span<const ColliderBody> bodies,
                                                       std::size_t room_texels = 0);
 
-    /// Returns the first reserved texel.
+    /// Returns the index of the first reserved texel.
     [[nodiscard]] std::size_t room() const { return room_; }
     /// Returns the maximum number of patch texels in one texture of this context, including those of the bodies.
     [[nodiscard]] static std::size_t maxTexels();
@@ -109,7 +109,7 @@ class WorldTextures : public ShaderCollider {
   private:
     struct World {
         BodyTable bodies;
-        glm::ivec4 head{0};  // part of the block
+        glm::ivec4 head{0};  // blockHead()
         GlTexture texture;
         GlBuffer upload;
     };
@@ -127,7 +127,7 @@ class WorldTextures : public ShaderCollider {
     std::string defines_;
     std::unique_ptr<World> world_;  // null for a single collider
     std::uint64_t revision_ = 0;
-    MaterialTable materials_;  // without texels
+    MaterialTable materials_;  // `texels` is emptied after the upload
     GlTexture material_texture_;
     std::size_t material_bytes_ = 0;
     std::size_t room_ = 0;

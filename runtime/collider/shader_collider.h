@@ -50,8 +50,8 @@ class ShaderCollider {
     /// Returns the names of all materials, indexed by the numbers that shaders use. Equal names in several colliders
     /// share a number. Empty without materials.
     [[nodiscard]] virtual std::span<const std::string> materialNames() const { return {}; }
-    /// Returns whether a material has a restitution other than 1, a friction or a lifetime loss. If false, only events
-    /// need materials.
+    /// Returns whether a material has a restitution other than 1, or a nonzero friction or lifetime loss. If false,
+    /// only events need materials.
     [[nodiscard]] virtual bool materialsAffectReaction() const { return false; }
     /// Returns lines for makeProgram, after defines(), for shaders that include bodies/materials.glsl.
     [[nodiscard]] virtual std::string materialDefines() const { return {}; }

@@ -35,7 +35,7 @@ class OptionRef {
 
     OptionRef valueText(const std::string& text) const;  ///< the value's name in --help: "OUT.png"
     OptionRef typeName(const std::string& name) const;   ///< the same for a positional argument
-    OptionRef required() const;                          ///< --help does not show it; the help text must
+    OptionRef required() const;                          ///< --help does not show this; the help text must
     OptionRef values(int count) const;                   ///< the number of values of a list
     OptionRef needs(OptionRef other) const;
     OptionRef needs(const std::string& name) const;
@@ -60,7 +60,7 @@ OptionRef addFlag(CLI::App& app, const std::string& names, bool& field, const st
 [[nodiscard]] WordReader number(float least, float most, const std::string& must);
 /// Accepts "1.5" or "1.5%", 0 or more; both set a float field to 1.5.
 [[nodiscard]] WordReader percent();
-/// Accepts one of the words (kWords), for a text field.
+/// Accepts one of `words`, for a text field.
 [[nodiscard]] WordReader oneOf(std::span<const std::string_view> words);
 
 template <class Enum>
@@ -102,8 +102,8 @@ OptionRef addParsed(CLI::App& app, const std::string& names, std::optional<T>& f
         must, help);
 }
 
-/// Default of ContainerLimits::memory in the tools, bytes; a file may exceed it up to 16 times its own size. One map of
-/// 4096 x 4096 texels of eight bytes fits.
+/// Default of ContainerLimits::memory in the tools, bytes. Texels may exceed it up to 16 times the file size. One map
+/// of 4096 x 4096 texels of eight bytes fits.
 inline constexpr std::uint64_t kToolMemory = 160'000'000;
 
 /// Sets limits.memory to kToolMemory, and adds --max-memory, which changes it. `limits` must outlive the app.

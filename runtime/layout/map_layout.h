@@ -49,7 +49,7 @@ class TexelLayout {
     [[nodiscard]] std::size_t texels() const;                      ///< total number of texels added
     /// Returns the i-th rectangle added.
     [[nodiscard]] const TexelRectangle& rectangle(std::size_t i) const { return rectangles_[i]; }
-    /// Returns the row-major index of its texel (0, 0).
+    /// Returns the row-major index of the rectangle's texel (0, 0).
     [[nodiscard]] std::size_t index(const TexelRectangle& r) const {
         return (static_cast<std::size_t>(r.y) << log2_width_) + static_cast<std::size_t>(r.x);
     }

@@ -70,8 +70,8 @@ class ParticleRenderer {
     /// Needs a current context, as draw() does.
     /// \param collider  shades the particles; nullopt: no shading.
     /// \param path      kCompute: paint by compute shaders (tile_painter.h) if the depth of the target is a plain
-    ///                  texture, with equal results except for rounding. kAuto: kCompute on GPUs whose drivers compile
-    ///                  it. Normally picturePath() of the path of the particle system.
+    ///                  texture; pictures differ only by rounding. kAuto: kCompute on GPUs whose drivers compile the
+    ///                  compute shaders. Normally picturePath() of the path of the particle system.
     /// Errors: kUnsupported (kCompute without compute shaders), kFailure (shader compiler), kLimit (out of memory).
     [[nodiscard]] static Result<ParticleRenderer> create(const std::optional<ColliderView>& collider,
                                                          StepPath path = StepPath::kAuto);

@@ -18,7 +18,8 @@ namespace relief {
 /// another output. \param guard  records the input and the outputs.
 /// Errors: those of FileGuard; kUnsupported (no OpenVDB).
 [[nodiscard]] Result<void> checkOutputs(const PlayerOptions& options, FileGuard& guard);
-/// Like checkOutputs(), for all files that the scene names (allFilesOf()) and the numbered outputs of its frames.
+/// Like checkOutputs(), for all files that the scene names (allFilesOf()) and the numbered files of --frames and
+/// --dump-frames.
 [[nodiscard]] Result<void> checkFrames(const PlayerOptions& options, const LoadedScene& loaded,
                                        FileGuard& guard);
 

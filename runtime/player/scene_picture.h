@@ -22,7 +22,7 @@ namespace relief {
 class ScenePicture {
   public:
     /// Needs a current context, as draw() does.
-    /// \param loaded, textures  must outlive this. \param path  of the depth sort.
+    /// \param loaded, textures  must outlive this. \param path  of the depth sort; the particles use picturePath(path).
     /// Errors: those of loadAtlas, loadColliderMesh and the renderers.
     [[nodiscard]] static Result<ScenePicture> create(const LoadedScene& loaded, const WorldTextures& textures,
                                                      StepPath path);
