@@ -46,7 +46,8 @@ enum class Decode : std::uint8_t { kProjected = 0, kPlane = 1 };
 [[nodiscard]] const char* decodeName(Decode decode);  ///< "projected" or "plane"
 
 /// An affine transform as three rows: result i = dot(row[i].xyz, p) + row[i].w,
-/// evaluated as x·p.x + (y·p.y + (z·p.z + w)). Shaders do the same; for orthographic maps, their x and y are in texels.
+/// evaluated as x·p.x + (y·p.y + (z·p.z + w)). Shaders do the same, but with x and y in texels for
+/// orthographic maps.
 struct Affine {
     glm::vec4 row[3] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
 

@@ -17,10 +17,11 @@ enum class GroundSample : std::uint8_t { kNear, kSeam, kAnywhere };
 class GroundStrata {
   public:
     GroundStrata(std::uint64_t squares, std::uint64_t samples, std::uint64_t seed, GroundSample kind);
-    /// Whether a draw remains whose square is before `square`.
+    /// Returns true if draws remain and the current draw lies in a square before `square`.
     [[nodiscard]] bool before(std::uint64_t square) const { return next_ < samples_ && square_ < square; }
     [[nodiscard]] std::uint64_t square() const { return square_; }
-    /// The current draw: x and z in its square, and height in its range, each in [0, 1).
+    /// The position of the current draw: x and z as fractions of the square, and height as a fraction of its range,
+    /// each in [0, 1).
     [[nodiscard]] const std::array<double, 3>& place() const { return place_; }
     void advance();
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads the contents of a glTF file: nodes (hierarchy, transforms, visibility), meshes (triangles, positions, joint
-// weights, morph targets), skins and animations. Errors name the place in the document, not the file.
+// weights, morph targets), skins and animations. Errors name the place in the document, but not the file.
 #pragma once
 
 #include <cstddef>
@@ -51,15 +51,15 @@ struct GltfNode {
                                                                          const GltfNode& node,
                                                                          std::vector<std::string>& warnings);
 
-/// Checks the version and the required extensions. \param warnings  receives kAnimatedVisibility if it applies. Errors:
-/// kInvalidInput, kUnsupported.
+/// Checks the version and the required extensions. \param warnings  receives kAnimatedVisibility if animations show or
+/// hide nodes. Errors: kInvalidInput, kUnsupported.
 [[nodiscard]] Result<void> checkGltf(const GltfValue& document, std::vector<std::string>& warnings);
 
 /// Reads all nodes, in file order. Errors: kInvalidInput, also if the nodes do not form trees or, with
 /// HiddenMode::kSkip, if a node is a lower level of detail of itself.
 [[nodiscard]] Result<std::vector<GltfNode>> readGltfNodes(const GltfValue& document, HiddenMode hidden);
 
-/// Returns the root nodes of the default scene, or of the first one. Errors: kInvalidInput.
+/// Returns the root nodes of the default scene, or of the first scene if none is the default. Errors: kInvalidInput.
 [[nodiscard]] Result<std::vector<std::uint32_t>> gltfRoots(const GltfValue& document,
                                                            const std::vector<GltfNode>& nodes);
 
@@ -135,7 +135,8 @@ class GltfMeshes {
     [[nodiscard]] MeshParts counts(std::size_t meshes) const;
 
   private:
-    /// Location of vertex data in the file. Accessors do not identify data: exporters write many for the same bytes.
+    /// Location of vertex data in the file. Exporters write many accessors for the same bytes, so an accessor does
+    /// not identify data.
     using Key = std::tuple<std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t, bool, std::uint64_t>;
     struct Vertices {
         std::vector<glm::vec3> positions;

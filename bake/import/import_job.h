@@ -71,8 +71,8 @@ struct ImportOptions {
     /// Length unit of the source, one of kLengthUnits; the mesh is converted to metres. "": the file's unit. If the
     /// file has none, lengths are unchanged and the mesh's unit is "".
     std::string unit;
-    /// Up axis of the source; the mesh is rotated so that it becomes +Y. nullopt: the file's axis. If the file has
-    /// none, axes are unchanged.
+    /// Up axis of the source; the mesh is rotated so that this axis becomes +Y. nullopt: the file's axis. If the
+    /// file has none, axes are unchanged.
     std::optional<UpAxis> up;
     HiddenMode hidden = HiddenMode::kSkip;
     /// Names that mark triangles (TriangleMesh::marks): of nodes, including their descendants, of meshes, of materials,
@@ -108,7 +108,7 @@ struct ImportJob {
     std::string file_name;  ///< without its folder
     std::string extension;  ///< lower case, without the dot
     std::span<const std::byte> bytes;
-    int folder = -1;  ///< descriptor, or -1
+    int folder = -1;  ///< descriptor of the file's folder; -1: no other files can be read
     ImportOptions options;
     std::uint64_t triangle_max = kTriangleMax;  ///< ImportLimits::triangles
     ImportKind kind = ImportKind::kMesh;

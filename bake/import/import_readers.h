@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Declares the readers of mesh formats. The parts of the glTF reader have their own headers, and so do the readers that
 // the runtime shares (formats/polygons).
-// Errors name the line of a text file, not the file: kInvalidInput, kLimit, kUnsupported.
+// Errors: kInvalidInput, kLimit, kUnsupported. Messages give the line in a text file, but not the file name.
 #pragma once
 
 #include <cstddef>
@@ -32,8 +32,8 @@ namespace relief {
 
 /// Reads AC3D, as text, including TORCS's extensions: triangle strips, normals and multiple textures.
 ///
-/// Each object becomes a node with its kids below it; its surfaces become one part per material. Line primitives are
-/// skipped and subdivision is not applied, both with a warning. The contents of `data` are ignored.
+/// Each object becomes a node with its child objects below it; its surfaces become one part per material. Line
+/// primitives are skipped and subdivision is not applied, both with a warning. The contents of `data` are ignored.
 [[nodiscard]] Result<ImportScene> readAc3d(const ImportJob& job);
 
 /// Reads all other formats with assimp. Throws std::bad_alloc.

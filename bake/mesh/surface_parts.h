@@ -39,7 +39,8 @@ struct SurfaceParts {
     /// Per triangle of the baked solid, its part; kNoLabel for caps over holes.
     std::vector<std::uint32_t> part_of;
 
-    /// Adds a connected piece of a mesh. Its triangles of each label become a part.
+    /// Adds a connected piece of a mesh. Its triangles with the same value in TriangleMesh::labels become one
+    /// part.
     void add(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles, PartKind kind);
 };
 

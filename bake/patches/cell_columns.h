@@ -67,7 +67,7 @@ struct CellPlane {
 [[nodiscard]] std::array<MeshCell, 8> childrenOf(const MeshQuery& query, const MeshCell& cell,
                                                  std::span<const UnitTriangle> triangles);
 
-/// A square of `across` × `across` lines through the unit cube along one frame, with the data that all cells share.
+/// `across` × `across` lines through the unit cube along w of a PatchFrame, and their data that are equal in all cells.
 /// Rows are ordered by v. A row interleaves its four quarters: the first line of each quarter, then the second of each,
 /// and so on. Fits can thus process four lines at once (lanes.h), even if the four lie between different heights
 /// of the patch.

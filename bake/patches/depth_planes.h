@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Depth planes: planes that a leaf stores for points deep inside the mesh. A leaf gets them if its own plane, or that
-// of the split cell above, does not belong to the nearest face. Leaves beside a flat face get them if the plane of the
-// split cell above is tilted relative to that face.
+// Depth planes: planes that a leaf stores for points deep inside the mesh. A leaf gets depth planes if its own plane,
+// or the plane of the split cell above, does not belong to the face nearest to these points. A leaf beside a flat face
+// gets depth planes if the plane of the split cell above is tilted relative to that face.
 #pragma once
 
 #include <array>
@@ -36,7 +36,7 @@ struct DepthGain {
     [[nodiscard]] double worth() const { return volume / bytes; }
 };
 
-/// The depth planes of the leaves of one split cell, or of a root.
+/// The depth planes of the leaves directly below one split cell, or of one unsplit root.
 struct FamilyGains {
     std::vector<DepthGain> gains;
     double rest = 0.0;  ///< upper bound of DepthGain::worth() of all planes not in `gains`

@@ -29,8 +29,8 @@ class LeafFitter {
     void tryWorth(PatchNode& node, double byte) const;
     /// Chooses the first shape that represents the surface, in ascending order of bytes, pairs last. A shape represents
     /// the surface if the points at distance `within` from the surface are on their correct side, and the misclassified
-    /// volume is at most half of `within` times the area of a side of the cell. If no shape does, chooses the cheapest
-    /// for the given worth of a byte.
+    /// volume is at most half of `within` times the area of a side of the cell. If no shape does, chooses the shape
+    /// with the lowest misclassified volume plus `byte` times its bytes.
     /// \param within  object units.
     /// \return whether the leaf represents the surface; true for a node without triangles.
     bool hold(PatchNode& node, double within, double byte) const;

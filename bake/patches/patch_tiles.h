@@ -41,8 +41,8 @@ struct PatchTile {
 /// \return the tiles, x fastest; a single tile without texels if the tree is not cut (then use `whole`).
 [[nodiscard]] std::vector<PatchTile> cutIntoTiles(const DepthMap& whole, const PatchTileOptions& options);
 
-/// Returns a tree of some roots with all their descendants. The texels are identical to those of `whole` if it is from
-/// encodePatches() and the range contains all its roots.
+/// Returns a tree of a range of roots with all their descendants. The texels are identical to those of `whole` if
+/// encodePatches() returned `whole` and the range contains all roots.
 /// \param whole  a valid map of patches.
 /// \param count  number of roots along each axis; the range must lie within the roots of `whole`.
 [[nodiscard]] DepthMap cutPatches(const DepthMap& whole, const glm::uvec3& first, const glm::uvec3& count);

@@ -23,7 +23,7 @@ struct BakeCacheEntry {
     std::vector<std::string> options;  ///< RecipeJob::options
     std::vector<InputFile> inputs;     ///< relative to the recipe's folder; the mesh first
     std::string output_hash;           ///< XXH3-128
-    std::uint64_t output_bytes = 0;    ///< including the containers
+    std::uint64_t output_bytes = 0;    ///< including the containers of a world
     /// For a world: the XXH3-128 of its containers, by their names in its folder.
     std::map<std::string, std::string> containers = {};
     std::optional<double> wrong_percent = {};  ///< as measured by its bake

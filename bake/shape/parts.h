@@ -23,7 +23,7 @@ struct Part {
     bool manifold = true;                  ///< every edge has two triangles
 };
 
-/// Returns the parts, ordered by lowest triangle.
+/// Returns the parts, ordered by their first triangle.
 /// \param kinds  per triangle; empty: all of one kind. An edge between two kinds is a border of both.
 [[nodiscard]] std::vector<Part> partsOf(const TriangleMesh& mesh, const MeshEdges& edges,
                                         std::span<const ShapeAs> kinds = {});
@@ -44,7 +44,8 @@ struct Part {
                                                    const std::vector<glm::uvec3>& triangles,
                                                    const glm::dvec3& center);
 
-/// Maximum distance between near copies, in units of the larger part's longest side: the minimum shell thickness.
+/// Maximum distance between near copies, as a fraction of the larger part's longest side. Equals the limit in
+/// checkShellThickness().
 inline constexpr double kCopyReach = 1e-4;
 
 struct NearCopies {

@@ -39,8 +39,8 @@ template <class T>
 
 /// Returns a Markdown table | key | meaning | default | range | with its header. Omits nested tables.
 [[nodiscard]] std::string markdownTable(const std::vector<FieldReference>& fields);
-/// Returns one Markdown table for the tables `names` in `fields`, and the tables nested in them. The first key of each
-/// is prefixed with the table's name: "`[camera]` `position`".
+/// Returns one Markdown table for the tables `names` in `fields`, and for the tables nested in them. The first key of
+/// each table is prefixed with the table's name: "`[camera]` `position`".
 [[nodiscard]] std::string markdownTables(const std::vector<FieldReference>& fields,
                                          std::span<const std::string_view> names);
 /// Returns a JSON Schema of the file. \param place  JSON pointer to this schema: "#" for the whole file.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Turbulence: the curl of a random potential. It is divergence-free, so particles neither cluster nor thin out.
-// Settings of shaders/air/curl_noise.glsl.
+// Parameters of shaders/air/curl_noise.glsl.
 //
 // The potential is noise on the simplex lattice (K. Perlin, 2001; S. Gustavson, "Simplex noise demystified", 2005): the
 // sum of contributions from the four corners of a simplex. A corner contributes (a + b × d)(1/2 - |d|²)³ / 6, where d

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The broad phase of a world: finds the bodies that a point may be in. Independent of GL.
 //
-// Each body is assigned to a level by the size of its box; cell sizes are powers of 2. It is inserted into the cells of
-// that level that its oriented box intersects. The cells of a level are hashed into a power-of-two table of lists:
+// Each body is assigned to a level by the size of its box; cell sizes are powers of 2. The body is inserted into
+// those cells of its level that its oriented box intersects. The cells of a level are hashed into a power-of-two table
+// of lists:
 //
 //     floor(p / cell size)  ──hash──▶  list [first, end)  ──▶  entries: body, hash of its cell
 //

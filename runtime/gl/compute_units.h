@@ -55,10 +55,11 @@ class StorageUnits {
     StorageUnits(const StorageUnits&) = delete;
     StorageUnits& operator=(const StorageUnits&) = delete;
 
-    /// Creates a buffer with undefined contents. Leaves it bound to the target.
+    /// Creates a buffer with undefined contents. Leaves it bound to GL_SHADER_STORAGE_BUFFER.
     [[nodiscard]] static GlBuffer make(GLsizeiptr bytes);
     static void bind(GLuint unit, const GlBuffer& buffer);
-    /// Orders passes: later passes see the stores of earlier passes and do not overwrite data that those still read.
+    /// Orders passes: later passes see the stores of earlier passes, and do not overwrite data that earlier passes
+    /// still read.
     static void order();
 
   private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The data that ColliderTextures uploads, as bytes, for pages. Independent of GL.
+// The data that ColliderTextures uploads, as bytes, for HTML pages (runtime/page). Independent of GL.
 #pragma once
 
 #include <array>
@@ -35,7 +35,7 @@ struct GpuTexture {
 struct GpuImage {
     std::array<GpuTexture, kTexelKinds> textures;  ///< indexed by TexelKind
     std::vector<std::byte> block;                  ///< ReliefMaps, std140
-    std::string defines;                           ///< lines to compile collider.glsl with
+    std::string defines;                           ///< #define lines for collider.glsl
 };
 
 /// Returns the textures of placed maps. The texels and the motion of live maps are zero.
@@ -47,7 +47,8 @@ struct GpuImage {
 /// Errors: kUnsupported (no maps), kLimit (a texture would exceed side_max).
 [[nodiscard]] Result<GpuImage> gpuImage(const Collider& collider, std::int32_t side_max = 16384);
 
-/// Returns whether a map uses this kind of texel. Unused textures have one texel with arbitrary contents.
+/// Returns whether a map uses this kind of texel. The texture of an unused kind is one texel, whose contents
+/// do not matter.
 [[nodiscard]] bool isUsed(const Collider& collider, TexelKind kind);
 
 }  // namespace relief

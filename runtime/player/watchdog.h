@@ -10,8 +10,8 @@
 namespace relief {
 
 /// A timer that must be fed while the GPU works. When it expires, it prints "PROGRAM: error: the GPU …" and ends the
-/// process with exit code 4 without running destructors, which could hang in the driver, too. Only one may exist at a
-/// time.
+/// process with exit code 4 without running destructors, which could hang in the driver, too. Only one Watchdog may
+/// exist at a time.
 class Watchdog {
   public:
     /// \param limit  maximum time between feed() and the next feed() or rest(); 0: no limit. If the system has no timer

@@ -42,7 +42,7 @@ struct LoadedScene {
     std::vector<std::shared_ptr<const Collider>> world_colliders;
     ContainerLimits limits;  ///< for colliders that are read later
     /// Colliders of the scene, in its order. Entries of the same file share one Collider, except colliders that deform
-    /// or play clips; with a [stream], tables and the world do not share.
+    /// or play clips; with a [stream], a collider table that names a file does not share it with the world.
     std::vector<std::shared_ptr<const Collider>> colliders;
     /// Per collider: its mesh if it deforms; its entry in `colliders` then has maps without texels.
     std::vector<std::optional<LiveMesh>> live;
@@ -73,8 +73,8 @@ inline constexpr std::size_t kOverlapMax = 1024;
 
 /// Reads a scene (.toml) and every file that it names, or a collider (.relief) or world (.json), which gets the default
 /// scene. Needs no context.
-/// Errors: those of the readers and of makeEmitters(). Errors of files that a scene names start with its line and
-/// column.
+/// Errors: those of the readers and of makeEmitters(). Errors of files that a scene names start with the line and
+/// column in the scene.
 [[nodiscard]] Result<LoadedScene> loadAll(const std::filesystem::path& input,
                                           const SceneOverrides& overrides);
 /// Loads the files of a parsed scene. \param input  name of the scene in messages.

@@ -14,7 +14,7 @@
 
 namespace relief {
 
-/// The source of vertices: a file, the clip of the collider, or its waves.
+/// The source of vertices: a file, the collider's clip (ScenePlay), or its waves (SceneLive).
 enum class MeshMotion : std::uint8_t { kNone, kPlayed, kLive };
 
 /// An instance of a mesh. A world mesh that was cut into several colliders is drawn once.
@@ -32,8 +32,8 @@ struct DrawnMeshes {
 
 /// Returns the files of render.meshes for the colliders of the scene, sorted, without reading them. The file of a world
 /// collider is named storedMeshName() of its mesh; the file of another collider has the name of its container.
-/// Colliders that deform need no file: they are drawn as the mesh that deforms.
-/// \param loaded  with render.meshes.
+/// Colliders that deform or play clips need no file: their own moving mesh is drawn.
+/// \param loaded  its scene must set render.meshes.
 /// Errors: kInvalidInput (no such file; a link to a file outside the folder; a mesh without a name).
 /// Messages start with the place in the scene.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> drawnFiles(const LoadedScene& loaded);

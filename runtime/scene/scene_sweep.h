@@ -36,7 +36,7 @@ class SceneSweep {
     /// Accounts for births that do not come from emitters.
     void add(const Scene& scene, std::span<const Birth> births);
 
-    /// Returns the sweep of a step: collision.sweep if the scene sets it.
+    /// Returns the maximum length of a step's pieces: collision.sweep if the scene sets it, else the computed length.
     /// \param warnings  receives one line, once, if thin colliders can still be passed through: the number of these
     ///                  colliders, the thinnest, and the fix.
     [[nodiscard]] float lengthFor(float dt, const Scene& scene, std::vector<std::string>& warnings);
@@ -56,7 +56,7 @@ class SceneSweep {
     std::vector<Body> bodies_;
     std::vector<std::map<float, float>> groups_;  // per group: highest speed by particle radius
     float longest_ = 0.0F;                        // longest step, seconds
-    float half_ = 0.0F;    // half the thickness of the thinnest collider; 0: all are thicker than a step
+    float half_ = 0.0F;    // half the smallest sum of thickness and diameter; 0: no step exceeds this sum
     float speed_ = 0.0F;   // highest speed at colliders thinner than a step
     bool fitted_ = false;  // half_ and speed_ are up to date
     bool warned_ = false;
