@@ -21,7 +21,8 @@ struct MapInspection {
     PartState state = PartState::kUnreadable;
     std::optional<DepthMap> frame;  ///< without texels; set if valid
     std::optional<PayloadInfo> payload;
-    /// Fraction of texels with a surface (at least one in front-back maps), 0…1; 1 for patches. Set if they are valid.
+    /// Fraction of texels with a surface (at least one in front-back maps), 0…1; 1 for patches.
+    /// Set if the texels are valid.
     std::optional<double> coverage;
 };
 

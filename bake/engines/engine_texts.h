@@ -5,7 +5,7 @@
 
 namespace relief {
 
-/// Returns a text that embed.cmake lists, by its path in the project; empty if there is none.
+/// Returns the text of a file that embed.cmake embeds; empty for other files. \param path  in the project.
 [[nodiscard]] std::string_view engineText(std::string_view path);
 
 }  // namespace relief

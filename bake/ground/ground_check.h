@@ -4,8 +4,8 @@
 //
 //        y  |        . outside      points near the surface: side, and distance to the
 //           |    .  /  \            collider's surface along y
-//           |\_____/ .  \___        points anywhere: side, within the depth that must be solid,
-//           |  . inside     |       including outside the edges and above holes
+//           |\_____/ .  \___        points anywhere: side, also beyond the edges and at holes,
+//           |  . inside     |       but not below the floor of the ground
 //        ---+---------------+-- x
 #pragma once
 
@@ -30,7 +30,7 @@ inline constexpr std::uint64_t kGroundSamplesMax = 10'000'000;
 struct GroundCheckRequest {
     std::filesystem::path map;
     HeightsSpec heights;
-    std::uint64_t samples = 200'000;  ///< points of each kind
+    std::uint64_t samples = 200'000;  ///< number each of points near the surface, near seams, and anywhere
     std::uint64_t seed = 1;
     /// Maximum distance of points near the surface, along y, in metres; nullopt: the sample spacing.
     std::optional<double> within;
@@ -57,9 +57,9 @@ struct GroundAccuracy {
     std::uint64_t holes = 0;    ///< squares without ground
     double within = 0.0;
     GroundNear near;
-    std::optional<GroundNear> seams;  ///< within a leaf of a seam between tiles; nullopt: no seams
+    std::optional<GroundNear> seams;  ///< at most a leaf's side from a seam of tiles; nullopt: no seams
     std::uint64_t uniform_points = 0;
-    WrongPercent uniform;                 ///< also above holes and beyond the edges
+    WrongPercent uniform;                 ///< also at holes and beyond the edges
     std::vector<GroundWorstPlace> worst;  ///< ten places at least four leaves apart, worst first
     std::vector<std::string> warnings;    ///< one line each
     double seconds = 0.0;

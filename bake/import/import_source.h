@@ -32,7 +32,7 @@ class ImportSource {
     /// Completes an importer's result: sets name, hash and full paths, and establishes the invariants of TriangleMesh.
     /// \param raw    untrusted: positions, triangles, marks, unit, warnings, and dependencies with their hashes.
     /// Dependencies are relative to the folder and exclude the mesh file itself.
-    /// \param names  number of ImportOptions::names; if it is 0, there must be no marks.
+    /// \param names  number of ImportOptions::names; if it is 0, `raw.marks` must be empty.
     /// Errors: those of finishMesh; kInvalidInput.
     [[nodiscard]] Result<TriangleMesh> finish(TriangleMesh raw, std::size_t names = 0) const;
     [[nodiscard]] Result<Level> finishLevel(TriangleMesh raw, std::size_t names = 0,

@@ -57,7 +57,7 @@ class PolygonCutter {
 };
 
 /// Rotates the corners of triangles so that consecutive triangles have the same first vertex only if they form a
-/// quadrilateral; shapes do not change. assimp marks polygons so, and imitating it keeps baked files byte-identical.
+/// quadrilateral; shapes do not change. assimp marks polygons this way; imitating it keeps baked files byte-identical.
 class TriangleStarts {
   public:
     /// \param polygon  its triangles, as vertex indices of the mesh.

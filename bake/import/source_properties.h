@@ -17,7 +17,7 @@
 
 namespace relief {
 
-/// Marks the names of LodGroup nodes in the result of patchedFbx(), as a suffix. It has the length of "LodGroup".
+/// Suffix that patchedFbx() adds to the names of LodGroup nodes; as long as "LodGroup", the word that it replaces.
 inline constexpr std::string_view kLodGroupMark = "\x02LodGrp\x02";
 
 /// Patches an FBX document, binary or text, without changing its length, so that assimp exposes hidden nodes and levels
@@ -51,7 +51,7 @@ struct ColladaNodes {
     bool animates_visibility = false;
     std::optional<std::string> missing;  ///< a warning: instances of missing objects
 };
-/// Reads the nodes that the document's scene shows; none if the document is not XML.
+/// Reads the nodes of the document's <scene>, also hidden ones; none if the document is not XML.
 /// Errors: kUnsupported (an instance of an object in another file, with line and node).
 [[nodiscard]] Result<ColladaNodes> readColladaNodes(std::span<const std::byte> document);
 

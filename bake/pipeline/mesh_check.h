@@ -73,8 +73,8 @@ struct MeshCheck {
 };
 
 /// Returns the solid that the recorded options make of a mesh. Its shells have the recorded thickness. If a repair left
-/// no sheets, no thickness is recorded. The default thickness for kBudgetDefault or a recorded texel then applies,
-/// so that all budgets are compared with the same solid.
+/// no sheets, no thickness is recorded; the shells then get the default thickness for the recorded texel or, without
+/// a texel, for kBudgetDefault, so that colliders of all budgets are compared with the same solid.
 /// Errors: those of makeSolid.
 [[nodiscard]] Result<ShapedMesh> recordedSolid(BakeRequest recorded, const PreparedMesh& mesh);
 

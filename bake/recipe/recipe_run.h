@@ -62,13 +62,13 @@ struct RecipeResult {
 };
 
 /// Runs the jobs. Errors of single assets are in their results.
-/// Errors: kIo (the program cannot be read, or the cache file cannot be written), kUsage (an output that is
+/// Errors: kIo (the program's own file cannot be read, or the cache file cannot be written), kUsage (an output that is
 /// not in the cache would replace a file of another format).
 [[nodiscard]] Result<RecipeResult> runRecipe(std::vector<RecipeJob> jobs, const RecipeRun& run);
 
-/// Writes the inputs of all outputs for build systems: the recipe, every file read, and every folder that a pattern
-/// searched, so that new files are noticed. Omits folders that the run itself writes to, because writing changes their
-/// modification time.
+/// Writes a depfile for build systems with the inputs of all outputs: the recipe, every file read, and every folder
+/// that a pattern searched, so that new files are noticed. Omits folders that the run itself writes to, because writing
+/// changes their modification time.
 /// \param stamp    the target; empty: all outputs are targets
 /// \param beside   other files that the run writes; empty names are ignored
 /// \param folders  folders that patterns searched

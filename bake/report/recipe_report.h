@@ -36,7 +36,7 @@ struct RecipeCounts {
 /// The fields of an asset depend on its state.
 struct AssetReport {
     const AssetResult& asset = kNone<AssetResult>;
-    bool event = false;  ///< part of an event, which has a key only if the asset is baked or up to date
+    bool event = false;  ///< part of an event: omits `key` unless the asset is baked or up to date
 
     [[nodiscard]] static std::vector<AssetReport> kinds();
 };
@@ -115,8 +115,8 @@ struct OwnerWarnings {
 /// \param join_numbers  whether warnings that differ only in their numbers count as equal
 [[nodiscard]] std::vector<std::string> warningLines(std::span<const OwnerWarnings> all,
                                                     std::string_view owners, bool join_numbers);
-/// Groups the warnings of assets: "2 assets (a.relief, b.relief): it is skinned". All warnings about a missing unit form
-/// one group, with the size of the first asset.
+/// Groups the warnings of assets: "2 assets (a.relief, b.relief): it is skinned". All warnings about a missing unit
+/// form one group, with the size of the first asset.
 [[nodiscard]] std::vector<std::string> warningLines(const std::vector<AssetResult>& assets);
 
 }  // namespace relief

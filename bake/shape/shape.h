@@ -37,7 +37,7 @@ struct ShapeReport {
     std::uint64_t solids_with_holes = 0;
     std::uint64_t sheets = 0;
     std::uint64_t closable_sheets = 0;  ///< large sheets that would be solids if their holes were closed
-    /// Open parts in another one, but with rims too far apart to join them; the inside is filled.
+    /// Open parts inside another open part, with rims too far apart to join the parts; the inside is filled.
     std::uint64_t unjoined_shells = 0;
     /// Walls of two joined shells that may be a character in clothes: isAmbiguous() in walls.h.
     std::uint64_t ambiguous_walls = 0;
@@ -69,7 +69,7 @@ struct ShapedMesh {
 };
 
 /// Builds the solid. The result does not depend on the number of threads.
-/// \param mesh  after windOutwards. Its marks refer to options.named; without marks, no triangle is named.
+/// \param mesh  after windOutwards. Its `marks` refer to options.named; if they are empty, no triangle is named.
 /// Errors: those of MeshQuery::build and checkShellThickness; kLimit (kTriangleMax).
 [[nodiscard]] Result<ShapedMesh> shapeMesh(const PreparedMesh& mesh, const ShapeOptions& options);
 

@@ -21,7 +21,7 @@ class VertexFeedback {
     /// Needs a current context and a surrounding PassState, as does run().
     /// \param shader    file name; the shader declares v_normal only if RELIEF_NORMALS is defined.
     /// \param vertices  1 to 2³¹ − 1
-    /// Leaves the vertex array used by run() bound, to set up its attributes.
+    /// Leaves the vertex array of run() bound, so that the caller can set up its attributes.
     /// Errors: kLimit (out of memory), kFailure (shader compilation).
     [[nodiscard]] static Result<VertexFeedback> create(const char* shader, std::size_t vertices,
                                                        VertexOutput output);

@@ -38,7 +38,7 @@ class ColliderLight {
     /// Binds both textures.
     void bind(int unit) const;
 
-    /// Returns the shadow bias along the light, object units. Points closer than this behind a surface are lit.
+    /// Returns the shadow bias along the light, object units. Points less than this distance behind a surface are lit.
     [[nodiscard]] float sunBias() const;
     /// Returns the side of a sky voxel, object units.
     [[nodiscard]] float voxel() const { return voxel_; }

@@ -25,9 +25,9 @@ struct SceneMeshes {
     std::span<const std::optional<PlayedMesh>> played;
 };
 
-/// Creates emitters, and reads their files of points and surfaces. Emitter i uses random stream i. If an emitter
-/// followsShape(), its surface has the vertices of the collider's mesh at time 0, in the same order; for a container
-/// without a mesh, the surface is colliderSurface().
+/// Creates emitters, and reads their files of points and surfaces. Emitter i uses random stream i. If
+/// followsShape() is true for an emitter, its surface has the vertices of the collider's mesh at time 0, in the same
+/// order; for a container without a mesh, the surface is colliderSurface().
 /// \param emitters  completed by completeEmitters(). \param meshes  of the colliders that `attach` refers to.
 /// Errors: those of loadPointList, loadNamedMesh and EmitterSurface::create; kInvalidInput (a speed or cone for
 /// points with neither normals nor a direction; a group of a collider without a mesh; a material of a collider without

@@ -17,7 +17,7 @@ enum class OnCollision : std::uint8_t {
 /// Bit of the floor in ParticleType::collides_with; lower bits are groups of bodies.
 inline constexpr int kGroundBit = 8;
 
-/// The result of the last step. The state texture stores kStopped for the floor and kStopped + 1 + b for body b.
+/// A particle's contact in the last step. The state texture stores kStopped for the floor, kStopped + 1 + b for body b.
 enum class Contact : std::uint8_t {
     kNone = 0,
     kCollided = 1,
@@ -25,8 +25,8 @@ enum class Contact : std::uint8_t {
     kStopped = 3,  ///< permanently at rest (OnCollision::kStop)
 };
 
-/// The state texture stores the fraction of lifetime lost as the fractional part of the contact, in at least 7 bits for
-/// 65,536 bodies. Fractions of kLostMax and above count as 1.
+/// The state texture stores the fraction of the lifetime lost to materials as the fractional part of the contact, in at
+/// least 7 bits for 65,536 bodies. Fractions of kLostMax and above count as 1.
 inline constexpr float kLostMax = 0.9921875F;
 
 /// Dead particles: their height, out of sight, and their collision count.
