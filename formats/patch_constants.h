@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The constants of a map of patches for shaders.
+// The shader constants of a map of patches.
 #pragma once
 
 #include <cstddef>

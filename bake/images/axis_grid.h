@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples of an image across an axis of object space: the plane of a slice, or the window of an orthographic view.
+// A grid of image samples perpendicular to an object-space axis: a slice, or the window of an orthographic view.
 //
 // Images are oriented like orthographic maps (bake/views/view.h): +y is up, or ±z for views along ±y.
 //
@@ -56,7 +56,7 @@ struct AxisGrid {
 
 /// Makes a grid of square samples, centred on the bounds.
 /// \param size    samples along the longer side; 2 or more.
-/// \param margin  around the bounds, in units of their longer side across the axis.
+/// \param margin  around the bounds, as a fraction of their longer side perpendicular to the axis.
 /// Errors: kInvalidInput (bounds too large for floats).
 [[nodiscard]] Result<AxisGrid> gridAcross(const Bounds& bounds, int view, std::uint32_t size, double margin);
 

@@ -141,7 +141,7 @@ template <class T>
 
 /// Decompresses a buffer view.
 /// \param extension  the extension object of the buffer view.
-/// \param packed     the bytes that it references; untrusted.
+/// \param packed     the bytes that `extension` references; untrusted.
 /// \param size       bytes of the unpacked view.
 /// Errors: kInvalidInput, kUnsupported (a mode or filter).
 [[nodiscard]] Result<std::vector<std::byte>> unpackMeshopt(const GltfValue& extension,

@@ -47,7 +47,8 @@ struct ScenePart {
     std::vector<std::string> names{};   ///< of its mesh, group and material, for --as
 };
 
-/// Copies to the part only the positions that its triangles use, in order. \return their indices in `positions`.
+/// Copies the positions that the part's triangles use, in order, and renumbers the triangles' corners.
+/// \return the indices in `positions` of the copied positions.
 std::vector<std::uint32_t> compact(const std::vector<glm::vec3>& positions, ScenePart& part);
 
 /// The surface response of a node (formats/materials.h).
@@ -108,7 +109,7 @@ void warnAboutParts(const MeshParts& parts, std::vector<std::string>& warnings);
 /// Converts to metres and +Y up if the frame or the job specifies unit and axis. Counts all triangles before
 /// allocating, because a small file can place one mesh many times.
 /// Errors, without the file name: kInvalidInput (nothing to show, a node within itself, an invalid frame), kUsage (a
-/// name that no triangle has), kLimit (more triangles than the job allows, or three times as many vertices).
+/// name without triangles), kLimit (more triangles than the job allows, or three times as many vertices).
 [[nodiscard]] Result<TriangleMesh> flatten(ImportScene scene, const ImportJob& job);
 
 /// Like flatten(), but fills TriangleMesh::level_meshes and level_bodies. Rotation, uniform scale and translation

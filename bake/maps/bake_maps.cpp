@@ -165,7 +165,8 @@ PatchOptions patchOptions(const BakeOptions& bake, const MapSpec& spec) {
 }
 
 /// Bakes a map that stores the surface at the centre of each texel.
-/// \param scan  of the view. \param rowsDone  called with the number of finished texel rows, from several threads.
+/// \param scan  of the view.
+/// \param rowsDone  called with the number of newly finished texel rows, from several threads.
 DepthMap bakeSurfaces(const RayScene& scene, const NormalTable& normals, const View& view,
                       const ScanConverter& scan, BakeReport& report, std::uint64_t& covered,
                       const std::function<void(std::uint32_t)>& rowsDone) {

@@ -11,7 +11,7 @@
 
 namespace relief {
 
-/// Counts the leaves that store heights; 0: the map sees no surface.
+/// Counts the leaves that store heights; 0 if the map contains no surface.
 [[nodiscard]] std::uint32_t patchCount(const DepthMap& map);
 
 /// Returns the spacing of heights in the leaf at a point (for a pair, of the first patch), in object units; the side of

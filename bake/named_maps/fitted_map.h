@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bakes a map of supporting planes (plane_fit.h): traces the footprint of every texel and fits a plane to it.
+// Bakes a map of supporting planes (plane_fit.h): traces rays in each texel's footprint and fits a plane to their hits.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +24,8 @@ class TriangleNormals {
     std::vector<glm::dvec3> normals_;
 };
 
-/// Bakes a map with Decode::kPlane on all cores of the current arena. The result does not depend on their number.
-/// \param rowsDone  called with the number of finished texel rows, from several threads at once.
+/// Bakes a map with Decode::kPlane on all threads of the current TBB arena. The result does not depend on their number.
+/// \param rowsDone  called with the number of newly finished texel rows, from several threads at once.
 /// \param covered   receives the number of texels with a surface.
 [[nodiscard]] DepthMap bakeFittedMap(const RayScene& scene, const TriangleNormals& normals, const View& view,
                                      const FittedMapOptions& options, std::uint64_t& covered,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The mesh in which rays are traced, and their hits.
+// The mesh that rays are traced against, and the hits of the rays.
 #pragma once
 
 #include <cstdint>

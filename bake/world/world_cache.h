@@ -22,7 +22,7 @@ struct ContainerNames {
     std::string front;
     std::string back;
 
-    /// \param entry  of the mesh, without outputs.
+    /// \param entry  cache entry of the mesh, without outputs.
     [[nodiscard]] static ContainerNames of(const std::string& mesh, const BakeCacheEntry& entry);
     /// \param tile  its name; empty for the whole mesh.
     [[nodiscard]] std::string fileOf(const std::string& tile) const;
@@ -38,8 +38,8 @@ struct ContainerNames {
 void copyContainerInfo(const Collider& from, std::span<const std::byte> bytes, WorldColliderResult& collider);
 
 /// Finds the colliders of a mesh in the folder of a world.
-/// \param whole  copied to each result; `file` is names.fileOf("").
-/// \param expected  the entry of the mesh, without outputs.
+/// \param whole  copied to each result; whole.file is names.fileOf("").
+/// \param expected  cache entry of the mesh, without outputs.
 /// \return empty unless all are up to date.
 [[nodiscard]] std::vector<WorldColliderResult> upToDate(const std::filesystem::path& folder,
                                                         const WorldColliderResult& whole,

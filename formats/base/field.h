@@ -107,7 +107,7 @@ struct FieldInfo {
     /// Omit the field from JSON if it is unset, empty or out of range, or if no key in `needs` is present.
     bool left_out = false;
     std::string_view value = {};  ///< placeholder in --help: "SECONDS"; empty: derived from the type
-    /// A valid value for messages: "a length above 0"; empty: derived from type and range.
+    /// Describes a valid value in messages: "a length above 0"; empty: derived from type and range.
     std::string_view must = {};
     char letter = '\0';     ///< short option: 'j'
     bool recorded = false;  ///< bake options: affects the collider's bytes and is recorded in its provenance
@@ -125,7 +125,7 @@ struct FieldSpan {
     FieldRef most;
 };
 
-/// Two members that are always a pair in the file; the unit names its parts: "[width, height]".
+/// Two members that are always a pair in the file; FieldInfo::unit names both: "[width, height]".
 struct FieldPair {
     FieldRef first;
     FieldRef second;
@@ -165,7 +165,7 @@ concept WithForm = requires(std::string_view word, T& value) {
     { fieldText(value) } -> std::same_as<std::string>;
 };
 
-/// Functions of a type with its own file format. Specialize it beside the type.
+/// Functions of a type with its own file format. Specialize this variable beside the type.
 template <class T>
 inline constexpr const FieldCustom* kFieldCustom = nullptr;
 

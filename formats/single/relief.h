@@ -51,7 +51,7 @@ extern "C" {
  * (row_x[2]*z + row_x[3])), likewise y' and z'.
  *
  * size: edge of a root cell in object units; number of root cells along x', y' and z'.
- * place: index of the collider's first texel in the texture (0); texels from root cell to root cell along y' and z';
+ * place: index of the collider's first texel in the texture (0); stride of root cells along y' and z', in texels;
  * levels below the root cells. To pack colliders into one texture, set place[0] in your copies of the constants. */
 typedef struct relief_constants {
     float row_x[4];
@@ -231,7 +231,7 @@ static uint64_t rlf_mix(const unsigned char* p, size_t secret) {
     return rlf_multiply_fold(rlf_u64(p) ^ rlf_u64(key), rlf_u64(p + 8) ^ rlf_u64(key + 8));
 }
 
-/* At most 16 bytes. */
+/* Hashes at most 16 bytes. */
 static uint64_t rlf_hash_short(const unsigned char* p, size_t size) {
     const unsigned char* key = rlf_secret;
     uint64_t low, high, swapped = 0;
@@ -270,7 +270,7 @@ static void rlf_accumulate(uint64_t sum[8], const unsigned char* p, size_t secre
     }
 }
 
-/* More than 240 bytes. */
+/* Hashes more than 240 bytes. */
 static uint64_t rlf_hash_long(const unsigned char* p, size_t size) {
     uint64_t sum[8] = {rlf_prime32_3, rlf_prime64_1, rlf_prime64_2, rlf_prime64_3,
                        rlf_prime64_4, rlf_prime32_2, rlf_prime64_5, rlf_prime32_1};
@@ -915,7 +915,7 @@ static float rlf_code(const uint16_t* texels, rlf_record patch, uint32_t side, u
     return (float)(((i & 4U) != 0 ? texel.high : texel.low) >> 8 * (i & 3U) & 0xffU);
 }
 
-/* The vote of a patch at q in the unit cube of its cell. The distance is in cells. */
+/* The vote of a patch at q in the unit cube of its cell. The distance is in edges of the cell. */
 static rlf_vote rlf_vote_patch(const uint16_t* texels, rlf_record patch, const float q[3]) {
     RLF_EXACT
     unsigned diagonal = patch.low >> 5 & 3U, first = patch.low >> 7 & 3U, axis;
@@ -1004,7 +1004,7 @@ static void rlf_decode_coarse_normal(float out[3], uint32_t s_code, uint32_t t_c
     rlf_set_unit(out, x < 0.0F ? x + beyond : x - beyond, y < 0.0F ? y + beyond : y - beyond, z);
 }
 
-/* The vote at p in map space, within the roots. The distance is in roots. */
+/* The vote at p in map space, within the root cells. The distance is in edges of a root cell. */
 static rlf_vote rlf_vote_tree(const relief_collider* collider, const float p[3]) {
     RLF_EXACT
     const int32_t* place = collider->constants.place;

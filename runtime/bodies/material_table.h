@@ -28,7 +28,7 @@ struct MaterialTable {
     int bricks = 0;                  ///< maximum number of nested bricks (4³ grids) below the top grid
     bool responds = false;           ///< a material changes the reaction of particles
     bool loses = false;              ///< a material shortens lifetimes
-    MaterialHead head;               ///< for a single body
+    MaterialHead head;               ///< of the body if there is exactly one
 };
 
 /// Builds the table. \param bodies  materials of each body; null or empty for none. Bodies may share materials.

@@ -31,7 +31,7 @@ struct SimCommand {
 /// Adds the options of relief-sim to an app. `command` must outlive the app.
 void defineSim(CLI::App& app, SimCommand& command);
 
-/// Parses the command line and runs it.
+/// Parses the command line, then runs the simulation, checks the scene or writes the page.
 [[nodiscard]] Result<void> runSim(int argc, char** argv);
 
 }  // namespace relief

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Declares OpenGL's types as every GL header does; identical redeclarations are valid. Public headers thus need no GL
-// loader, and programs may include their own before or after.
+// loader, and programs may include a loader before or after them.
 #pragma once
 
 #include <cstddef>

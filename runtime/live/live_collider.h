@@ -8,7 +8,7 @@
 //     WorldTextures textures = *WorldTextures::create({&body, 1});   // static bodies may be added
 //     each step:  live.setPositions(…);  live.update(textures, 0);  particles.step(dt);
 //
-//     bytes on the GPU = those of GpuMesh and WorldTextures, and 44 per texel of a map
+//     bytes on the GPU = those of GpuMesh and WorldTextures, and 44 · (maximum map width) · (maximum map height)
 #pragma once
 
 #include <cstdint>
@@ -53,15 +53,15 @@ class LiveCollider {
     /// (not finite). The state is then unchanged.
     [[nodiscard]] Result<void> setPositions(std::span<const glm::vec3> positions);
     /// Moves the vertices to positions in a GPU buffer: tightly packed triples of floats from byte `offset` on. The GPU
-    /// copies them in command order; values are not checked. Errors: kUsage (called twice, or as
-    /// GpuMesh::setPositions).
+    /// copies them in command order; values are not checked. Errors: kUsage (called twice), those of
+    /// GpuMesh::setPositions.
     [[nodiscard]] Result<void> setPositions(GLuint buffer, std::size_t offset = 0);
     /// Treats the last change as a jump: the next update() records no motion.
     void settle();
 
     /// Renders maps and motion into their textures. Call it before every step of the particles: the step assumes that
     /// the motion since the previous update took as long as the step. Costs nothing while the mesh is at rest.
-    /// \param body  index in `textures`, created from frames() with `live`.
+    /// \param body  index in `textures` of the body that was created from frames() with ColliderBody::live.
     /// Errors: kUsage (a body that is not live or has other maps), kFailure.
     [[nodiscard]] Result<void> update(WorldTextures& textures, std::size_t body);
 

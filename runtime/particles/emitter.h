@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Generates births of particles on the CPU: positions, velocities and times. The same settings and seed give
-// bit-identical births on every machine (runtime/particles/random.h) and for every step length.
+// bit-identical births on every machine (runtime/particles/random.h) and, except for ages, for every step length.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +35,8 @@ inline constexpr std::array<std::string_view, 7> kWordsOf<EmitterShape>{"box",  
 /// An additional speed along a direction: the sum of a uniform and a normally distributed term, redrawn if negative.
 struct EmitterAim {
     /// Axis of the cone, nonzero; required for kBox, kPoint, and points without normals. nullopt: the normal at the
-    /// emitting point: outwards for sphere and shell, `normal` for a disc, PointList::normals, the triangle's normal.
+    /// emitting point: outwards for kSphere and kShell, EmitterSettings::normal for kDisc, PointList::normals for
+    /// kPoints, the triangle's normal for kSurface.
     std::optional<glm::vec3> direction;
     float cone_degrees = 0.0F;  ///< half angle, 0…180; uniform over the solid angle
     float speed_min = 0.0F;     ///< object units/s, ≥ 0; uniform between both limits
@@ -93,7 +94,7 @@ class Emitter {
     /// are due, independent of the step lengths; a burst at the end of the duration is omitted. The n-th birth does not
     /// depend on the step lengths either, except for its age.
     /// \param room    maximum number of births to generate: the free capacity of the particle system.
-    /// \param births  the births are appended to it.
+    /// \param births  the new births are appended to this vector.
     /// \return the number of due births that exceed `room`; they are dropped.
     std::uint64_t emit(double dt, std::uint64_t room, std::vector<Birth>& births);
     /// Returns whether births are due in the next `dt` seconds.

@@ -20,7 +20,7 @@ namespace relief {
     return path == StepPath::kCompute ? "compute" : "fragment";
 }
 
-/// `relief-sim --json`. fields() describes the keys.
+/// Describes the keys of the JSON report that `relief-sim --json` prints.
 void fields(FieldVisitor& visit, const PlayerReport& report);
 
 }  // namespace relief

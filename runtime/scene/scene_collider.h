@@ -89,7 +89,7 @@ struct SceneCollider {
     float friction = 0.0F;                      ///< 1 − friction multiplies that of particles
     std::optional<SceneLive> live;              ///< deforms in waves: `path` is a mesh, not a container
     std::optional<ScenePlay> play;              ///< plays the animated mesh of the container
-    std::uint32_t resolution = 256;             ///< texels along the longest side of its maps
+    std::uint32_t resolution = 256;             ///< for `live`: texels along each side of its maps
     std::optional<glm::vec3> color;             ///< in pictures, sRGB
     std::vector<SceneMaterialColor> materials;  ///< materials with their own colours
     std::vector<SceneKey> given_keys;

@@ -99,7 +99,7 @@ void fields(FieldVisitor& visit, SceneSpawn& spawn);
 [[nodiscard]] std::optional<FieldFault> check(SceneSpawn& spawn, const GivenFields& given);
 
 /// Fills missing values. By default, particles fall like snow from a box above the collider.
-/// \param bounds, scale  of the collider; scale is its size, > 0.
+/// \param bounds, scale  of the collider; scale is its longest side, or a positive minimum if it is tiny.
 /// \param seconds, capacity  of the run. Emitters without a rate share the capacity that the others leave.
 /// Errors: kInvalidInput if no capacity is left.
 [[nodiscard]] Result<void> completeEmitters(std::span<SceneEmitter> emitters, const Bounds& bounds,
@@ -111,7 +111,7 @@ void fields(FieldVisitor& visit, SceneSpawn& spawn);
                                                 std::span<const std::string> materials);
 
 /// Returns the motion of each emitter.
-/// \param colliders  that `attach` refers to; for deforming colliders, only the pose is used.
+/// \param colliders  the colliders that `attach` refers to; for deforming colliders, only the pose is used.
 [[nodiscard]] std::vector<EmitterMotion> emitterMotions(std::span<const SceneEmitter> emitters,
                                                         std::span<const SceneCollider> colliders);
 
