@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dense distance volumes, baselines for colliders, as Unity, Unreal and Godot bake them. They are as accurate as
-// possible for their bytes, to make the comparison fair.
+// Dense distance volumes as Unity, Unreal and Godot bake them, as baselines for colliders. The volumes are as accurate
+// as possible for their bytes, to make the comparison fair.
 //
 // - Nodes lie on a lattice over the tight box of the mesh. Voxels are the smallest cubes for which all nodes fit the
 //   budget; headers and padding are not counted. If the sides of the box are not whole numbers of voxels, the lattice
@@ -72,7 +72,7 @@ class DistanceVolume {
     /// \param range  object units: distances beyond ±range are clamped.
     DistanceVolume(const DistanceGrid& grid, double range);
 
-    /// Returns the range that clamps no value of the grid.
+    /// Returns the smallest range that clamps no value of the grid.
     [[nodiscard]] static double fullRange(const DistanceGrid& grid);
     /// Returns the range of a narrow band: `reach` plus a voxel's diagonal, at most fullRange(). It clamps no node of a
     /// voxel within `reach` of the surface. The lookup has the same signs as with the full range, except for rounding.

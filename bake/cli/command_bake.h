@@ -46,7 +46,7 @@ struct BakeCommand {
 /// Checks the files that a bake with --world reads and writes. Errors: kUsage, kIo.
 [[nodiscard]] Result<void> preflightWorld(const BakeCommand& command, FileGuard& files);
 
-/// Writes the file of --depfile, if there is one. Errors: those of writeDepfile.
+/// Writes the file of --depfile if that option is set. Errors: those of writeDepfile.
 [[nodiscard]] Result<void> writeDepfile(const BakeCommand& command, const std::string& target,
                                         const std::vector<InputFile>& inputs);
 /// Prints a report: as JSON to standard output, or (unless --quiet is set) as text to standard error.
@@ -59,7 +59,7 @@ struct BakeCommand {
 
 void addRecipeOptions(CLI::App& verb, BakeRecipeOptions& options);
 
-/// Bakes the recipe's assets. If a signal interrupts it, the program ends by that signal. \param verb  parsed
+/// Bakes the recipe's assets. If a signal interrupts the run, the program ends by that signal. \param verb  parsed
 /// Errors: those of the first failed asset in the recipe's order; kUsage, kIo.
 [[nodiscard]] Result<void> runRecipeCommand(const BakeCommand& command, const CLI::App& verb,
                                             FileGuard& files);

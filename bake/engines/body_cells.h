@@ -26,7 +26,7 @@ inline constexpr std::size_t kBodiesPerRow = 256;
 /// Returns a grid over the boxes of the bodies. Each cell lists the bodies whose boxes are within half a cell of it.
 /// The grid consists of 32-bit words:
 /// - the numbers of cells along x, y and z; the number of entries;
-/// - as floats, the minimum corner, and the edge of a cell;
+/// - as floats, the minimum corner of the grid, and the edge length of a cell;
 /// - the index of each cell's first entry, x fastest, then the index after the last entry;
 /// - the entries, which are indices of bodies in ascending order within a cell.
 [[nodiscard]] std::vector<std::uint32_t> bodyCells(std::span<const EngineBody> bodies);

@@ -22,8 +22,8 @@ struct MaterialSample {
     std::uint32_t weight = kClearContact;
 };
 
-/// Samples points evenly over the area of the source, and keeps the points that a contact can reach; points within
-/// solids are excluded. The result does not depend on the number of threads.
+/// Samples points evenly over the area of the source, and returns the contacts within 1.5 texels of them along the
+/// normal; points within solids have none. The result does not depend on the number of threads.
 [[nodiscard]] std::vector<MaterialSample> sampleContacts(const Collider& collider,
                                                          const MaterialSource& source);
 

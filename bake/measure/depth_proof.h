@@ -28,7 +28,7 @@ namespace relief {
 struct DepthProofOptions {
     /// The proof ends when the bound is at most `tolerance` times the depth of the deepest error.
     double tolerance = 1.1;
-    double bound_fraction_min = 1e-4;     ///< bounds below this fraction of the longest side suffice
+    double bound_fraction_min = 1e-4;     ///< bounds below this fraction of the mesh's longest side suffice
     std::uint64_t boxes_max = 2'000'000;  ///< at this number, the proof ends with a larger bound
 };
 

@@ -8,9 +8,9 @@
 
 namespace relief {
 
-/// A set of connected triangles whose normals differ from the first triangle's by at most 1e-4, or by the error of
-/// rounded vertices if that is larger. Vertices are assumed to be rounded to a millionth of the mesh's longest side, or
-/// to floats.
+/// A set of connected triangles whose normals differ from the first triangle's by at most 1e-4 radians, or by the
+/// effect of rounded vertices (up to 0.01 radians) if that is larger. Vertices are assumed to be rounded to a millionth
+/// of the mesh's longest side, or to floats.
 struct FlatFace {
     double area = 0.0;
     double length =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One end of a view, seen from the start of its rays, for fitting planes to texels (plane_fit.h).
+// One RayEnd of a view, seen by a viewer at the start of the rays to it, for fitting planes to texels (plane_fit.h).
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@ struct FittedMapOptions {
     double inward_shift = 0.0;  ///< PlaneFitOptions::inward_shift
 };
 
-/// The ring of texels that stays empty (depth_map.h).
+/// Returns whether a texel is in the border of an orthographic map, which stays empty (depth_map.h).
 [[nodiscard]] inline bool isBorder(const View& view, std::uint32_t x, std::uint32_t y) {
     return view.projection() == Projection::kOrthographic &&
            (x == 0 || y == 0 || x + 1 == view.width || y + 1 == view.height);

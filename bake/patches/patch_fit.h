@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fits the heights of one patch to the inside of its cell.
+// Fits the heights of a patch or pair to the inside of the mesh in one cell.
 #pragma once
 
 #include <array>
@@ -16,8 +16,8 @@ namespace relief {
 /// The best height on one line of a LineGrid.
 struct HeightTarget {
     double height = 0.0;
-    /// Costs of errors above and below the height. If the height is an end of the line in the cell, one cost is zero,
-    /// because all greater or all smaller heights are equally good. Both are zero if the line misses the cell.
+    /// Costs of errors above and below the height. If the line enters or leaves the cell at this height, one cost is
+    /// zero, because all greater or all smaller heights are equally good. Both are zero if the line misses the cell.
     double above = 0.0;
     double below = 0.0;
 };
@@ -117,7 +117,7 @@ class PatchFitter {
     CellPlane mean_;
     bool outside_below_ = false;
     HeightTargets targets_;
-    std::vector<float> by_error_;  // per line: 0 if in not_by_error_, else 1; empty if not_by_error_ is
+    std::vector<float> by_error_;  // per line: 0 if in not_by_error_, else 1; empty if not_by_error_ is empty
     std::vector<std::uint32_t> not_by_error_;  // lines for which targetOf() clears by_error
     double inside_volume_ = 0.0;
 };

@@ -92,7 +92,7 @@ struct RecordedBake {
 };
 
 [[nodiscard]] RecordedBake recordedBake(const std::vector<RecordedOption>& options);
-/// Returns the recorded mode; kKeep if none is recorded: there were no voids, or that version of Relief ignored voids.
+/// Returns the recorded mode; kKeep if none is recorded: the mesh had no voids, or the baker's version ignored them.
 [[nodiscard]] inline VoidMode voidsOf(const BakeRequest& recorded) {
     return recorded.voids.value_or(VoidMode::kKeep);
 }

@@ -15,10 +15,11 @@ namespace relief {
 /// Groups corners of the same vertex that share a mitre.
 class CornerFans {
   public:
-    /// Splits fans of joined corners whose common mitre would thin the shell, and cuts the sheet there.
+    /// Splits each fan (corners of one vertex, joined by triangle sides) whose common mitre would thin the shell, and
+    /// cuts the sheet there.
     explicit CornerFans(Sheet& sheet);
 
-    /// Per corner, the lowest corner that shares its mitre.
+    /// Per corner, the lowest index of the corners that share its mitre; corner k of triangle i is 3·i + k.
     [[nodiscard]] const std::vector<std::uint32_t>& roots() const { return roots_; }
     [[nodiscard]] const glm::dvec3& mitreOf(std::uint32_t corner) const { return mitres_[roots_[corner]]; }
     /// Whether a fan was split between two corners of one vertex.

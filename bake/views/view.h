@@ -75,8 +75,8 @@ struct View {
         return compare == Compare::kBoth || (compare == Compare::kLess) == (end == RayEnd::kNear);
     }
     [[nodiscard]] bool startsFree(RayEnd end) const { return starts_free[static_cast<std::size_t>(end)]; }
-    /// Returns whether texels without a surface mean "outside", because the rays of a stored surface start in free
-    /// space and cross the whole volume.
+    /// Returns whether texels without a surface mean "outside": the rays to a stored surface start in free space, and
+    /// cross the whole volume if they meet none.
     [[nodiscard]] bool emptyIsOutside() const;
 
     /// Orthographic: the offsets from `origin` at which the rays of a column, and of a row, start.

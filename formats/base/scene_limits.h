@@ -18,7 +18,7 @@ inline constexpr std::uint32_t kStepsMax = 10'000'000;
 inline constexpr double kDragMax = 1e6;
 inline constexpr double kAngleMax = 1e6;  ///< degrees or radians
 inline constexpr double kFactorMax = 1000.0;
-inline constexpr std::uint64_t kSeedMax = std::uint64_t{1} << 53;  ///< doubles are exact up to it
+inline constexpr std::uint64_t kSeedMax = std::uint64_t{1} << 53;  ///< integers up to it are exact doubles
 
 inline constexpr FieldRange kPointRange = within(kLengthMax);  ///< coordinates
 inline constexpr FieldRange kLengthRange{0.0, kLengthMax};

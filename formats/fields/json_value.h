@@ -30,7 +30,8 @@ struct FieldJson {
 [[nodiscard]] Json jsonOf(FieldRef value);
 
 /// Returns the schema of a field. Objects accept no other keys, and require all fields without left_out or `only`.
-/// \param value  any value. If fields differ by kind, the schema covers the value's kind, or all kinds() of its type.
+/// \param value  any value. If fields differ by kind, the schema covers all kinds() of its type; without kinds(), only
+/// the value's kind.
 [[nodiscard]] Json schemaOf(FieldRef value);
 [[nodiscard]] Json schemaOf(FieldRef value, const FieldInfo& info);
 

@@ -27,8 +27,8 @@ class MapTextures {
     [[nodiscard]] static GLint sideMax();
 
     MapTextures() = default;
-    /// Uploads the maps that are not live. Call it inside a PassState. The block is empty at first. The caller checks
-    /// for out-of-memory errors (checkAllocated).
+    /// Uploads the maps that are not live (PlacedMap::live). Call it inside a PassState. The block is empty at first.
+    /// The caller checks for out-of-memory errors (checkAllocated).
     MapTextures(std::span<const PlacedMap> maps, const MapLayout& layout);
 
     void setBlock(std::span<const std::byte> block) const;

@@ -10,8 +10,8 @@
 
 namespace relief {
 
-/// Waits until the GPU has passed the fence, at most for the given time. Does not wait in a browser, where readBuffer()
-/// waits instead.
+/// Waits until the GPU has passed the fence, at most for the given time.
+/// \return GlFence::passed(); in a browser, true without waiting, because readBuffer() waits instead.
 [[nodiscard]] bool waitToRead(const GlFence& fence, GLuint64 nanoseconds);
 
 /// Copies `out.size()` bytes, at least 1, from `offset` in the buffer, through GL_PIXEL_PACK_BUFFER. Waits for the GPU.

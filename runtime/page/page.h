@@ -22,8 +22,8 @@ namespace relief {
 /// Returns the page for a collider, without data.
 [[nodiscard]] std::string viewPage();
 
-/// Returns the page that plays scenes and worlds, without data: the file named by RELIEF_VIEW_PAGE, else the file of
-/// the installation, else the file of a web build next to this build.
+/// Returns the page that plays scenes and worlds, without data: the file named by RELIEF_VIEW_PAGE, else the
+/// installed file, else the file of a web build next to this build.
 /// Errors: kUnsupported (not found), kInvalidInput (of another release); those of readForPage().
 [[nodiscard]] Result<std::string> playerPage(FileGuard& files);
 

@@ -17,7 +17,7 @@ class BirthSurface {
     virtual ~BirthSurface() = default;
     [[nodiscard]] virtual std::unique_ptr<BirthSurface> clone() const = 0;
 
-    /// Sets the vertices now, and `seconds` ago.
+    /// Sets the positions of the vertices now and `seconds` ago.
     /// \param before, now  object units, one position per vertex; triangles with a non-finite corner do not emit.
     /// \param seconds      > 0; 0 after a jump: `before` is ignored.
     virtual void move(std::span<const glm::vec3> before, std::span<const glm::vec3> now, double seconds) = 0;

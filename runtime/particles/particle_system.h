@@ -91,7 +91,7 @@ class ParticleSystem {
     static constexpr std::uint32_t kStateWidth = 1024;  ///< texels per row; fewer if the capacity is smaller
     static constexpr std::uint32_t kCapacityMax = 1U << 24;
 
-    /// Every call that is not const needs a current context.
+    /// Every call that is not const needs a current context, as do readState(), readRaw() and makeStateTexture().
     /// Errors: kUsage (capacity, epoch), kLimit (more than this GL context supports), kUnsupported (also
     /// StepPath::kCompute without compute shaders), kFailure.
     [[nodiscard]] static Result<ParticleSystem> create(const ParticleSystemOptions& options = {});
@@ -113,8 +113,8 @@ class ParticleSystem {
     [[nodiscard]] Result<void> setType(const ParticleType& type) { return setTypes({&type, 1}); }
     /// Sets the sweep length, world units. If above 0, a step tests its path in pieces of at most this length and never
     /// ends inside a solid in which it did not start: particles cannot cross static bodies thicker than this. Particles
-    /// that move more than StepPass::kSweepPieces pieces in a step are slowed down. 0: tests only both ends, as in the
-    /// paper.
+    /// that move more than StepPass::kSweepPieces pieces in a step are slowed down. If the length is 0, a step tests
+    /// only the end of its path, as in the paper.
     /// Errors: kUsage.
     [[nodiscard]] Result<void> setSweep(float length);
     /// Sets a floor: everything below this height is solid, in addition to the collider. nullopt: none.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random numbers and distributions: the same seed gives the same bits on every machine. Sampling only uses integers and
+// Random numbers and distributions: the same seed gives the same bits on every machine. Sampling uses only integers and
 // + − × ÷ √, which IEEE 754 rounds exactly. Sines and logarithms of C libraries differ in their last bits.
 #pragma once
 

@@ -4,7 +4,7 @@
 
 namespace relief {
 
-/// Digit values of the radix sort, and invocations per work group.
+/// Number of values of a radix sort digit, and of invocations per work group.
 inline constexpr int kRadixDigits = 256;
 /// Side of a tile in pixels (tile.glsl).
 inline constexpr int kTileSide = 16;
