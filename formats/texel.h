@@ -106,8 +106,8 @@ inline constexpr int kDepthSteps = 65534;
 /// \param code  not 0.
 [[nodiscard]] float decodeFixedDepth(std::uint16_t code, float depth_max);
 
-/// Encodes a depth as an IEEE half; 0 means "empty". Written values lie in [2^-14, 1], the normal halves, because a
-/// GL may flush subnormal halves to zero.
+/// Encodes a depth as an IEEE half; 0 means "empty". Written values lie in [2^-14, 1]. Smaller halves are subnormal,
+/// and a GL may flush them to zero.
 /// \param depth  clamped to that range.
 [[nodiscard]] std::uint16_t encodeHalfDepth(float depth);
 [[nodiscard]] float decodeHalfDepth(std::uint16_t bits);

@@ -11,7 +11,7 @@
 // - In an octree, the cubes with the largest displacement of the surface are split until the bytes are used up.
 // - Sizes are bytes on the GPU: the nodes and the index. The index is a dense or two-level grid of the cubes, whichever
 //   is smaller; for an octree, it has one entry per root and eight per split cube.
-// - Points beyond the box are outside; their distance to the box is added.
+// - A point beyond the box is outside; its distance to the box is added to the field at the nearest point of the box.
 #pragma once
 
 #include <cstdint>

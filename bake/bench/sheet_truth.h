@@ -16,7 +16,7 @@ namespace relief {
 
 class SheetTruth {
   public:
-    /// Builds the truth. It has no sheets if the mesh has none, has named parts, or lost duplicate parts
+    /// Builds the truth. The result is empty() if the mesh has no sheets, has named parts, or lost duplicate parts
     /// (Shaper::runWithout).
     /// \param source  as imported, after windOutwards.
     /// Errors: those of finishMesh and MeshQuery::build.

@@ -34,7 +34,7 @@ struct EngineFile {
 [[nodiscard]] Result<std::vector<EngineFile>> engineFiles(const Collider& collider, std::string_view name,
                                                           Engine engine);
 
-/// Returns NAME.texels, NAME.bodies and NAME.cells of a level, the collision function, and a page that describes them.
+/// Returns NAME.texels, NAME.bodies and NAME.cells of a level, the collision function, and a guide, RELIEF.md.
 /// Errors: those of engineMap(); kLimit (more than kEngineTexelsMax texels).
 [[nodiscard]] Result<std::vector<EngineFile>> engineFiles(const LoadedWorld& world, std::string_view name,
                                                           Engine engine);

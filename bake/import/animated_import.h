@@ -37,7 +37,7 @@ struct AnimatedImport {
                                                                 const ImportLimits& limits);
 
 /// Adds a clip. Appends a number to its name, with a warning, if the name is taken.
-/// \param clip  its name must not be empty; otherwise valid for AnimatedMesh.
+/// \param clip  must be valid for AnimatedMesh. Its name must not be empty; addClip() cleans and truncates it.
 void addClip(AnimatedMesh& mesh, MeshClip clip, std::vector<std::string>& warnings);
 
 /// Adds the clips of another mesh; nodes are matched by name.

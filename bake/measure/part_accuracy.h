@@ -31,8 +31,8 @@ struct PartOptions {
 [[nodiscard]] double defaultMinPart(const SurfaceParts& parts, const std::string& unit, double scale = 1.0);
 
 enum class PartVerdict : std::uint8_t {
-    kKept,    ///< at most kPartCoarse
-    kCoarse,  ///< at most kPartLost
+    kKept,    ///< at most kPartCoarse percent of the points are wrong
+    kCoarse,  ///< at most kPartLost percent of the points are wrong
     kLost,
     kHidden,      ///< inside other parts, where nothing can collide
     kMinor,       ///< lost, but too small to lower the grade
@@ -63,7 +63,7 @@ struct GroupAccuracy {
 
 /// The parts of one or more meshes that a verdict ignores.
 struct IgnoredParts {
-    std::uint64_t parts = 0;       ///< total
+    std::uint64_t parts = 0;       ///< all parts, including those that are not ignored
     std::uint64_t lost = 0;        ///< PartVerdict::kMinor, mostly classified as outside
     double size = 0.0;             ///< longest side of the largest lost part
     std::uint64_t thickened = 0;   ///< PartVerdict::kMinor, mostly classified as inside
@@ -75,7 +75,8 @@ struct IgnoredParts {
 
 struct PartsAccuracy {
     double min_part = 0.0;  ///< object units
-    /// By state: lost, coarse, and so on; within a state by wrong points times size.
+    /// By state: lost, coarse, minor, kept, hidden, unmeasured; within a state by wrong percentage times size, largest
+    /// first.
     std::vector<PartAccuracy> parts;
     /// Named nodes, if there are several, then named materials, if there are several; each least accurate first.
     std::vector<GroupAccuracy> groups;

@@ -24,7 +24,7 @@ struct AccuracyOptions {
 /// A point near the surface, or anywhere in the box.
 struct TruthPoint {
     glm::vec3 position{0.0F};
-    float distance = 0.0F;  ///< object units, negative inside; ±1 for uniform points
+    float distance = 0.0F;  ///< object units, negative inside; ±1 for uniform points and in sampleNear()
 
     [[nodiscard]] bool inside() const { return distance < 0.0F; }
 };

@@ -82,7 +82,7 @@ class MeshQuery {
     /// separately; if the winding number decides for all bodies, three rays vote. Voids are inside.
     [[nodiscard]] bool inside(const glm::vec3& p) const;
 
-    /// Like inside(), without voids.
+    /// Like inside(), but voids are outside.
     [[nodiscard]] bool inBody(const glm::vec3& p) const;
     [[nodiscard]] bool hasVoids() const { return !mesh_.voids().places.empty(); }
     /// Whether a point is in a void. Equal for both ends of a free segment, except in creases narrower than the grid of

@@ -73,7 +73,7 @@ class ScanConverter {
     std::array<bool, 2> may_start_inside_;  // by RayEnd
     ProjectedPlanes planes_;
     /// The vertices of the mesh. Orthographic: (x, y, 1) in texels, with the centre of texel (i, j) at (i, j). Cube:
-    /// relative to the centre, in units of its half sides.
+    /// relative to the cube's centre, in units of half its sides.
     std::vector<glm::dvec3> places_;
     std::uint32_t blocks_;                 // of rows, per face
     Buckets<Entry, std::size_t> entries_;  // by face and block, ascending by triangle

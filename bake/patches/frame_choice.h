@@ -14,9 +14,9 @@ struct FrameChoice {
     bool two_sides = false;  ///< surface is visible both from above and from below
 };
 
-/// Returns the frame that sees most of the surface from one side. If the cell has surfaces that face both ways, as in a
-/// thin wall, returns the frame that sees most of them from above and below together. The sampling lines of another
-/// frame may be parallel to the wall and miss it, so that errors there are not detected.
+/// Returns the frame whose axis shows most of the surface from one side. If the cell has surfaces that face both ways,
+/// as in a thin wall, returns the frame whose axis shows most of them from above and below together. The sampling lines
+/// of another frame may be parallel to the wall and miss it, so that errors at the wall are not detected.
 [[nodiscard]] FrameChoice chooseFrame(std::span<const ClippedTriangle> pieces);
 
 }  // namespace relief

@@ -11,7 +11,7 @@ inline constexpr std::size_t kLanes = 4;
 using Lanes = float __attribute__((vector_size(4 * sizeof(float))));
 using TwoDoubles = double __attribute__((vector_size(2 * sizeof(double))));
 
-/// \param from  aligned for a single number.
+/// \param from  needs only the alignment of Number.
 template <class Vector, class Number>
 [[nodiscard]] inline Vector loadLanes(const Number* from) {
     Vector vector;

@@ -57,8 +57,8 @@ struct BakeResult : SolidMesh {
 /// \param request  as passed to prepareSolid(); its budget may differ if solid.isBudgetIndependent().
 [[nodiscard]] Result<BakeResult> bake(const BakeRequest& request, const SolidMesh& solid);
 
-/// Returns the error curve of the trees of patches of a solid (bake/patches/patch_planner.h).
-/// \param request  for patches. \param bytes  of the largest tree.
+/// Returns the error curve of a solid's patch trees (bake/patches/patch_planner.h).
+/// \param request  for patches. \param bytes  size of the largest tree.
 /// Errors: those of bake().
 [[nodiscard]] Result<ErrorCurve> planErrors(const BakeRequest& request, const SolidMesh& solid,
                                             std::uint64_t bytes);

@@ -16,7 +16,7 @@
 namespace relief {
 
 enum class WorldCause : std::uint8_t {
-    kMoved,      ///< the node has another pose in the world
+    kMoved,      ///< the node's pose in the world differs from its pose in the level
     kPrecision,  ///< floatsLimit(): the mesh is too far from its origin
     kTexel,      ///< the point is at most kTexelsOff texels from the surface
     kMesh,       ///< the point is farther away: intersecting faces, open edges, or a lost part

@@ -30,7 +30,7 @@ struct NumberedFiles {
     [[nodiscard]] bool hold(const std::string& name) const;
 };
 
-/// All present and future files in a folder with this ending, such as the containers of a world.
+/// All present and future files with this ending in a folder, such as the containers of a world.
 struct FilesByEnding {
     std::filesystem::path folder;
     std::string ending;  ///< ".relief"

@@ -17,7 +17,7 @@ struct JsonLimits {
     std::size_t values = std::numeric_limits<std::size_t>::max();
 };
 
-/// Rejects invalid JSON, duplicate keys in an object, and zero bytes. Checks the limits before it creates any value.
+/// Rejects invalid JSON, duplicate keys in an object, and NUL bytes. Checks the limits before it creates any value.
 /// Errors, whose messages include no fix: kInvalidInput, kLimit.
 [[nodiscard]] Result<nlohmann::json> parseStrictJson(std::string_view text, const JsonLimits& limits = {});
 

@@ -14,7 +14,7 @@ namespace relief {
 /// \return nullopt if the word is not a number.
 [[nodiscard]] std::optional<float> readDecimal(std::string_view word);
 
-/// Returns "'word'" for a message, cleaned and truncated.
+/// Returns "'word'" for a message, truncated and converted by cleanUtf8().
 [[nodiscard]] std::string quotedWord(std::string_view word);
 
 /// Explains why a word is not a number, with a fix: "'0x1p0' is hexadecimal; write it as a decimal number".

@@ -91,7 +91,7 @@ class PlyNumbers {
 /// Skips a property: a number or a list. Errors: those of readPlyLength.
 [[nodiscard]] Result<void> skipPlyProperty(const PlyProperty& property, PlyNumbers& numbers);
 
-/// Reads the properties of an element that have given names and are not lists.
+/// Reads the properties of an element by name; skips lists and all other properties.
 class PlyColumns {
   public:
     /// \param element  borrowed. \param names  one for each value of read().

@@ -16,10 +16,10 @@
  * Some arguments may be NULL, such as the textures of particles. If creating an object of the argument's type failed,
  * NULL is rejected with that error until the thread calls relief_error() or creates an object of that type.
  *
- * OpenGL. Functions marked (GL) need a current OpenGL context on the calling thread: OpenGL 3.3, or OpenGL ES 3.0 with
- * renderable float textures. Use the same context for all objects that work together. The functions restore the GL
- * state that they change, unless stated otherwise. They fail if no context is current; a handle to be freed then stays
- * valid.
+ * OpenGL. Functions in sections marked (GL) need a current OpenGL context on the calling thread: OpenGL 3.3, or OpenGL
+ * ES 3.0 with renderable float textures. Use the same context for all objects that work together. The functions restore
+ * the GL state that they change, unless stated otherwise. They fail if no context is current; a handle to be freed then
+ * stays valid.
  *
  * Threads. Several threads may call at once with different handles. relief_collider_query() and
  * relief_collider_nearest() may also share a handle. Errors are stored per thread.
@@ -27,8 +27,8 @@
  * Units. Lengths are in the units of the mesh, times in seconds. A vector is three consecutive floats; a matrix is
  * sixteen floats in column-major order. All numbers must be finite. If no range is given, it is -1e15 to 1e15.
  *
- * Structures only grow at their end. Set `size` to sizeof(the structure), and members that you do not need to 0. A
- * `size` that matches no version of the structure, such as 0, is an error. */
+ * Structures only grow at their end. Set `size` to sizeof(the structure), and unused members to 0. A `size` that
+ * matches no version of the structure, such as 0, is an error. */
 #ifndef RELIEF_RUNTIME_H
 #define RELIEF_RUNTIME_H
 

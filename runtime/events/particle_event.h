@@ -30,7 +30,7 @@ struct ParticleEvent {
     std::uint32_t id = 0;     ///< see ParticleState::id
     std::uint32_t index = 0;  ///< index of the particle's texel
     std::uint32_t type = 0;
-    double time = 0.0;  ///< seconds since the start, as in ParticleSystem::time()
+    double time = 0.0;  ///< seconds, as in ParticleSystem::time()
     /// Contact point or place of death; world space. The surface is assumed flat within the step.
     glm::vec3 position{0.0F};
     glm::vec3 velocity{0.0F};  ///< before the hit, including the forces of the step; world units/s

@@ -36,9 +36,9 @@ struct StepVariant {
     std::vector<const StepFeature*> features = {};  ///< all features, in the order of their outputs
     bool verlet = false;
     bool sweep = false;
-    bool radius = false;   ///< a type has a radius
+    bool radius = false;   ///< at least one type has a radius
     bool compute = false;  ///< compile a compute shader, for dispatch()
-    bool masks = false;    ///< a type does not collide with everything
+    bool masks = false;    ///< at least one type does not collide with everything
     int types = 1;
     friend bool operator==(const StepVariant&, const StepVariant&) = default;
 };
@@ -65,7 +65,7 @@ class StepPass {
         float dt = 0.0F;
         float ground = 0.0F;
         float sweep = 0.0F;
-        double time = 0.0;  ///< the same instant, in seconds since time 0
+        double time = 0.0;  ///< the same instant as `now`, as ParticleSystem::time(), seconds
         Forces forces;
         std::span<const ParticleType> types;
     };

@@ -62,7 +62,7 @@ class TilePainter {
     /// \param adds  whether the blend mode is Blend::kAdditive.
     void paint(const Programs& programs, const Vertices& vertices, bool adds);
     /// Blends the layer over the target, and draws the sprites if tiles overflowed. Requires: target, viewport, blend
-    /// function and an empty vertex array are set. The depth test is off for the layer and on for the sprites.
+    /// function and an empty vertex array are set. Disables the depth test for the layer, enables it for the sprites.
     void show(const GlProgram& sprites, const Vertices& vertices) const;
 
   private:

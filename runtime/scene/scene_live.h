@@ -22,8 +22,8 @@ struct LiveMesh {
     Collider frames;  ///< bounds of the whole motion, and three maps without texels
 };
 
-/// Reads the mesh, completes its waves, and chooses maps that cover its whole motion.
-/// \param from  with `live`.
+/// Reads the mesh, sets the default wavelength, and chooses maps that cover its whole motion.
+/// \param from  its `live` must be set.
 /// Errors: those of loadPictureMesh(); kInvalidInput (a mesh without extent). Messages start with the place in the
 /// scene.
 [[nodiscard]] Result<LiveMesh> loadLiveMesh(const SceneCollider& from);
@@ -47,7 +47,7 @@ struct PlayedMesh {
 [[nodiscard]] Result<void> changeClip(PlayedMesh& played, const SceneCollider& from);
 
 /// Finds the clip, and chooses maps that cover all clips of the mesh.
-/// \param from  with `play`. \param mesh  of its container. \param extent  poseExtent() of the mesh.
+/// \param from  its `play` must be set. \param mesh  of its container. \param extent  poseExtent() of the mesh.
 /// Errors: kInvalidInput (no such clip), with the place in the scene and a list of the clips.
 [[nodiscard]] Result<PlayedMesh> loadPlayedMesh(const SceneCollider& from,
                                                 std::shared_ptr<const AnimatedMesh> mesh,

@@ -36,7 +36,7 @@ class ColliderSource {
     virtual void release(Collider /*used*/) {}
 };
 
-/// Reads a world's containers in a thread that ends with the object, and checks them against the world's hashes, sizes
+/// Reads a world's containers in a thread that ends with the source, and checks them against the world's hashes, sizes
 /// and boxes.
 /// \param folder  of the world. Errors: kLimit (no thread could be created).
 [[nodiscard]] Result<std::unique_ptr<ColliderSource>> makeFileSource(World world,
