@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One RayEnd of a view, seen by a viewer at the start of the rays to it, for fitting planes to texels (plane_fit.h).
+// Converts between one RayEnd of a view and plane fits (plane_fit.h), where rays start at the viewer.
 #pragma once
 
 #include <algorithm>

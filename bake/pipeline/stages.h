@@ -66,8 +66,8 @@ struct SolidMesh {
 [[nodiscard]] Result<SolidMesh> solidOf(const BakeRequest& request, SourceMesh source,
                                         const BakeWatcher& watcher);
 
-/// Returns the solid of a mesh that is wound outwards; with --holes keep or --animated, the mesh itself.
-/// Errors: those of parseShapeOptions and shapeMesh.
+/// Returns the solid of an outward-wound mesh, or, with --holes keep or --animated, the mesh itself. Errors: those of
+/// parseShapeOptions and shapeMesh.
 [[nodiscard]] Result<ShapedMesh> makeSolid(const BakeRequest& request, const PreparedMesh& mesh);
 
 /// Patches limited by a budget, a texel or an error.

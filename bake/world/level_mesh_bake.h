@@ -22,7 +22,7 @@ struct LevelMeshBake {
 };
 
 /// Bakes and writes the colliders of a mesh.
-/// \param collider  the result of the mesh; receives the measured errors and warnings.
+/// \param collider  copied to each result; receives the measured accuracy and warnings.
 /// \return the written colliders.
 [[nodiscard]] Result<std::vector<WorldColliderResult>> bakeLevelMesh(const LevelMeshBake& of,
                                                                      WorldColliderResult& collider);

@@ -80,7 +80,7 @@ struct FieldRules {
     std::string_view needs = {};       ///< the field requires at least one of these keys
     std::string_view instead_of = {};  ///< keys that this field excludes
     std::string_view only = {};        ///< values of the selecting field for which this field is valid
-    /// Key of top-level tables: the value is the index of one of these tables, or its name.
+    /// Top-level key of tables; the field holds the index or the name of one of them.
     std::string_view index_of = {};
     std::size_t most = std::numeric_limits<std::size_t>::max();  ///< maximum number of elements of a vector
     bool required = false;  ///< if `only` is set, required only for those values
@@ -157,8 +157,8 @@ inline constexpr bool kIsForm = false;
 template <template <class...> class Form, class... Parts>
 inline constexpr bool kIsForm<Form, Form<Parts...>> = true;
 
-/// A type with its own text form provides parseText(word, value), which returns false if the word is not valid, and
-/// fieldText(value).
+/// A type with its own text form provides fieldText(value), and parseText(word, value), which returns false if the word
+/// is not valid.
 template <class T>
 concept WithForm = requires(std::string_view word, T& value) {
     { parseText(word, value) } -> std::same_as<bool>;

@@ -43,7 +43,7 @@ class AirBlock {
   private:
     GlBuffer block_;
     GlTexture flow_;
-    glm::vec4 flow_block_[3] = {};  // part of the block
+    glm::vec4 flow_block_[3] = {};  // blockHead() of the flow
     unsigned kinds_ = 0;
     std::size_t bytes_ = 0;
     std::string defines_;

@@ -16,7 +16,7 @@
 namespace relief {
 
 inline constexpr float kBenchDt = 1.0F / 60.0F;
-inline constexpr int kBenchStepsMax = 16;  ///< maximum steps per block
+inline constexpr int kBenchStepsMax = 16;  ///< per block (bench.h)
 /// Seconds; longer than a block and the step before it, so that no particle dies meanwhile.
 inline constexpr float kBenchLifetime = 0.5F;
 static_assert(kBenchLifetime > kBenchDt * (kBenchStepsMax + 2));
@@ -56,7 +56,7 @@ inline constexpr std::size_t kCrowdColliders = 50;
 enum class EachStep : std::uint8_t { kNothing, kPoses, kEvents };
 inline constexpr std::size_t kCrowdMoves = 1'000;
 inline constexpr float kCrowdFill = 0.8F;
-/// With this value, bounds of bodies fill 8 % of the space, like the objects of samples/village.py between ground and
+/// BenchVariant::share at which the bounds of bodies fill 8 % of space, as in samples/village.py between ground and
 /// roofs.
 inline constexpr float kVillageFill = 0.43F;
 

@@ -57,9 +57,9 @@ struct BodyGrid {
 
     /// Builds a grid.
     /// \param boxes  finite unless unbounded.
-    /// \param cell_size  cell size relative to the longest side of a body, rounded up by less than a factor of 2;
-    /// larger if a coordinate would exceed 1e9 cells, or if the body's level is merged into a coarser one. Smaller
-    /// cells give shorter lists but more entries.
+    /// \param cell_size  in units of a body's longest side. Cells are rounded up to a power of 2; they are larger if a
+    /// coordinate would exceed 1e9 cells, or if the body's level is merged into a coarser one. Smaller cells give
+    /// shorter lists but more entries.
     [[nodiscard]] static BodyGrid of(std::span<const BodyBox> boxes, float cell_size);
 };
 

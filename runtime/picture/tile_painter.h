@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws sprites by compute shaders, tile by tile (shaders/picture/tile.glsl), instead of as points or triangles. This
+// Paints sprites by compute shaders, tile by tile (shaders/picture/tile.glsl), not as drawn points or triangles. This
 // is several times faster on GPUs with much more compute than raster throughput.
 //
 // The picture is divided into tiles of 16 × 16 pixels. Each sprite is computed once and gets an entry for each tile
