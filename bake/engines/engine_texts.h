@@ -5,7 +5,7 @@
 
 namespace relief {
 
-/// Returns the text of a file that embed.cmake embeds; empty for other files. \param path  in the project.
+/// Returns the text that embed.cmake makes of a file; empty for other files. \param path  of the file, in the project.
 [[nodiscard]] std::string_view engineText(std::string_view path);
 
 }  // namespace relief

@@ -4,8 +4,8 @@
 //
 //        y  |        . outside      points near the surface: side, and distance to the
 //           |    .  /  \            collider's surface along y
-//           |\_____/ .  \___        points anywhere: side, also beyond the edges and at holes,
-//           |  . inside     |       but not below the floor of the ground
+//           |\_____/ .  \___        points anywhere: side, also beyond the edges and at holes;
+//           |  . inside     |       where there is ground, only above its floor
 //        ---+---------------+-- x
 #pragma once
 

@@ -47,7 +47,8 @@ struct ScenePart {
     std::vector<std::string> names{};   ///< of its mesh, group and material, for --as
 };
 
-/// Copies the positions that the part's triangles use, in order, and renumbers the triangles' corners.
+/// Appends the positions that the part's triangles use to part.positions, in order, and renumbers the triangles'
+/// corners.
 /// \return the indices in `positions` of the copied positions.
 std::vector<std::uint32_t> compact(const std::vector<glm::vec3>& positions, ScenePart& part);
 

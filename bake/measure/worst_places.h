@@ -48,9 +48,9 @@ struct WorstPlace {
 };
 
 /// Finds the places with the most wrong points near the surface, in descending order. A place starts at its worst
-/// cell, a cube with 3 % of the mesh's longest side. It grows over neighbouring cells with at least a quarter as many
-/// wrong points, up to three cells away, and includes the neighbours of these cells within that distance. The result
-/// does not depend on the number of threads.
+/// cell, a cube whose side is 3 % of the mesh's longest side. It grows over neighbouring cells with at least a quarter
+/// as many wrong points, up to three cells away, and includes the neighbours of all these cells within that distance.
+/// The result does not depend on the number of threads.
 /// \param query   of the mesh of `samples`.
 /// \param sights  of the collider's maps, in the baked mesh.
 /// \param count   maximum number of places.

@@ -18,8 +18,8 @@ namespace relief {
 
 /// Configuration for rtcNewDevice(). By default, Embree uses the processor's widest instruction set. Fused multiply-add
 /// changes which rays hit an edge; vector width changes which of two surfaces at equal depth comes first. The bytes of
-/// a bake would then depend on the processor. This string selects SSE4.2, which all Intel and AMD processors introduced
-/// since 2013 support; on others, Embree returns an error. The restriction costs about a tenth of a bake's time.
+/// a bake would then depend on the processor. This string selects SSE4.2 on every processor; if the processor does
+/// not support it, Embree returns an error. The restriction costs about a tenth of a bake's time.
 #if defined(__x86_64__)
 inline constexpr const char* kEmbreeConfig = "isa=sse4.2";
 #else

@@ -28,7 +28,8 @@ template <class Value, class Index = std::uint32_t>
 class Buckets {
   public:
     Buckets() = default;
-    /// \param forEach  calls its argument with (bucket, value) for every value; called twice, with the same order.
+    /// \param forEach  calls its argument with (bucket, value) for every value, in the same order each time; it is called
+    /// twice.
     template <class ForEach>
     Buckets(std::size_t count, const ForEach& forEach) : first_(count + 1, 0) {
         forEach([&](std::size_t bucket, const Value&) { ++first_[bucket + 1]; });

@@ -44,8 +44,8 @@ struct Part {
                                                    const std::vector<glm::uvec3>& triangles,
                                                    const glm::dvec3& center);
 
-/// Maximum distance between near copies, as a fraction of the larger part's longest side. Equals the limit in
-/// checkShellThickness().
+/// Maximum distance between near copies, as a fraction of the larger part's longest side. Equals the
+/// minimum thickness of a shell, as a fraction of the longest side of its sheet, in checkShellThickness().
 inline constexpr double kCopyReach = 1e-4;
 
 struct NearCopies {

@@ -17,9 +17,10 @@
  * NULL is rejected with that error until the thread calls relief_error() or creates an object of that type.
  *
  * OpenGL. Functions in sections marked (GL) need a current OpenGL context on the calling thread: OpenGL 3.3, or OpenGL
- * ES 3.0 with renderable float textures. Use the same context for all objects that work together. The functions restore
- * the GL state that they change, unless stated otherwise. They fail if no context is current; a handle to be freed then
- * stays valid.
+ * ES 3.0 with renderable float textures. Exceptions: relief_textures_glsl(), relief_textures_warning(),
+ * relief_particles_spawn() and relief_particles_counts(). Use the same context for all objects that work together. The
+ * functions restore the GL state that they change, unless stated otherwise. Functions that need a context fail if none
+ * is current; a handle to be freed then stays valid.
  *
  * Threads. Several threads may call at once with different handles. relief_collider_query() and
  * relief_collider_nearest() may also share a handle. Errors are stored per thread.

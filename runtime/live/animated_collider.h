@@ -40,8 +40,8 @@ struct AnimatedColliderOptions {
 
 class AnimatedCollider {
   public:
-    /// Starts in firstPose(). Every call except check(), placed() and the accessors needs a current context, restores
-    /// the GL state that it changes, and does not wait.
+    /// Starts in firstPose(). Every call except check(), settle(), placed() and the accessors needs a current context,
+    /// restores the GL state that it changes, and does not wait.
     /// \param mesh  valid; may be shared by several colliders.
     /// Errors: those of animatedMaps(), LiveCollider and SkinPass.
     [[nodiscard]] static Result<AnimatedCollider> create(std::shared_ptr<const AnimatedMesh> mesh,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Generates births of particles on the CPU: positions, velocities and times. The same settings and seed give
-// bit-identical births on every machine (runtime/particles/random.h) and, except for ages, for every step length.
+// bit-identical births on every machine (runtime/particles/random.h). They also do for every step length, except for
+// ages, for places and velocities on moving surfaces, and after emit() has dropped births.
 #pragma once
 
 #include <cstdint>
@@ -92,7 +93,7 @@ class Emitter {
     /// Generates the births of the next `dt` seconds in time order; at equal times, births of `rate` precede a burst.
     /// After time t, with s = min(t − start, duration), a total of burst (1 + ⌊s / burst_every⌋) + ⌊rate · s⌋ births
     /// are due, independent of the step lengths; a burst at the end of the duration is omitted. The n-th birth does not
-    /// depend on the step lengths either, except for its age.
+    /// depend on the step lengths either, except for its age and, on a moving surface, its place and velocity.
     /// \param room    maximum number of births to generate: the free capacity of the particle system.
     /// \param births  the new births are appended to this vector.
     /// \return the number of due births that exceed `room`; they are dropped.

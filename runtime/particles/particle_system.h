@@ -91,7 +91,8 @@ class ParticleSystem {
     static constexpr std::uint32_t kStateWidth = 1024;  ///< texels per row; fewer if the capacity is smaller
     static constexpr std::uint32_t kCapacityMax = 1U << 24;
 
-    /// Every call that is not const needs a current context, as do readState(), readRaw() and makeStateTexture().
+    /// Every call that is not const, except spawn(), needs a current context, as do readState(), readRaw() and
+    /// makeStateTexture().
     /// Errors: kUsage (capacity, epoch), kLimit (more than this GL context supports), kUnsupported (also
     /// StepPath::kCompute without compute shaders), kFailure.
     [[nodiscard]] static Result<ParticleSystem> create(const ParticleSystemOptions& options = {});

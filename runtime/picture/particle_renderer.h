@@ -69,9 +69,9 @@ class ParticleRenderer {
   public:
     /// Needs a current context, as draw() does.
     /// \param collider  shades the particles; nullopt: no shading.
-    /// \param path      kCompute: paint by compute shaders (tile_painter.h) if the depth of the target is a plain
-    ///                  texture; pictures differ only by rounding. kAuto: kCompute on GPUs whose drivers compile the
-    ///                  compute shaders. Normally picturePath() of the path of the particle system.
+    /// \param path      kCompute: paint by compute shaders if the depth of the target is a plain texture; pictures then
+    ///                  differ slightly (tile_painter.h). kAuto: kCompute on GPUs whose drivers compile the compute
+    ///                  shaders. Normally picturePath() of the path of the particle system.
     /// Errors: kUnsupported (kCompute without compute shaders), kFailure (shader compiler), kLimit (out of memory).
     [[nodiscard]] static Result<ParticleRenderer> create(const std::optional<ColliderView>& collider,
                                                          StepPath path = StepPath::kAuto);

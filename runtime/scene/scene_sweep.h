@@ -56,7 +56,7 @@ class SceneSweep {
     std::vector<Body> bodies_;
     std::vector<std::map<float, float>> groups_;  // per group: highest speed by particle radius
     float longest_ = 0.0F;                        // longest step, seconds
-    float half_ = 0.0F;    // half the smallest sum of thickness and diameter; 0: no step exceeds this sum
+    float half_ = 0.0F;    // half the smallest sum of thickness and diameter that a step exceeds; 0: none
     float speed_ = 0.0F;   // highest speed at colliders thinner than a step
     bool fitted_ = false;  // half_ and speed_ are up to date
     bool warned_ = false;
