@@ -31,8 +31,8 @@ struct NormalIndex {
 /// Returns a table of decodeNormal() by packed index, because a bake decodes millions. Computed on the first call.
 [[nodiscard]] const std::array<glm::vec3, 65536>& decodedNormals();
 
-/// Returns the index with the lowest s and t of the four that surround a vector in the square. The other three are one
-/// step further along s, t or both.
+/// Returns the lowest s and t of the four indices around a vector in the square. The other three are one step further
+/// along s, t or both.
 /// \param normal  any finite nonzero vector.
 [[nodiscard]] NormalIndex lowestAround(const glm::vec3& normal);
 

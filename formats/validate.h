@@ -40,7 +40,7 @@ inline constexpr double kObjectPerMapTolerance = 1e-3;  ///< relative error of o
 /// Prefixes an error with the index of its map.
 [[nodiscard]] Error inMap(std::size_t index, const Error& error);
 
-/// Returns the name that containers store for a mesh, and that its file in the folder render.meshes of a scene has:
+/// Returns a mesh's name in containers, which is also its file's name in the folder render.meshes of a scene:
 /// cleanUtf8() with '_' for '/' and '\', because node names may look like paths; truncated to kMeshNameMax bytes.
 [[nodiscard]] std::string storedMeshName(std::string name);
 

@@ -173,8 +173,7 @@ Result<std::string> makeWorldPage(const std::string& file, const WorldCheckJson&
 
 OptionRef addMeshOptions(CLI::App& verb, CheckRequest& request) {
     OptionRef mesh =
-        addOption(verb, "--mesh", request.mesh, "Mesh, level or height map that FILE was baked from")
-            ->valueText("MESH");
+        addOption(verb, "--mesh", request.mesh, "Mesh or level that FILE was baked from")->valueText("MESH");
     const auto measurement = [&](FieldVisitor& visit) { measurementFields(visit, request); };
     for (const OptionRef option : addFields(verb, group(measurement))) {
         option->needs(mesh);

@@ -3,7 +3,7 @@
 //
 //      squares of a row:  0 ... 1020 1024 1028 ... 2044 2048 2052
 //      tile 0             |----------------|
-//      tile 1                     |----------------------|
+//      tile 1                     |---------------------------|
 //
 // Each tile extends one leaf beyond its own squares. Leaves in the overlap of two tiles are bit-identical, so that the
 // union of both has the same surface, and no point of a seam lies outside all tiles. A tile's coarse collider uses

@@ -33,7 +33,7 @@ inline constexpr std::uint64_t kHeightSamplesMax = std::uint64_t{1} << 28;
 struct BetterFormat {
     std::optional<SampleType> type = {};  ///< nullopt: as given
     std::optional<ByteOrder> order = {};  ///< nullopt: as given
-    bool eight_bits = false;              ///< the given order may also be correct: 8-bit samples times 256
+    bool eight_bits = false;              ///< in the given order, they may be 8-bit samples times 256
     /// No better setting was found, but the samples look like noise, or neighbours differ less with the other
     /// signedness.
     bool doubtful = false;
@@ -44,8 +44,8 @@ struct BetterFormat {
 /// "type=int16,order=big"; empty if no better setting was found.
 [[nodiscard]] std::string toString(const BetterFormat& format);
 
-/// Searches for better settings. Compares the differences between neighbours in at most 64 rows, and the values of all
-/// bytes.
+/// Searches for better settings. Compares how neighbours differ in at most 64 rows, and which byte values occur in the
+/// file.
 [[nodiscard]] BetterFormat findBetterRawFormat(std::span<const std::byte> bytes, const HeightsSpec& spec);
 
 /// Up to three extreme values, lowest or highest, far from all others: the gap is more than half the range.

@@ -47,8 +47,7 @@ struct ScenePart {
     std::vector<std::string> names{};   ///< of its mesh, group and material, for --as
 };
 
-/// Appends the positions that the part's triangles use to part.positions, in order, and renumbers the triangles'
-/// corners.
+/// Appends to part.positions, in order, those of `positions` that its triangles use, and renumbers their corners.
 /// \return the indices in `positions` of the copied positions.
 std::vector<std::uint32_t> compact(const std::vector<glm::vec3>& positions, ScenePart& part);
 
@@ -110,7 +109,7 @@ void warnAboutParts(const MeshParts& parts, std::vector<std::string>& warnings);
 /// Converts to metres and +Y up if the frame or the job specifies unit and axis. Counts all triangles before
 /// allocating, because a small file can place one mesh many times.
 /// Errors, without the file name: kInvalidInput (nothing to show, a node within itself, an invalid frame), kUsage (a
-/// name without triangles), kLimit (more triangles than the job allows, or three times as many vertices).
+/// name without triangles), kLimit (triangles exceed the job's limit, or vertices three times it).
 [[nodiscard]] Result<TriangleMesh> flatten(ImportScene scene, const ImportJob& job);
 
 /// Like flatten(), but fills TriangleMesh::level_meshes and level_bodies. Rotation, uniform scale and translation

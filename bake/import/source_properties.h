@@ -17,7 +17,7 @@
 
 namespace relief {
 
-/// Suffix that patchedFbx() adds to the names of LodGroup nodes; as long as "LodGroup", the word that it replaces.
+/// Suffix that patchedFbx() adds to a node's name in exchange for its class "LodGroup", which is as long.
 inline constexpr std::string_view kLodGroupMark = "\x02LodGrp\x02";
 
 /// Patches an FBX document, binary or text, without changing its length, so that assimp exposes hidden nodes and levels

@@ -48,7 +48,7 @@ std::vector<std::string> warningsOf(const BakeRequest& request, const SolidMesh&
     }
     warnings.insert(warnings.end(), baked.report.warnings.begin(), baked.report.warnings.end());
     const double wrong = check != nullptr ? check->wrong.total() : 0.0;
-    if (wrong > kGoodPercent) {
+    if (wrong > kGoodPercent && !request.max_error) {  // --max-error accepts it, and ignores a larger budget
         warn(shortNumber(wrong) + " % wrong near the surface; " +
              (floatsLimit(mesh, wrong) ? "move it to the origin" : fixFor(request, solid.shape)));
     }

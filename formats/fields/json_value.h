@@ -11,7 +11,7 @@ namespace relief {
 
 using Json = nlohmann::ordered_json;
 
-/// Wraps Json in a struct that headers can forward-declare (FieldCustom).
+/// Wraps Json in a struct that field_type.h can forward-declare.
 struct FieldJson {
     Json json;
 };
@@ -30,8 +30,7 @@ struct FieldJson {
 [[nodiscard]] Json jsonOf(FieldRef value);
 
 /// Returns the schema of a field. Objects accept no other keys, and require all fields without left_out or `only`.
-/// \param value  any value. If fields differ by kind, the schema covers all kinds() of its type; without kinds(), only
-/// the value's kind.
+/// \param value  any value. The schema covers the fields of all kinds() of its type, if declared, or else of this value.
 [[nodiscard]] Json schemaOf(FieldRef value);
 [[nodiscard]] Json schemaOf(FieldRef value, const FieldInfo& info);
 

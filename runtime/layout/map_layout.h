@@ -76,7 +76,7 @@ struct MapPlace {
     std::size_t first = 0;   ///< row-major index of the map's texel (0, 0) in the texture
     std::int32_t pitch = 0;  ///< texels from the start of a row to the start of the next
     TexelRectangle texels;   ///< live maps: where the map is rendered
-    TexelRectangle motion;   ///< live maps: where its motion is rendered, in the float texture
+    TexelRectangle motion;   ///< live maps: where surface motion is drawn, in the float texture
     std::size_t motion_first = 0;
 };
 

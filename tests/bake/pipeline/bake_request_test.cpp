@@ -325,6 +325,14 @@ TEST(Director, WarnsIfTheGradeIsNotGood) {
                   budget == 32'000U);
         EXPECT_NE(bakeText(baked, "x.relief", 1, false).find("% wrong near the surface"), std::string::npos);
     }
+    // No budget improves a bake that needs none for its limit.
+    request.budget.reset();
+    request.max_error = 6.0F;
+    const BakeResult limited = required(bake(request, {}, joined(rods)));
+    EXPECT_GT(limited.wrong->total(), 1.0);
+    EXPECT_TRUE(std::ranges::none_of(limited.baked.report.warnings, [](const std::string& warning) {
+        return warning.find("--budget") != std::string::npos;
+    }));
 }
 
 TEST(Director, AdvisesOnlyMovingTheOriginIfFloatsAreTooCoarse) {
