@@ -467,7 +467,8 @@ TEST(Shape, ShellOfASharpWedgeHasFullThickness) {
         EXPECT_EQ(count.filled, 0);
         // A mitre is at most two halves of the thickness long, also at the tip of a needle.
         const MeshQuery sheet = queryOf(meshes[i]);
-        for (const glm::vec3& p : shaped(meshes[i], ShapeAs::kShell, 0.1).mesh->positions) {
+        const ShapedMesh shell = shaped(meshes[i], ShapeAs::kShell, 0.1);
+        for (const glm::vec3& p : shell.mesh->positions) {
             ASSERT_LT(sheet.closest(p).distance, 0.1 + 1e-5) << p.x << ' ' << p.y << ' ' << p.z;
         }
     }
