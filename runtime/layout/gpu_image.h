@@ -35,7 +35,7 @@ struct GpuTexture {
 struct GpuImage {
     std::array<GpuTexture, kTexelKinds> textures;  ///< indexed by TexelKind
     std::vector<std::byte> block;                  ///< ReliefMaps, std140
-    std::string defines;                           ///< #define lines for collider.glsl
+    std::string defines;                           ///< `#define` lines for collider.glsl
 };
 
 /// Returns the textures of placed maps. The texels and the motion of live maps are zero.

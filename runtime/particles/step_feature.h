@@ -26,7 +26,7 @@ class StepFeature {
     [[nodiscard]] virtual std::string defines() const = 0;
     /// Returns whether the step reads the collider's materials for this feature.
     [[nodiscard]] virtual bool readsMaterials() const { return false; }
-    /// Fails if the feature does not support this collider. \param collider  null: none.
+    /// Fails if the feature does not support this collider; null: none.
     [[nodiscard]] virtual Result<void> check(const ShaderCollider* /*collider*/) const { return {}; }
 
     /// Connects the program. Called once after linking; the program is current.
@@ -38,7 +38,7 @@ class StepFeature {
     /// Returns the air velocity that the feature applies in place of Forces::wind, if any.
     [[nodiscard]] virtual std::optional<glm::vec3> wind() const { return std::nullopt; }
 
-    /// Called for each birth. \param id  of the previous particle at `index`; 0 if there was none.
+    /// Called for each birth: the index, and the id of the previous particle there; 0 if there was none.
     virtual void replaced(std::uint32_t /*index*/, std::uint32_t /*id*/) {}
     /// Called before a step from `begin` to `end`, seconds, of the first `extent` particles; `collider` is null if
     /// there is none.
