@@ -40,7 +40,7 @@ constexpr std::uint32_t kLevels = 10;
 constexpr int kSteps = 60;
 /// Fraction of the reported progress that belongs to the search.
 constexpr double kSearchShare = 0.7;
-constexpr int kNarrowings = 12;
+constexpr int kWorthTrials = 12;
 /// A tree is large enough if it leaves less than this fraction of the bytes unused.
 constexpr double kSpare = 3e-4;
 /// The same for an error curve, whose largest tree only has to be near the limit.
@@ -71,7 +71,7 @@ constexpr double kHeldWithin = 0.25;
 constexpr double kByteOfTexel = 0.005;
 /// Maximum distance from the origin, in texels: a float resolves a sixteenth of a texel there.
 constexpr double kDistanceInTexelsMax = 1 << 20;
-constexpr int kTexelNarrowings = 3;
+constexpr int kTexelTrials = 3;
 /// If a tree is to be cut, the maximum fraction of its bytes in the records of its roots.
 constexpr double kRootsShare = 1.0 / 16.0;
 constexpr std::size_t kManyTriangles = 256;
@@ -103,7 +103,7 @@ class Planner {
         } else {
             roots_.size = rootSizeByBytes();
             makeRoots();
-            const double byte = reserveForDepthPlanes(narrow(descend(), kSpare));
+            const double byte = reserveForDepthPlanes(chooseLowestWorth(descend(), kSpare));
             takeDepthPlanes(byte, kSpareByte * byte);
         }
         std::vector<const PatchNode*> roots;
@@ -119,7 +119,7 @@ class Planner {
     ErrorCurve errors() {
         roots_.size = rootSizeByBytes();
         makeRoots();
-        narrow(descend(), kSpareOfCurve);
+        chooseLowestWorth(descend(), kSpareOfCurve);
         std::ranges::stable_sort(tried_, {}, &ErrorPoint::bytes);
         ErrorCurve curve;
         for (const ErrorPoint& tree : tried_) {
@@ -364,7 +364,7 @@ class Planner {
             range.high_worth *= std::isfinite(factor) ? std::max(kByteWorthGrowth, factor) : 2.0;
             range.bytes_at_high = chooseAll(range.high_worth);
         }
-        byte = range.low_worth > 0.0 ? narrow(range, kSpareForDepth) : byte;
+        byte = range.low_worth > 0.0 ? chooseLowestWorth(range, kSpareForDepth) : byte;
         bytes_ = static_cast<double>(options_.bytes);
         return byte;
     }
@@ -372,13 +372,13 @@ class Planner {
     /// Finds the lowest worth of a byte whose tree fits, and chooses that tree.
     /// \param spare  fraction of the bytes that the tree may leave unused.
     /// \return the worth of a byte.
-    double narrow(WorthRange range, double spare) {
+    double chooseLowestWorth(WorthRange range, double spare) {
         if (!(range.low_worth > 0.0)) {
             return range.high_worth;
         }
         double byte = range.low_worth;
         const auto square = [](double x) { return x * x; };
-        for (int i = 0; i < kNarrowings && range.bytes_at_high < (1.0 - spare) * bytes_; ++i) {
+        for (int i = 0; i < kWorthTrials && range.bytes_at_high < (1.0 - spare) * bytes_; ++i) {
             const double share = (square(bytes_ / range.bytes_at_high) - 1.0) /
                                  (square(bytes_ / range.bytes_at_high) - square(bytes_ / range.bytes_at_low));
             byte = range.high_worth + std::clamp(share, 0.1, 0.9) * (range.low_worth - range.high_worth);
@@ -528,7 +528,7 @@ class Planner {
             fine = coarse;
             coarse *= 2.0;
         }
-        for (int i = 0; i < kTexelNarrowings; ++i) {
+        for (int i = 0; i < kTexelTrials; ++i) {
             const double middle = std::sqrt(fine * coarse);
             (planTexel(middle) ? coarse : fine) = middle;
         }

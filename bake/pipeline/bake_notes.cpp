@@ -48,9 +48,11 @@ std::vector<std::string> warningsOf(const BakeRequest& request, const SolidMesh&
     }
     warnings.insert(warnings.end(), baked.report.warnings.begin(), baked.report.warnings.end());
     const double wrong = check != nullptr ? check->wrong.total() : 0.0;
-    if (wrong > kGoodPercent && !request.max_error) {  // --max-error accepts it, and ignores a larger budget
+    const bool floats = floatsLimit(mesh, wrong);
+    // With --max-error the budget is only an upper limit, so a larger one would not change the bake.
+    if (wrong > kGoodPercent && (floats || !request.max_error)) {
         warn(shortNumber(wrong) + " % wrong near the surface; " +
-             (floatsLimit(mesh, wrong) ? "move it to the origin" : fixFor(request, solid.shape)));
+             (floats ? "move it to the origin" : fixFor(request, solid.shape)));
     }
     if (check != nullptr && check->parts) {
         if (const auto lost = lostPartsWarning(*check->parts, solid.parts, baked.collider)) {

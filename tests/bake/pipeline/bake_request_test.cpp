@@ -325,7 +325,7 @@ TEST(Director, WarnsIfTheGradeIsNotGood) {
                   budget == 32'000U);
         EXPECT_NE(bakeText(baked, "x.relief", 1, false).find("% wrong near the surface"), std::string::npos);
     }
-    // No budget improves a bake that needs none for its limit.
+    // With --max-error the budget is only an upper limit, so no larger one is advised.
     request.budget.reset();
     request.max_error = 6.0F;
     const BakeResult limited = required(bake(request, {}, joined(rods)));
@@ -353,6 +353,14 @@ TEST(Director, AdvisesOnlyMovingTheOriginIfFloatsAreTooCoarse) {
     EXPECT_EQ(checked.warnings, std::vector{warning});
     EXPECT_TRUE(adviceFor(checked, "mesh.obj", "out.relief").empty());
     EXPECT_FALSE(coarseFloatsWarning(makeIcosphere({0, 0, 0}, 1.0, 1)));
+    // A bake by --max-error reports it, too.
+    request.budget.reset();
+    request.max_error = 50.0F;
+    const BakeResult limited = required(bake(request, {}, mesh));
+    ASSERT_GT(limited.wrong->total(), 5.0);
+    EXPECT_TRUE(std::ranges::any_of(limited.baked.report.warnings, [](const std::string& text) {
+        return text.find("% wrong near the surface; move it to the origin") != std::string::npos;
+    }));
 }
 
 TEST(ShellWord, IsOneShellWord) {
