@@ -16,15 +16,6 @@ constexpr FieldRange kResolution{0.0, 4096.0};
 constexpr std::uint32_t kResolutionMin = 16;
 constexpr FieldRange kSeconds = within(1e9);
 
-/// Checks that an index is below `count`.
-Result<void> index(const Call& call, std::size_t i, std::size_t count, const char* argument) {
-    if (i < count) {
-        return {};
-    }
-    return call.reject(std::string(argument) + " is " + std::to_string(i) +
-                       "; it must be below the number of " + argument + "s, " + std::to_string(count));
-}
-
 Result<int> setNext(AnimatedBody& body, MeshPose pose) {
     RELIEF_TRY(body.collider.check(pose));
     body.next = std::move(pose);
@@ -70,7 +61,7 @@ size_t relief_animation_clip_count(const relief_animation* animation) {
 const char* relief_animation_clip_name(const relief_animation* animation, size_t clip) {
     return answer(__func__, "", [&](const Call& call) -> Result<const char*> {
         const AnimatedMesh& mesh = *RELIEF_TRY(call.object(animation, "animation"))->mesh;
-        RELIEF_TRY(index(call, clip, mesh.clips.size(), "clip"));
+        RELIEF_TRY(call.index(clip, mesh.clips.size(), "clip", "clips"));
         return mesh.clips[clip].name.c_str();
     });
 }
@@ -78,7 +69,7 @@ const char* relief_animation_clip_name(const relief_animation* animation, size_t
 float relief_animation_clip_duration(const relief_animation* animation, size_t clip) {
     return answer(__func__, kNan, [&](const Call& call) -> Result<float> {
         const AnimatedMesh& mesh = *RELIEF_TRY(call.object(animation, "animation"))->mesh;
-        RELIEF_TRY(index(call, clip, mesh.clips.size(), "clip"));
+        RELIEF_TRY(call.index(clip, mesh.clips.size(), "clip", "clips"));
         return mesh.clips[clip].seconds;
     });
 }
@@ -92,7 +83,7 @@ size_t relief_animation_joint_count(const relief_animation* animation) {
 const char* relief_animation_joint_name(const relief_animation* animation, size_t joint) {
     return answer(__func__, "", [&](const Call& call) -> Result<const char*> {
         const AnimatedMesh& mesh = *RELIEF_TRY(call.object(animation, "animation"))->mesh;
-        RELIEF_TRY(index(call, joint, mesh.joints.size(), "joint"));
+        RELIEF_TRY(call.index(joint, mesh.joints.size(), "joint", "joints"));
         return mesh.nodes[mesh.joints[joint].node].name.c_str();
     });
 }

@@ -112,6 +112,14 @@ class Call {
   public:
     explicit Call(const char* function) : function_(function) {}
 
+    /// Checks that an index is below `count`. \param argument, elements  "body" and "bodies", for the message.
+    [[nodiscard]] Result<void> index(std::size_t i, std::size_t count, const std::string& argument,
+                                     const std::string& elements) const {
+        return i < count
+                   ? Result<void>()
+                   : reject(argument + " is " + std::to_string(i) + "; it must be below the number of " +
+                            elements + ", " + std::to_string(count));
+    }
     [[nodiscard]] tl::unexpected<Error> reject(const std::string& what) const {
         return fail(ErrorCode::kUsage, std::string(function_) + "(): " + what);
     }

@@ -97,10 +97,7 @@ size_t relief_collider_material_count(const relief_collider* collider) {
 const char* relief_collider_material_name(const relief_collider* collider, size_t material) {
     return answer(__func__, "", [&](const Call& call) -> Result<const char*> {
         const std::vector<Material>& list = RELIEF_TRY(call.object(collider, "collider"))->materials.list;
-        if (material >= list.size()) {
-            return call.reject("material is " + std::to_string(material) +
-                               "; it must be below the number of materials, " + std::to_string(list.size()));
-        }
+        RELIEF_TRY(call.index(material, list.size(), "material", "materials"));
         return list[material].name.c_str();
     });
 }

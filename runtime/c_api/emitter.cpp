@@ -164,10 +164,8 @@ int64_t relief_particles_emit(relief_particles* particles, relief_emitter* emitt
         const double dt{seconds};
         if (from.mesh) {
             RELIEF_TRY(deformSurface(call, from, textures, body, dt));
-        } else if (body >= std::max<std::size_t>(among.poses.size(), 1)) {
-            return call.reject("body is " + std::to_string(body) +
-                               "; it must be below the number of bodies, " +
-                               std::to_string(std::max<std::size_t>(among.poses.size(), 1)));
+        } else {
+            RELIEF_TRY(call.index(body, std::max<std::size_t>(among.poses.size(), 1), "body", "bodies"));
         }
         to.births.clear();
         from.emitter.emit(dt, to.system.room(), to.births);

@@ -29,10 +29,7 @@ std::size_t bodyCount(const WorldObject& world) {
 
 Result<const WorldObject*> worldWithBody(const Call& call, const relief_world* world, std::size_t body) {
     const WorldObject* of = RELIEF_TRY(call.object(world, "world"));
-    if (body >= bodyCount(*of)) {
-        return call.reject("body is " + std::to_string(body) + "; it must be below the number of bodies, " +
-                           std::to_string(bodyCount(*of)));
-    }
+    RELIEF_TRY(call.index(body, bodyCount(*of), "body", "bodies"));
     return of;
 }
 
