@@ -101,9 +101,6 @@ std::vector<RecordedOption> effectiveOptions(const std::vector<Job>& jobs, const
             recorded.push_back({"prefer", std::string(wordOf(options.prefer))});
         }
     }
-    if (options.budget > 0) {
-        recorded.push_back({"budget", std::to_string(options.budget)});
-    }
     return recorded;
 }
 
@@ -347,9 +344,10 @@ class Bake {
         }
         PatchTree tree = RELIEF_TRY(bakePatches(query, options));
         const std::uint64_t covered = patchCount(tree.map) > 0 ? job.texels() : 0;
-        add(std::move(tree.map), MapReport{job.spec, covered, job.texels()});
+        const bool coarser = tree.texel > options.texel;
+        add(std::move(tree.map), MapReport{job.spec, covered, job.texels(), coarser});
         finish(job.texels());
-        if (tree.texel > options.texel) {
+        if (coarser) {
             baked_.report.warnings.push_back(
                 mesh_->name + ": the texel is " + shortest(static_cast<float>(tree.texel)) + ", not " +
                 shortest(job.spec.texel) + " as requested, which would take more than " +

@@ -36,7 +36,6 @@ struct BakeOptions {
     std::uint32_t resolution = 512;  ///< texels along a side, for maps whose spec has no size
     Quality quality = Quality::kNormal;
     Prefer prefer = Prefer::kNeither;
-    std::uint64_t budget = 0;  ///< maximum bytes of patches; only recorded in the collider; 0: not recorded
     /// MapSpec::texel for bakePatchesWithin(), object units; bake() ignores it. 0: limited only by the budget.
     float texel = 0.0F;
     std::optional<Bounds> roots_contain{};  ///< PatchOptions::roots_contain
@@ -50,6 +49,7 @@ struct MapReport {
     MapSpec spec;               ///< with all defaults filled in
     std::uint64_t covered = 0;  ///< texels with a surface
     std::uint64_t texels = 0;
+    bool coarser = false;  ///< the texel of patches is larger than requested, because of the budget
 
     /// Returns the fraction of the texels that store a surface.
     [[nodiscard]] double coverage() const {

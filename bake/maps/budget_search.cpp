@@ -7,7 +7,8 @@
 #include <optional>
 #include <utility>
 
-#include "bake/measure/truth.h"
+#include "bake/measure/accuracy.h"
+#include "bake/measure/part_accuracy.h"
 #include "formats/patch_tree.h"
 
 namespace relief {
@@ -35,8 +36,9 @@ bool mayBeTooSmall(const Error& error) {
 
 class Search {
   public:
-    Search(const MeshQuery& query, const MeshQuery& truth, const BudgetSearchOptions& options)
-        : query_(query), options_(options), truth_(sampleTruth(truth, options.accuracy)) {}
+    Search(const MeshQuery& query, const MeshQuery& truth, const SurfaceParts& parts,
+           const BudgetSearchOptions& options)
+        : query_(query), parts_(parts), options_(options), near_(sampleNear(truth, options.accuracy)) {}
 
     Result<BudgetSearchResult> run() {
         const std::uint64_t most = options_.budget_max;
@@ -75,13 +77,19 @@ class Search {
     /// Bakes with this budget. Stores the result as the best so far if it meets the error limit.
     Result<bool> meetsLimit(std::uint64_t budget) {
         Baked baked = RELIEF_TRY(bakePatchesWithin(query_, budget, options_.bake));
-        const double wrong = measureField(truth_, fieldOf(baked.collider)).near.total();
-        const BudgetTrial attempt{budget, baked.collider.texelBytes(), wrong};
+        const Field field = fieldOf(baked.collider);
+        BudgetTrial attempt{budget, baked.collider.texelBytes(), measureNear(near_, field).total()};
+        const bool accurate = attempt.wrong_percent <= options_.max_error_percent;
+        if (accurate) {
+            const PartOptions options{.points_all = options_.accuracy.samples,
+                                      .seed = options_.accuracy.seed};
+            attempt.lost_parts = measureParts(query_, parts_, field, options).countOf(PartVerdict::kLost);
+        }
         tries_.push_back(attempt);
         if (options_.tried) {
             options_.tried(attempt);
         }
-        if (!(wrong <= options_.max_error_percent)) {
+        if (!accurate || attempt.lost_parts > 0) {
             return false;
         }
         best_ = BudgetSearchResult{std::move(baked), attempt, {}};
@@ -96,12 +104,18 @@ class Search {
                     query_.mesh().name + ": --max-error " + percentText(options_.max_error_percent) +
                         " is not reached within " + megabytes(options_.budget_max) + "; the best is " +
                         percentText(best->wrong_percent) + " with " + megabytes(best->bytes) + " (" +
-                        std::to_string(best->bytes) + " bytes); raise --max-error or --budget");
+                        std::to_string(best->bytes) + " bytes)" +
+                        (best->lost_parts == 0
+                             ? "; raise --max-error or --budget"
+                             : ", but " + std::to_string(best->lost_parts) +
+                                   (best->lost_parts == 1 ? " part is" : " parts are") +
+                                   " lost; raise --budget, or remove --max-error"));
     }
 
     const MeshQuery& query_;
+    const SurfaceParts& parts_;
     const BudgetSearchOptions& options_;
-    TruthSamples truth_;
+    std::vector<TruthPoint> near_;
     std::vector<BudgetTrial> tries_;
     std::optional<BudgetSearchResult> best_;
 };
@@ -118,13 +132,19 @@ Result<Baked> bakePatchesWithin(const MeshQuery& query, std::uint64_t budget_byt
     spec.bytes = std::min(budget_bytes, kPatchBytesMax);
     spec.texel = options.texel;
     options.maps = {spec};
-    options.budget = budget_bytes;
-    return bake(query.prepared(), options);
+    Baked baked = RELIEF_TRY(bake(query.prepared(), options));
+    std::vector<RecordedOption>& recorded = baked.collider.provenance.options;
+    // `relief bake` rejects --map with --budget or --texel.
+    std::erase_if(recorded, [](const RecordedOption& option) { return option.name == "map"; });
+    if (budget_bytes > 0) {
+        recorded.push_back({"budget", std::to_string(budget_bytes)});
+    }
+    return baked;
 }
 
 Result<BudgetSearchResult> bakeForError(const MeshQuery& query, const MeshQuery& truth,
-                                        const BudgetSearchOptions& options) {
-    return Search(query, truth, options).run();
+                                        const SurfaceParts& parts, const BudgetSearchOptions& options) {
+    return Search(query, truth, parts, options).run();
 }
 
 void fields(FieldVisitor& visit, const BudgetTrial& attempt) {
@@ -132,6 +152,8 @@ void fields(FieldVisitor& visit, const BudgetTrial& attempt) {
     visit("bytes", attempt.bytes, {"Actual bytes of texels"});
     visit("wrong_percent", attempt.wrong_percent,
           {"Points near the surface that are on the wrong side", "%", kPercentRange});
+    visit("lost_parts", attempt.lost_parts,
+          {"Lost parts of the mesh; counted only if wrong_percent is within the limit"});
 }
 
 }  // namespace relief

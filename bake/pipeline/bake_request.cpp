@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "bake/height_map/heights_spec.h"
+#include "bake/maps/budget_search.h"
 #include "bake/views/map_spec.h"
 #include "formats/base/text.h"
 
@@ -253,7 +254,7 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
     visit("budget", request.budget,
           {.help = "Size limit of the patches on the GPU, such as 256kB or 4MB",
            .unit = "bytes",
-           .range = {1.0},
+           .range = {static_cast<double>(kBudgetMin)},
            .fallback = "1MB",
            .recorded = true,
            .details = "The file is a few hundred bytes larger, or smaller with --compress. With --max-error "
@@ -276,12 +277,12 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
     visit(
         "max_error", request.max_error,
         {.help = "Bake the smallest collider that misclassifies at most this percentage of points near the "
-                 "surface",
+                 "surface, and loses no part",
          .unit = "%",
          .range = {0.0},
-         .details = "Tries budgets from 32kB to 64MB, or up to --budget, and measures each as `relief check` "
-                    "does, with 50000 points. If none is accurate enough, the exit code is 7 and nothing is "
-                    "written. It excludes --texel."});
+         .details = "Tries budgets from 32kB to 64MB, or up to --budget. `relief check --max-error` accepts the "
+                    "result. If no trial is accurate enough, the exit code is 7 and nothing is written. It "
+                    "excludes --texel."});
     visit("quality", request.quality,
           {.help = "Effort spent on fitting maps to the surface; best is the slowest",
            .fallback = "normal",

@@ -21,10 +21,11 @@ std::optional<std::uint64_t> budgetOf(const BakeRequest& request) {
 }
 
 /// Finds the smallest budget that meets --max-error.
+/// \param query  of the solid.
 /// \param truth  of the mesh to measure against: the imported mesh if the mesh was repaired.
 Result<BudgetSearchResult> searchBudget(const BakeRequest& request, const BakeSettings& settings,
-                                        const MeshQuery& query, const MeshQuery& truth,
-                                        const BakeWatcher& watcher) {
+                                        const SolidMesh& solid, const MeshQuery& query,
+                                        const MeshQuery& truth, const BakeWatcher& watcher) {
     notify(watcher.begin, "searching for the smallest budget");
     BudgetSearchOptions options;
     options.max_error_percent = double{*request.max_error};
@@ -38,7 +39,7 @@ Result<BudgetSearchResult> searchBudget(const BakeRequest& request, const BakeSe
     options.bake = settings.bake;
     options.bake.progress = [&watcher](double) { notify(watcher.checkpoint); };
     options.tried = watcher.tried;
-    return bakeForError(query, truth, options);
+    return bakeForError(query, truth, solid.parts, options);
 }
 
 Result<BakedMaps> bakePatches(const BakeRequest& request, const BakeSettings& settings,
@@ -51,7 +52,7 @@ Result<BakedMaps> bakePatches(const BakeRequest& request, const BakeSettings& se
     report.requested_texel = request.texel;
     if (request.max_error) {
         const MeshQuery truth = solid.imported ? RELIEF_TRY(MeshQuery::build(*solid.imported)) : query;
-        BudgetSearchResult found = RELIEF_TRY(searchBudget(request, settings, query, truth, watcher));
+        BudgetSearchResult found = RELIEF_TRY(searchBudget(request, settings, solid, query, truth, watcher));
         report.budget = found.chosen.budget;
         report.max_error = double{*request.max_error};
         report.wrong_percent = found.chosen.wrong_percent;

@@ -37,19 +37,20 @@ std::string megabytes(double bytes) {
 /// "" if the patches would be too large. \param needed  texel, object units
 std::string finerPatches(const Collider& collider, double needed) {
     std::string map;
-    bool by_map = true;
+    bool by_budget = false;
+    bool by_texel = false;
     for (const RecordedOption& option : collider.provenance.options) {
         map = option.name == "map" && option.value.starts_with("patches:") ? option.value : map;
-        by_map = by_map && option.name != "budget" && option.name != "texel";
+        by_budget = by_budget || option.name == "budget";
+        by_texel = by_texel || option.name == "texel";
     }
-    by_map = by_map && !map.empty();
-    if (map.starts_with("patches:texel=")) {
-        return (by_map ? "--map patches:texel=" : "--texel ") + roughly(needed);
+    if ((by_texel && !by_budget) || map.starts_with("patches:texel=")) {
+        return (map.empty() ? "--texel " : "--map patches:texel=") + roughly(needed);
     }
     // Only cells with errors are split, so the bytes of other parts hardly grow.
     const double bytes = kMorePatches * static_cast<double>(collider.texelBytes());
     return bytes > kBudgetAdvisedMax ? ""
-                                     : (by_map ? "--map patches:budget=" : "--budget ") + megabytes(bytes);
+                                     : (map.empty() ? "--budget " : "--map patches:budget=") + megabytes(bytes);
 }
 
 /// Returns the finest texel of patches in a box. Samples 27 points, because the centre may be in a large cell without

@@ -16,11 +16,18 @@
 #include "formats/container.h"
 #include "formats/nearest_surface.h"
 #include "tests/bake/meshes.h"
+#include "tests/bake/shaped.h"
 #include "tests/bake/voxels.h"
 #include "tests/seeds.h"
 
 namespace relief::test {
 namespace {
+
+/// Searches without parts.
+Result<BudgetSearchResult> searchFor(const MeshQuery& query, const BudgetSearchOptions& options) {
+    const std::vector<std::uint32_t> part_of(query.mesh().triangles.size(), kNoLabel);
+    return bakeForError(query, query, {.parts = {}, .part_of = part_of}, options);
+}
 
 BudgetSearchOptions optionsFor(double percent) {
     BudgetSearchOptions options;
@@ -36,7 +43,7 @@ TEST(BudgetSearch, KeepsTheTargetWithFewExtraBytes) {
     BudgetSearchOptions options = optionsFor(kPercent);
     std::size_t told = 0;
     options.tried = [&](const BudgetTrial&) { ++told; };
-    const BudgetSearchResult found = required(bakeForError(query, query, options));
+    const BudgetSearchResult found = required(searchFor(query, options));
     EXPECT_LE(found.chosen.wrong_percent, kPercent);
     EXPECT_EQ(found.chosen.bytes, found.baked.collider.texelBytes());
     EXPECT_LE(found.chosen.bytes, found.chosen.budget);
@@ -60,21 +67,43 @@ TEST(BudgetSearch, TriesMoreBytesIfTheSmallestBudgetIsEmpty) {
         joined({makeBoxMesh({5, 5, 5}, glm::dvec3(5.0)), makeBoxMesh({1e7, 0.5, 0.5}, glm::dvec3(0.5))});
     const MeshQuery query = queryOf(mesh);
     BudgetSearchOptions options = optionsFor(50.0);
-    EXPECT_GT(required(bakeForError(query, query, options)).chosen.budget, options.budget_min);
+    EXPECT_GT(required(searchFor(query, options)).chosen.budget, options.budget_min);
     options.budget_max = options.budget_min;
-    EXPECT_EQ(bakeForError(query, query, options).error().code, ErrorCode::kFailure);
+    EXPECT_EQ(searchFor(query, options).error().code, ErrorCode::kFailure);
 }
 
 TEST(BudgetSearch, EasyTargetNeedsTheSmallestBudget) {
     const MeshQuery query = queryOf(makeTorusMesh(1.0, 0.4, 64, 32));
-    const BudgetSearchResult found = required(bakeForError(query, query, optionsFor(50.0)));
+    const BudgetSearchResult found = required(searchFor(query, optionsFor(50.0)));
     EXPECT_EQ(found.chosen.budget, 32'000U);
     EXPECT_EQ(found.tries.size(), 1U);
     // A slightly stricter target needs a larger budget.
     const double promise = 0.75 * found.chosen.wrong_percent;
-    const BudgetSearchResult better = required(bakeForError(query, query, optionsFor(promise)));
+    const BudgetSearchResult better = required(searchFor(query, optionsFor(promise)));
     EXPECT_LE(better.chosen.wrong_percent, promise);
     EXPECT_GT(better.chosen.budget, 32'000U);
+}
+
+// A former fault: `relief check --max-error` failed for lost parts that the search had accepted.
+TEST(BudgetSearch, LosesNoPart) {
+    std::vector<TriangleMesh> boxes = {makeBoxMesh({0, 0, 0}, glm::dvec3(5.0))};
+    for (int i = 0; i < 8; ++i) {
+        boxes.push_back(makeBoxMesh({7.0 + i, 0.3 * i, 0.1}, glm::dvec3(0.15)));
+    }
+    const ShapedMesh shaped = shapedBy(joined(boxes), {});
+    const MeshQuery query = queryOf(shaped.mesh);
+    BudgetSearchOptions options = optionsFor(10.0);
+    options.budget_min = kBudgetMin;
+    const BudgetSearchResult result = required(bakeForError(query, query, shaped.parts, options));
+    EXPECT_EQ(result.chosen.lost_parts, 0U);
+    const BudgetTrial& first = result.tries.front();
+    EXPECT_LE(first.wrong_percent, 10.0);
+    ASSERT_GT(first.lost_parts, 0U) << "the test needs a budget that loses a part";
+    options.budget_max = options.budget_min;
+    const Result<BudgetSearchResult> failed = bakeForError(query, query, shaped.parts, options);
+    ASSERT_EQ(failed.error().code, ErrorCode::kDifference);
+    EXPECT_NE(failed.error().message.find(std::to_string(first.lost_parts) + " part"), std::string::npos)
+        << failed.error().message;
 }
 
 TEST(BudgetSearch, ReportsTheBestIfTheTargetIsUnreachable) {
@@ -83,7 +112,7 @@ TEST(BudgetSearch, ReportsTheBestIfTheTargetIsUnreachable) {
     options.budget_max = 50'000;
     std::vector<BudgetTrial> tries;
     options.tried = [&](const BudgetTrial& made) { tries.push_back(made); };
-    const Result<BudgetSearchResult> found = bakeForError(query, query, options);
+    const Result<BudgetSearchResult> found = searchFor(query, options);
     ASSERT_FALSE(found);
     EXPECT_EQ(found.error().code, ErrorCode::kDifference);
     ASSERT_EQ(tries.size(), 2U);
@@ -95,11 +124,11 @@ TEST(BudgetSearch, ReportsTheBestIfTheTargetIsUnreachable) {
     // A limit below the usual start is the only budget.
     options.budget_max = 20'000;
     tries.clear();
-    EXPECT_FALSE(bakeForError(query, query, options));
+    EXPECT_FALSE(searchFor(query, options));
     ASSERT_EQ(tries.size(), 1U);
     EXPECT_EQ(tries[0].budget, 20'000U);
     options.budget_max = 10;
-    EXPECT_EQ(bakeForError(query, query, options).error().code, ErrorCode::kUsage)
+    EXPECT_EQ(searchFor(query, options).error().code, ErrorCode::kUsage)
         << "too small for any tree";
 }
 
