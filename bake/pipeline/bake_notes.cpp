@@ -12,10 +12,10 @@ namespace {
 /// A source with at least this many nodes may be a level.
 constexpr std::size_t kLevelNodes = 100;
 
-/// Returns options that may help if a bake is wrong in many places.
-std::string fixFor(const BakeRequest& request, const ShapeReport& shape) {
+/// Returns options that may help if a bake is wrong in many places. \param coarser  the budget enlarged the texel
+std::string fixFor(const BakeRequest& request, const ShapeReport& shape, bool coarser) {
     const std::uint64_t budget = request.budget.value_or(kBudgetDefault);
-    const std::string more = request.texel && !request.budget
+    const std::string more = request.texel && !(request.budget && coarser)
                                  ? "--texel " + shortest(0.5F * *request.texel)
                                  : "--budget " + std::to_string(4 * budget / 1000) + "kB";
     if (shape.sheets > 0 && shape.as == ShapeAs::kAuto) {
@@ -52,7 +52,7 @@ std::vector<std::string> warningsOf(const BakeRequest& request, const SolidMesh&
     // With --max-error the budget is only an upper limit, so a larger one would not change the bake.
     if (wrong > kGoodPercent && (floats || !request.max_error)) {
         warn(shortNumber(wrong) + " % wrong near the surface; " +
-             (floats ? "move it to the origin" : fixFor(request, solid.shape)));
+             (floats ? "move it to the origin" : fixFor(request, solid.shape, baked.report.maps.front().coarser)));
     }
     if (check != nullptr && check->parts) {
         if (const auto lost = lostPartsWarning(*check->parts, solid.parts, baked.collider)) {

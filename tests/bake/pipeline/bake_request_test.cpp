@@ -325,14 +325,26 @@ TEST(Director, WarnsIfTheGradeIsNotGood) {
                   budget == 32'000U);
         EXPECT_NE(bakeText(baked, "x.relief", 1, false).find("% wrong near the surface"), std::string::npos);
     }
-    // With --max-error the budget is only an upper limit, so no larger one is advised.
+    // With --max-error, and with --texel if the budget suffices for it, a larger budget does not help.
+    const auto adviceOf = [&] {
+        const BakeResult coarse = required(bake(request, {}, joined(rods)));
+        EXPECT_GT(coarse.wrong->total(), 1.0);
+        std::string all;
+        for (const std::string& warning : coarse.baked.report.warnings) {
+            all += warning + "\n";
+        }
+        return all;
+    };
+    request.budget = 1'000'000;
+    request.texel = 0.25F;
+    EXPECT_NE(adviceOf().find("try --texel 0.125\n"), std::string::npos) << adviceOf();
+    request.budget = 32'000;
+    request.texel = 0.01F;
+    EXPECT_NE(adviceOf().find("try --budget 128kB\n"), std::string::npos) << adviceOf();
     request.budget.reset();
+    request.texel.reset();
     request.max_error = 6.0F;
-    const BakeResult limited = required(bake(request, {}, joined(rods)));
-    EXPECT_GT(limited.wrong->total(), 1.0);
-    EXPECT_TRUE(std::ranges::none_of(limited.baked.report.warnings, [](const std::string& warning) {
-        return warning.find("--budget") != std::string::npos;
-    }));
+    EXPECT_EQ(adviceOf().find("--budget"), std::string::npos);
 }
 
 TEST(Director, AdvisesOnlyMovingTheOriginIfFloatsAreTooCoarse) {
