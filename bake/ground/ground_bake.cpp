@@ -406,6 +406,9 @@ Result<GroundResult> bakeHeightMap(HeightMap& map, const GroundOptions& options)
 Result<GroundResult> bakeHeightMap(const BakeRequest& request, GroundOptions options) {
     static_cast<void>(RELIEF_TRY(settingsOf(request)));
     options.heights = RELIEF_TRY(parseHeightsSpec(request.heights));
+    if (options.folder.empty() && options.heights.tile != HeightsSpec().tile) {
+        return fail(ErrorCode::kUsage, "tile= of --heights has no effect without --world; remove it");
+    }
     std::optional<tbb::global_control> control;
     if (request.threads) {
         control.emplace(tbb::global_control::max_allowed_parallelism, *request.threads);

@@ -71,7 +71,7 @@ struct GroundOptions {
 
 /// Bakes the height map of a request, with the request's number of threads.
 /// \param options  `heights` comes from the request.
-/// Errors: also those of settingsOf and HeightMap::open.
+/// Errors: also those of settingsOf and HeightMap::open, and kUsage (a tile size without a folder).
 [[nodiscard]] Result<GroundResult> bakeHeightMap(const BakeRequest& request, GroundOptions options);
 
 }  // namespace relief

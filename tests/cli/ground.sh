@@ -63,7 +63,7 @@ expect 0 "$relief" check w/world.json --mesh hills.png --json --samples 5000
 json stdout "d['heights'] == 'spacing=1,low=0,high=100,offset=5/-3/1,tile=100' and d['near']['missing'] == d['seams']['missing'] == 0"
 json stdout "0 < d['seams']['error']['max'] < 0.03 and d['seams']['wrong_percent'] < 1 and d['warnings'] == []"
 expect 7 "$relief" check ground.relief --mesh hills.png --heights $settings,offset=0/0.5/0 --samples 5000 --max-error 10
-grep -q 'max-error' stderr || die "a shift is not detected: $(cat stderr)"
+grep -q 'set --mesh and --heights to those of the bake, or raise' stderr || die "a shift is not detected: $(cat stderr)"
 expect 0 "$relief" check ground.relief --mesh hills.r16 --samples 500
 grep -q 'warning: hills.r16 is not the file' stderr || die "a different file: $(cat stderr)"
 heights larger.png 140
@@ -105,6 +105,7 @@ expect_error 1 "--budget" "$relief" bake hills.png --heights $settings -o bad.re
 expect_error 1 "both name the output" "$relief" bake hills.png --heights $settings -o bad.relief --world v
 expect 0 "$relief" bake hills.png --heights $settings -q
 [ -s hills.relief ] || die "without -o: $(ls)"
+expect_error 1 "tile= of --heights" "$relief" bake hills.png --heights $settings,tile=64 -o bad.relief
 expect_error 1 "is required" "$relief" bake --heights $settings
 expect_error 1 "--heights" "$relief" check ground.relief --heights $settings
 expect_error 6 "10000000" "$relief" check ground.relief --mesh hills.png --samples 10000001
