@@ -64,10 +64,10 @@ std::string rangeText(const FieldReference& field) {
 }
 
 /// "`a`, `b`"
-std::string quotedKeys(std::string_view keys) {
+std::string quotedKeys(std::string_view keys, const char* separator = ", ") {
     std::string text;
     for (const std::string_view key : split(keys, ' ')) {
-        text += (text.empty() ? "`" : ", `") + std::string(key) + "`";
+        text += (text.empty() ? "" : separator) + ("`" + std::string(key) + "`");
     }
     return text;
 }
@@ -77,7 +77,7 @@ std::string meaning(const FieldReference& field) {
     std::string text(info.help);
     text += info.unit.empty() ? "" : ", " + std::string(info.unit);
     text += info.rules.only.empty() ? "" : "; for " + quotedKeys(info.rules.only);
-    text += info.rules.needs.empty() ? "" : "; needs " + quotedKeys(info.rules.needs);
+    text += info.rules.needs.empty() ? "" : "; needs " + quotedKeys(info.rules.needs, " or ");
     text += info.rules.instead_of.empty() ? "" : "; instead of " + quotedKeys(info.rules.instead_of);
     return text;
 }

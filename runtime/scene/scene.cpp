@@ -130,6 +130,11 @@ std::optional<FieldFault> completeTypes(Scene& scene, const GivenFields& given) 
             return FieldFault{nth("type", i, "." + std::string(key)),
                               "has no effect on points; set render.sprite = \"quad\""};
         }
+        for (const char* const key : {".rotation", ".rotation_spread", ".spin_spread"}) {
+            if (type.look.stretch > 0.0F && given(nth("type", i, key))) {
+                return FieldFault{nth("type", i, key), "has no effect with stretch; remove one of them"};
+            }
+        }
         for (std::size_t k = 0; k < i && !type.name.empty(); ++k) {
             if (scene.types[k].name == type.name) {
                 return FieldFault{nth("type", i, ".name"), "is already used; choose another"};
