@@ -203,7 +203,8 @@ void addCheck(CLI::App& app, Action& action) {
         ->range(1e-6, 1e15)
         ->needs(mesh);
     addOption(verb, "--page", command->html,
-              "Also write the page of relief view with the verdict, the worst places and the advice; not for height maps")
+              "Also write the page of relief view with the verdict, the worst places and the advice; not for "
+              "height maps")
         ->valueText("OUT.html")
         ->needs(mesh);
     addFields(verb, command->request.import);

@@ -105,11 +105,10 @@ class Search {
                         " is not reached within " + megabytes(options_.budget_max) + "; the best is " +
                         percentText(best->wrong_percent) + " with " + megabytes(best->bytes) + " (" +
                         std::to_string(best->bytes) + " bytes)" +
-                        (best->lost_parts == 0
-                             ? "; raise --max-error or --budget"
-                             : ", but " + std::to_string(best->lost_parts) +
-                                   (best->lost_parts == 1 ? " part is" : " parts are") +
-                                   " lost; raise --budget, or remove --max-error"));
+                        (best->lost_parts == 0 ? "; raise --max-error or --budget"
+                                               : ", but " + std::to_string(best->lost_parts) +
+                                                     (best->lost_parts == 1 ? " part is" : " parts are") +
+                                                     " lost; raise --budget, or remove --max-error"));
     }
 
     const MeshQuery& query_;

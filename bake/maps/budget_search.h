@@ -27,9 +27,9 @@ inline constexpr std::uint64_t kBudgetMin = 4096;  ///< bytes
                                               BakeOptions options);
 
 struct BudgetTrial {
-    std::uint64_t budget = 0;    ///< bytes
-    std::uint64_t bytes = 0;     ///< on the GPU, at most the budget
-    double wrong_percent = 0.0;  ///< misclassified points near the surface (FieldAccuracy::near)
+    std::uint64_t budget = 0;      ///< bytes
+    std::uint64_t bytes = 0;       ///< on the GPU, at most the budget
+    double wrong_percent = 0.0;    ///< misclassified points near the surface (FieldAccuracy::near)
     std::uint64_t lost_parts = 0;  ///< counted only if wrong_percent is within the limit
 };
 

@@ -52,7 +52,8 @@ std::vector<std::string> warningsOf(const BakeRequest& request, const SolidMesh&
     // With --max-error the budget is only an upper limit, so a larger one would not change the bake.
     if (wrong > kGoodPercent && (floats || !request.max_error)) {
         warn(shortNumber(wrong) + " % wrong near the surface; " +
-             (floats ? "move it to the origin" : fixFor(request, solid.shape, baked.report.maps.front().coarser)));
+             (floats ? "move it to the origin"
+                     : fixFor(request, solid.shape, baked.report.maps.front().coarser)));
     }
     if (check != nullptr && check->parts) {
         if (const auto lost = lostPartsWarning(*check->parts, solid.parts, baked.collider)) {

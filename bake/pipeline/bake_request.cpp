@@ -274,15 +274,15 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
                     "is longer than two texels; all patches take at most 134 MB. With --budget, the texel "
                     "grows until the patches fit, and a warning states its length. With --world, the length "
                     "is in units of the level, and each mesh is baked for its largest scale."});
-    visit(
-        "max_error", request.max_error,
-        {.help = "Bake the smallest collider that misclassifies at most this percentage of points near the "
-                 "surface, and loses no part",
-         .unit = "%",
-         .range = {0.0},
-         .details = "Tries budgets from 32kB to 64MB, or up to --budget. `relief check --max-error` accepts the "
-                    "result. If no trial is accurate enough, the exit code is 7 and nothing is written. It "
-                    "excludes --texel."});
+    visit("max_error", request.max_error,
+          {.help = "Bake the smallest collider that misclassifies at most this percentage of points near the "
+                   "surface, and loses no part",
+           .unit = "%",
+           .range = {0.0},
+           .details =
+               "Tries budgets from 32kB to 64MB, or up to --budget. `relief check --max-error` accepts the "
+               "result. If no trial is accurate enough, the exit code is 7 and nothing is written. It "
+               "excludes --texel."});
     visit("quality", request.quality,
           {.help = "Effort spent on fitting maps to the surface; best is the slowest",
            .fallback = "normal",

@@ -49,8 +49,9 @@ std::string finerPatches(const Collider& collider, double needed) {
     }
     // Only cells with errors are split, so the bytes of other parts hardly grow.
     const double bytes = kMorePatches * static_cast<double>(collider.texelBytes());
-    return bytes > kBudgetAdvisedMax ? ""
-                                     : (map.empty() ? "--budget " : "--map patches:budget=") + megabytes(bytes);
+    return bytes > kBudgetAdvisedMax
+               ? ""
+               : (map.empty() ? "--budget " : "--map patches:budget=") + megabytes(bytes);
 }
 
 /// Returns the finest texel of patches in a box. Samples 27 points, because the centre may be in a large cell without

@@ -361,8 +361,7 @@ void fields(FieldVisitor& visit, SceneStream& stream) {
 
 void fields(FieldVisitor& visit, SceneGround& ground) {
     visit("enabled", ground.enabled, {"Ground plane present"});
-    visit("height", ground.height,
-          leftOut({"Height of the plane", {}, kPointRange, "bottom of the bounds"}));
+    visit("height", ground.height, leftOut({"Height of the plane", {}, kPointRange, "bottom of the bounds"}));
 }
 
 void fields(FieldVisitor& visit, SceneCameraKey& key) {

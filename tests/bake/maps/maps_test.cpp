@@ -128,8 +128,7 @@ TEST(BudgetSearch, ReportsTheBestIfTheTargetIsUnreachable) {
     ASSERT_EQ(tries.size(), 1U);
     EXPECT_EQ(tries[0].budget, 20'000U);
     options.budget_max = 10;
-    EXPECT_EQ(searchFor(query, options).error().code, ErrorCode::kUsage)
-        << "too small for any tree";
+    EXPECT_EQ(searchFor(query, options).error().code, ErrorCode::kUsage) << "too small for any tree";
 }
 
 constexpr const char* kBunny = "/usr/share/glmark2/models/bunny.obj";

@@ -54,8 +54,7 @@ TEST(PartCure, PatchesNeedTheOptionOfTheirBake) {
         collider.provenance.options = std::move(options);
         return partFix(rod, collider);
     };
-    EXPECT_NE(cure({{"budget", "4000"}}).find("try --budget 0.1MB, or"),
-              std::string::npos);
+    EXPECT_NE(cure({{"budget", "4000"}}).find("try --budget 0.1MB, or"), std::string::npos);
     EXPECT_NE(cure({{"map", "patches:budget=4000"}}).find("try --map patches:budget=0.1MB, or"),
               std::string::npos);
     EXPECT_NE(cure({{"map", "patches:texel=1"}}).find("try --map patches:texel=0.1, or"), std::string::npos);

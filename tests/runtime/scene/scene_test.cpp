@@ -237,8 +237,8 @@ TEST(SceneErrors, TypesAndMaterials) {
     expectErrors(kSceneHead, {{"[[type]]\nname = \"\"\n", "4:8", "type.name"},
                               {"[[type]]\nname = \"a\"\n[[type]]\nname = \"a\"\n", "6:8", "type"},
                               {"[[type]]\nstretch = 0.1\n", "4:11", "render.sprite"},
-                              {"[[type]]\nstretch = 0.1\nrotation = 1\n[render]\nsprite = \"quad\"\n",
-                               "5:12", "no effect with stretch"},
+                              {"[[type]]\nstretch = 0.1\nrotation = 1\n[render]\nsprite = \"quad\"\n", "5:12",
+                               "no effect with stretch"},
                               {"[[material]]\nname = \"a\"\n[[material]]\nname = \"a\"\n", "6:8", "material"},
                               {"[[spawn]]\non = \"death\"\nmaterial = \"a\"\n", "5:12", "collision"}});
     expectErrors(
