@@ -85,6 +85,9 @@ FieldSample evaluate(const Collider& collider, const glm::vec3& p) {
             best = {v->distance, v->normal, static_cast<int>(i)};
         }
     }
+    if (best.map < 0) {
+        best.distance = kFarOutside;
+    }
     return best;
 }
 

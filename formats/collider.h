@@ -77,9 +77,9 @@ struct Collider {
 
 /// The combined vote at a point.
 struct FieldSample {
-    /// Signed distance in object units, positive outside. kFarOutside if the point is outside at an unknown distance;
-    /// undefined if map is −1.
-    float distance = 0.0F;
+    /// Signed distance in object units, positive outside. kFarOutside if the point is outside at an unknown distance, or
+    /// if all maps abstain.
+    float distance = kFarOutside;
     glm::vec3 normal{0.0F};  ///< of the deciding surface; zero if distance is kFarOutside
     int map = -1;            ///< deciding map, the first on ties; −1 if all maps abstain
 
@@ -98,12 +98,12 @@ struct InsideSample {
     int map = -1;
 };
 
-/// Equals evaluate(…).inside(), with its normal and map if inside, but stops at the first map that classifies `p` as
-/// outside. The first element of Collider::maps should be the map that decides most often.
+/// Returns the same side as evaluate(), and the same normal and map if inside, but stops at the first map that
+/// classifies `p` as outside. The first element of Collider::maps should be the map that decides most often.
 [[nodiscard]] InsideSample evaluateInside(const Collider& collider, const glm::vec3& p);
 
-/// Returns a box that contains the solid: the intersection of the volumes of maps that enclose it; nullopt if no map
-/// does.
+/// Returns a box that contains the solid: the intersection of the volumes of maps with `encloses` and
+/// `empty_is_outside`; nullopt if none.
 [[nodiscard]] std::optional<Bounds> insideBox(const Collider& collider);
 /// Returns a box that contains Collider::bounds and, if there is one, insideBox(). The solid of ground extends below
 /// `bounds`.

@@ -114,7 +114,6 @@ class Search {
           p_(p),
           side_(collider.bounds.longestSide()),
           sign_(sample.distance < 0.0F ? -1.0F : 1.0F) {
-        best_.distance = kFarOutside;
         if (sample.distance < kFarOutside) {
             follow({sign_ * sample.normal, sign_ * sample.distance}, nullptr, NearestSearch::kSteps);
         }
@@ -376,7 +375,7 @@ bool canSearch(const Collider& collider, const glm::vec3& p) {
 SurfaceSample nearestSurface(const Collider& collider, const glm::vec3& p) {
     const FieldSample sample = evaluate(collider, p);
     if (sample.map < 0) {
-        return {};
+        return {.point = p};
     }
     SurfaceSample nearest = fromVote(p, sample);
     if (canSearch(collider, p)) {

@@ -7,13 +7,13 @@
 // probes around P for nearer surfaces:
 //
 //            ·  P  ·          1. Project P onto the plane of the vote (1), and step slightly beyond.
-//         ·    /|\    ·       2. If still on P's side, the plane there (2) also counts: continue to the nearest
-//        ·    / | \    ·         point behind both planes. If on the other side, a surface lies between.
+//         ·    /|\    ·       2. If that point is on P's side, its plane (2) also counts: continue to the nearest
+//        ·    / | \    ·         point behind both planes. Otherwise, it is on the other side, behind a surface.
 //        ·   2  1  ·   ·      3. Probe 14 points on two spheres around P, inside the distance found. If one
 //     ____\ /______ ·            is on the other side, a nearer surface exists there.
 //          X
-// Other implementations may evaluate other points. They must keep the sign, and return only points on the other side,
-// or points on a plane with the other side just behind it.
+// Other implementations may evaluate other points. They must keep the sign, and return only points on the side opposite
+// P's, or points on a plane just in front of that side.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -25,8 +25,8 @@ namespace relief {
 /// A surface near a point.
 struct SurfaceSample {
     /// Object units, with the sign of evaluate(): negative inside. kFarOutside if evaluate() returns it and no
-    /// surface was found; undefined if map is −1.
-    float distance = 0.0F;
+    /// surface was found.
+    float distance = kFarOutside;
     glm::vec3 point{0.0F};   ///< nearest point found, object space; P if distance is kFarOutside
     glm::vec3 normal{0.0F};  ///< of the surface there, unit length, outwards; zero if distance is kFarOutside
     int map = -1;            ///< the map of that surface; −1 if all maps abstain at P
@@ -65,10 +65,10 @@ struct NearestSearch {
 
 /// Computes the distance from P to the nearest surface that the maps represent.
 ///
-/// The sign is that of evaluate(). The distance is measured to `point`, which is on the other side, or on the plane of
-/// a vote just in front of the other side. The search never returns a surface that the maps do not represent, but may
-/// miss a nearer surface: a part that is thin relative to its distance from P. If no point on the other side is found,
-/// the result is that of evaluate().
+/// The sign is that of evaluate(). The distance is measured to `point`, which is on the side opposite P's, or on the
+/// plane of a vote just in front of that side. The search never returns a surface that the maps do not represent, but
+/// may miss a nearer surface: a part that is thin relative to its distance from P. If no point on the other side is
+/// found, the result is that of evaluate().
 ///
 /// \param p  object space; any finite point. The result is that of evaluate() if a coordinate of P or of the bounds
 /// exceeds 10¹⁵ in magnitude, or if the bounds' longest side is below 10⁻¹².

@@ -43,8 +43,8 @@ inline constexpr std::chrono::milliseconds kSignalInterval{50};
 /// Thrown by checkpoints in abandoned work.
 struct Abandoned {};
 
-/// Held by work that may be abandoned. If the process exits while such work runs, it skips the destructors of libraries,
-/// because the work still uses their objects.
+/// Held by work that may be abandoned. If the process exits while such work runs, static destructors of libraries are
+/// skipped, because the work still uses their objects.
 class MayBeAbandoned {
   public:
     MayBeAbandoned() {

@@ -95,7 +95,7 @@ py::tuple query(const Collider& collider, const Floats& points, const std::strin
 py::tuple queryWorld(const WorldField& field, const Floats& points) {
     const Samples s = sampleAll(points, [&](const glm::vec3& p) {
         const WorldSample sample = field.evaluate(p);
-        return FieldSample{sample.body < 0 ? kFarOutside : sample.distance, sample.normal, sample.body};
+        return FieldSample{sample.distance, sample.normal, sample.body};
     });
     return py::make_tuple(s.distance, s.normal, s.map);
 }

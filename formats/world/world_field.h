@@ -12,8 +12,8 @@
 namespace relief {
 
 struct WorldSample {
-    /// Signed, world units: FieldSample::distance times the body's scale, or kFarOutside. Undefined if body is −1.
-    float distance = 0.0F;
+    /// Signed, world units: FieldSample::distance times the body's scale; kFarOutside if that is, or no body votes.
+    float distance = kFarOutside;
     glm::vec3 normal{0.0F};  ///< world space; zero if unknown
     int body = -1;           ///< deepest or nearest body, the first on ties; −1 if every body abstains
 

@@ -83,8 +83,9 @@ int64_t relief_collider_material_at(const relief_collider* collider, const float
                                     const float normal[3]);
 
 typedef struct relief_sample {
-    float distance;  /* to the plane that decides the side; < 0 inside; 1e30 far outside; NaN: error */
-    float normal[3]; /* outwards; zero if the point is far outside */
+    float
+        distance; /* to the deciding plane or surface; < 0 inside; 1e30 far outside or no vote; NaN: error */
+    float normal[3]; /* outwards; zero if distance is 1e30 or NaN */
     int32_t map;     /* the map that decides; -1: no map votes */
 } relief_sample;
 

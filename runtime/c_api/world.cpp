@@ -171,7 +171,7 @@ void relief_world_query(const relief_world* world, const float* points, size_t c
     query(__func__, world, "world", points, count, samples,
           [](const WorldObject& of, const glm::vec3& point) {
               const WorldSample from = of.field.evaluate(point);
-              relief_sample sample{from.body < 0 ? kFarOutside : from.distance, {}, from.body};
+              relief_sample sample{from.distance, {}, from.body};
               put(from.normal, sample.normal);
               return sample;
           });

@@ -68,9 +68,9 @@ export interface Bounds {
 
 /** Results of Collider.query() at n points. */
 export interface Samples {
-    /** n: distance to the surface, below 0 inside; about 1e30 or more if the point is far outside. */
+    /** n: distance to the surface, below 0 inside; about 1e30 or more if the point is far outside or no map votes. */
     distance: Float32Array;
-    /** 3 n: outward surface normal; 0 if the point is far outside. */
+    /** 3 n: outward surface normal; 0 if the point is far outside or no map votes. */
     normal: Float32Array;
     /** n: the map that decides; -1 if no map votes. */
     map: Int32Array;
@@ -135,7 +135,7 @@ export class Collider {
 export interface WorldSamples {
     /** n: the least distance over all bodies, in world units; otherwise as in Samples. */
     distance: Float32Array;
-    /** 3 n: outward surface normal in world space; 0 if the point is far outside. */
+    /** 3 n: outward surface normal in world space; 0 if the point is far outside or no body votes. */
     normal: Float32Array;
     /** n: the body that decides; -1 if no body votes. */
     body: Int32Array;

@@ -268,6 +268,11 @@ TEST(ViewVolume, OnlyEnclosingMapsVoteOutsideTheWindow) {
         EXPECT_FALSE(vote(map, p));
     }
     EXPECT_TRUE(vote(map, {0, 0, 0.5F}));
+    // A former fault: the distance at unknown points was below 0, which callers took for inside.
+    Collider collider;
+    collider.maps = {map};
+    const FieldSample unknown = evaluate(collider, beside[0]);
+    EXPECT_TRUE(unknown.map == -1 && unknown.distance == kFarOutside) << unknown.distance;
 }
 
 TEST(ViewVolume, BorderIsOutsideTheWindow) {

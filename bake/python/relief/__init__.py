@@ -89,9 +89,10 @@ class Samples(NamedTuple):
     """A collider evaluated at n points."""
 
     distance: np.ndarray
-    """(n,) float32: negative inside; 1e30: outside at an unknown distance; NaN: the point is not finite."""
+    """(n,) float32: negative inside; 1e30: outside at an unknown distance, or no map votes; NaN: the point is not
+    finite."""
     normal: np.ndarray
-    """(n, 3) float32, outwards; zero: outside at an unknown distance; NaN: the point is not finite."""
+    """(n, 3) float32, outwards; zero where distance is 1e30; NaN: the point is not finite."""
     map: np.ndarray
     """(n,) int32: the map that decides; -1 if no map votes."""
 
