@@ -57,7 +57,8 @@ void RivalStep::makeState(const BenchScene& scene) {
 }
 
 Result<void> RivalStep::compile() {
-    pass_ = RELIEF_TRY(StepPass::create({.compute = path_ == StepPath::kCompute}, rival_.shader));
+    pass_ = RELIEF_TRY(StepPass::start({.compute = path_ == StepPath::kCompute}, rival_.shader));
+    RELIEF_TRY(pass_.finish());
     const GlProgram& program = pass_.program();
     program.use();
     int unit = kFirstUnit;

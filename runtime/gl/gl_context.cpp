@@ -144,6 +144,10 @@ struct GlContext::Impl {
         if (es && !epoxy_has_gl_extension("GL_EXT_color_buffer_float")) {
             return "GL_EXT_color_buffer_float is missing, so float textures are not renderable";
         }
+        // NVIDIA's driver compiles in the background only after this call.
+        if (epoxy_has_gl_extension("GL_KHR_parallel_shader_compile")) {
+            glMaxShaderCompilerThreadsKHR(0xffffffffU);
+        }
         return {};
     }
 

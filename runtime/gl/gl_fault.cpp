@@ -63,9 +63,9 @@ Result<void> checkTextureSize(std::uint64_t width, std::uint64_t height, const s
     GLint side_max = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side_max);
     if (std::max(width, height) > static_cast<std::uint64_t>(std::max(side_max, 0))) {
-        return fail(ErrorCode::kLimit, what + " need a texture of " + std::to_string(width) + "x" +
+        return fail(ErrorCode::kLimit, what + ": a texture of " + std::to_string(width) + "x" +
                                            std::to_string(height) +
-                                           " texels; this GL context supports sides up to " +
+                                           " texels is too large; this GL context supports sides up to " +
                                            std::to_string(side_max) + "; " + fix);
     }
     return {};

@@ -27,6 +27,7 @@ std::string infoLog(GLuint name, bool is_program) {
     return log;
 }
 
+/// Starts to compile a shader.
 Result<GLuint> compile(GLenum stage, std::string_view file, std::string_view defines) {
     const std::string body = RELIEF_TRY(includedShader(file));
     // Use highp everywhere: state and depth are 32-bit floats, and ES 3.0 requires a precision in fragment shaders.
@@ -46,13 +47,6 @@ Result<GLuint> compile(GLenum stage, std::string_view file, std::string_view def
     const char* text = source.c_str();
     glShaderSource(shader, 1, &text, nullptr);
     glCompileShader(shader);
-    GLint compiled = GL_FALSE;
-    glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
-    if (compiled != GL_TRUE) {
-        std::string log = infoLog(shader, false);
-        glDeleteShader(shader);
-        return fail(ErrorCode::kFailure, "shader " + std::string(file) + " does not compile: " + log);
-    }
     return shader;
 }
 
@@ -80,6 +74,9 @@ void deleteVertexArray(GLuint name) {
 }
 void deleteProgram(GLuint name) {
     glDeleteProgram(name);
+}
+void deleteShader(GLuint name) {
+    glDeleteShader(name);  // takes effect once no program uses it
 }
 void deleteSampler(GLuint name) {
     glDeleteSamplers(1, &name);
@@ -199,40 +196,53 @@ Result<GlFramebuffer> makeFramebuffer(std::span<const GLuint> color_textures, GL
 
 namespace {
 
-/// Links the attached shaders. \param name  of the program, for the error.
-Result<GlProgram> linked(GlProgram program, const std::string& name) {
-    glLinkProgram(program.name());
-    GLint status = GL_FALSE;
-    glGetProgramiv(program.name(), GL_LINK_STATUS, &status);
-    if (status != GL_TRUE) {
-        return fail(ErrorCode::kFailure,
-                    "program " + name + " does not link: " + infoLog(program.name(), true));
+struct Stage {
+    GLenum stage;
+    std::string_view file;
+};
+
+/// Starts to compile and link a program. Reads no status: drivers wait for their compiler before they return one.
+/// \param outputs  vertex shader outputs that transform feedback writes, interleaved; empty: none.
+Result<StartedProgram> start(std::initializer_list<Stage> stages, std::string_view defines,
+                             std::span<const char* const> outputs = {}) {
+    StartedProgram started{GlProgram(glCreateProgram()), {}};
+    for (const Stage& one : stages) {
+        const GLuint shader = RELIEF_TRY(compile(one.stage, one.file, defines));
+        started.shaders.push_back({GlName<gl_detail::deleteShader>(shader), std::string(one.file)});
+        glAttachShader(started.program.name(), shader);
     }
-    return program;
+    if (!outputs.empty()) {
+        glTransformFeedbackVaryings(started.program.name(), static_cast<GLsizei>(outputs.size()),
+                                    outputs.data(), GL_INTERLEAVED_ATTRIBS);
+    }
+    glLinkProgram(started.program.name());
+    return started;
 }
 
-/// \param outputs  vertex shader outputs that transform feedback writes, interleaved; empty: none.
-Result<GlProgram> compileAndLink(std::string_view vertex, std::string_view fragment, std::string_view defines,
-                                 std::span<const char* const> outputs) {
-    const GLuint vertex_shader = RELIEF_TRY(compile(GL_VERTEX_SHADER, vertex, defines));
-    const Result<GLuint> fragment_shader = compile(GL_FRAGMENT_SHADER, fragment, defines);
-    if (!fragment_shader) {
-        glDeleteShader(vertex_shader);
-        return forward(fragment_shader);
-    }
-    GlProgram program(glCreateProgram());
-    glAttachShader(program.name(), vertex_shader);
-    glAttachShader(program.name(), *fragment_shader);
-    if (!outputs.empty()) {
-        glTransformFeedbackVaryings(program.name(), static_cast<GLsizei>(outputs.size()), outputs.data(),
-                                    GL_INTERLEAVED_ATTRIBS);
-    }
-    glDeleteShader(vertex_shader);  // takes effect once the program releases them
-    glDeleteShader(*fragment_shader);
-    return linked(std::move(program), std::string(vertex) + " + " + std::string(fragment));
+Result<GlProgram> finished(Result<StartedProgram> started) {
+    return started ? started->finish() : forward(started);
 }
 
 }  // namespace
+
+Result<GlProgram> StartedProgram::finish() {
+    GLint linked = GL_FALSE;
+    glGetProgramiv(program.name(), GL_LINK_STATUS, &linked);
+    if (linked == GL_TRUE) {
+        return std::move(program);
+    }
+    std::string files;
+    for (const auto& [shader, file] : shaders) {
+        GLint compiled = GL_FALSE;
+        glGetShaderiv(shader.name(), GL_COMPILE_STATUS, &compiled);
+        if (compiled != GL_TRUE) {
+            return fail(ErrorCode::kFailure,
+                        "shader " + file + " does not compile: " + infoLog(shader.name(), false));
+        }
+        files += (files.empty() ? "" : " + ") + file;
+    }
+    return fail(ErrorCode::kFailure, "program " + files + " does not link: " + infoLog(program.name(), true));
+}
 
 void GlProgram::use() const {
     glUseProgram(name());
@@ -301,24 +311,29 @@ void GlProgram::drawScreen(GLuint framebuffer, GLsizei width, GLsizei height) co
 }
 
 Result<GlProgram> makeProgram(std::string_view vertex, std::string_view fragment, std::string_view defines) {
-    return compileAndLink(vertex, fragment, defines, {});
+    return finished(start({{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, fragment}}, defines));
+}
+
+Result<StartedProgram> startScreenProgram(std::string_view fragment, std::string_view defines) {
+    return start({{GL_VERTEX_SHADER, "base/quad.vert"}, {GL_FRAGMENT_SHADER, fragment}}, defines);
 }
 
 Result<GlProgram> makeScreenProgram(std::string_view fragment, std::string_view defines) {
-    return makeProgram("base/quad.vert", fragment, defines);
+    return finished(startScreenProgram(fragment, defines));
+}
+
+Result<StartedProgram> startComputeProgram(std::string_view compute, std::string_view defines) {
+    return start({{GL_COMPUTE_SHADER, compute}}, defines);
 }
 
 Result<GlProgram> makeComputeProgram(std::string_view compute, std::string_view defines) {
-    const GLuint shader = RELIEF_TRY(compile(GL_COMPUTE_SHADER, compute, defines));
-    GlProgram program(glCreateProgram());
-    glAttachShader(program.name(), shader);
-    glDeleteShader(shader);  // takes effect once the program releases it
-    return linked(std::move(program), std::string(compute));
+    return finished(startComputeProgram(compute, defines));
 }
 
 Result<GlProgram> makeFeedbackProgram(std::string_view vertex, std::span<const char* const> outputs,
                                       std::string_view defines) {
-    return compileAndLink(vertex, "base/nothing.frag", defines, outputs);
+    return finished(
+        start({{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, "base/nothing.frag"}}, defines, outputs));
 }
 
 void copyBuffer(const GlBuffer& from, const GlBuffer& to, GLsizeiptr to_offset, GLsizeiptr bytes) {

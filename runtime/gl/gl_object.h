@@ -48,6 +48,7 @@ void deleteFramebuffer(GLuint name);
 void deleteBuffer(GLuint name);
 void deleteVertexArray(GLuint name);
 void deleteProgram(GLuint name);
+void deleteShader(GLuint name);
 void deleteSampler(GLuint name);
 }  // namespace gl_detail
 
@@ -57,7 +58,7 @@ using GlBuffer = GlName<gl_detail::deleteBuffer>;
 using GlVertexArray = GlName<gl_detail::deleteVertexArray>;
 using GlSampler = GlName<gl_detail::deleteSampler>;
 
-/// A linked program.
+/// A program; linked, unless it belongs to a StartedProgram.
 class GlProgram : public GlName<gl_detail::deleteProgram> {
   public:
     using GlName::GlName;
@@ -88,6 +89,19 @@ class GlProgram : public GlName<gl_detail::deleteProgram> {
   private:
     mutable std::map<std::string, GLint, std::less<>> locations_;  // cached so far
     mutable GlVertexArray no_attributes_;                          // for drawScreen()
+};
+
+/// A program that the driver may still compile in the background.
+struct StartedProgram {
+    struct Shader {
+        GlName<gl_detail::deleteShader> shader;
+        std::string file;
+    };
+    GlProgram program;
+    std::vector<Shader> shaders;
+
+    /// Waits for the driver. Call it once. Errors: kFailure, with the file name and the driver's log.
+    [[nodiscard]] Result<GlProgram> finish();
 };
 
 [[nodiscard]] GlFramebuffer makeFramebuffer();
@@ -130,10 +144,14 @@ void bindPackBuffer(GlBuffer& buffer, GLsizeiptr bytes);
 /// Creates a program from "base/quad.vert" and a fragment shader. GlProgram::drawScreen() runs it over a rectangle of
 /// pixels.
 [[nodiscard]] Result<GlProgram> makeScreenProgram(std::string_view fragment, std::string_view defines = {});
+[[nodiscard]] Result<StartedProgram> startScreenProgram(std::string_view fragment,
+                                                        std::string_view defines = {});
 
 /// Creates a program from a compute shader in the same subset of GLSL. Its version line is `#version 430 core` or
 /// `#version 310 es`, and RELIEF_COMPUTE is defined. Requires hasCompute(). Errors: those of makeProgram.
 [[nodiscard]] Result<GlProgram> makeComputeProgram(std::string_view compute, std::string_view defines = {});
+[[nodiscard]] Result<StartedProgram> startComputeProgram(std::string_view compute,
+                                                         std::string_view defines = {});
 
 /// Creates a program with only a vertex shader. Transform feedback writes its `outputs` interleaved, in order. Errors:
 /// those of makeProgram.

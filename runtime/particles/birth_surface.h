@@ -19,7 +19,7 @@ class BirthSurface {
 
     /// Sets the positions of the vertices now and `seconds` ago.
     /// \param before, now  object units, one position per vertex; triangles with a non-finite corner do not emit.
-    /// \param seconds      > 0; 0 after a jump: `before` is ignored.
+    /// \param seconds      ≥ 0; 0 after a jump: `before` is ignored.
     virtual void move(std::span<const glm::vec3> before, std::span<const glm::vec3> now, double seconds) = 0;
     /// Returns the current sum of area · weight (density of births) over the triangles; 0: the surface cannot emit.
     [[nodiscard]] virtual double area() const = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pending deaths: a calendar queue (Brown 1988) with fixed days. A step processes only its own deaths, and the pending
-// deaths that are filed under the same days. A heap costs log n cache misses per death; a hierarchical timing wheel
+// Pending deaths: a calendar queue (Brown 1988) with days of fixed length. A step processes only the deaths due in it
+// and later deaths filed under the same days. A heap costs log n cache misses per death; a hierarchical timing wheel
 // stalls whenever a coarse slot is redistributed.
 #pragma once
 

@@ -68,7 +68,7 @@ const char* problemOf(const EmitterSettings& s) {
          "aim.direction is required if points have no normals"},
         {!(aim.cone_degrees >= 0.0F && aim.cone_degrees <= 180.0F), "aim.cone_degrees must be 0 to 180"},
         {!rising(aim.speed_min, aim.speed_max) || !rising(aim.speed_deviation, aim.speed_deviation),
-         "aim's speeds must be finite, at least 0 and ordered"},
+         "aim speeds must be finite, at least 0, and speed_min not above speed_max"},
     });
 }
 

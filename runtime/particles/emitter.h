@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Generates births of particles on the CPU: positions, velocities and times. The same settings and seed give
-// bit-identical births on every machine (runtime/particles/random.h). They also do for every step length, except for
-// ages, for places and velocities on moving surfaces, and after emit() has dropped births.
+// bit-identical births on every machine (runtime/particles/random.h). Births do not depend on the step length, except
+// for ages, for places and velocities on moving surfaces, and after emit() has dropped births.
 #pragma once
 
 #include <cstdint>

@@ -160,14 +160,23 @@ Result<void> ParticleSystem::checkFeatures(const ShaderCollider* collider) const
     return {};
 }
 
-Result<void> ParticleSystem::compileStep() {
+Result<void> ParticleSystem::startStep() {
     StepVariant variant = stepVariant();
     if (step_ && variant == step_->variant()) {
         return {};
     }
     step_.reset();
-    step_ = RELIEF_TRY(StepPass::create(std::move(variant)));
+    step_ = RELIEF_TRY(StepPass::start(std::move(variant)));
     return {};
+}
+
+Result<void> ParticleSystem::compileStep() {
+    RELIEF_TRY(startStep());
+    const Result<void> compiled = step_->finish();
+    if (!compiled) {
+        step_.reset();
+    }
+    return compiled;
 }
 
 Result<void> ParticleSystem::setForces(const Forces& forces) {

@@ -145,6 +145,11 @@ class ParticleSystem {
     /// Errors: kUsage (a birth that is not isValid(), named by its index; none is added then).
     Result<std::size_t> spawn(std::span<const Birth> births);
 
+    /// Starts to compile the program of the next step; without it, step() starts and waits. Call it after all settings.
+    /// Drivers compile in the background only if glMaxShaderCompilerThreadsKHR() enabled it, as GlContext does.
+    /// Errors: kFailure (a shader file is missing).
+    Result<void> startStep();
+
     /// Advances the simulation by `dt` seconds, > 0. Restores the GL state that it changes (runtime/INTEGRATE.md).
     /// Errors: kUsage (an invalid `dt`), kFailure (a program does not compile); nothing moves then. checkGpu() reports
     /// GPU failures (gl_fault.h).
@@ -235,7 +240,7 @@ class ParticleSystem {
     BirthPass birth_pass_;
     GlProgram rebase_program_;
     const ShaderCollider* collider_ = nullptr;
-    std::optional<StepPass> step_;  // nullopt: not compiled yet
+    std::optional<StepPass> step_;  // nullopt: not started; compiled once step() has finished it
 };
 
 }  // namespace relief

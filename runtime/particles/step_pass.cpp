@@ -36,7 +36,7 @@ float stokesRate(float viscosity, float radius, float mass) {
     return kSixPi * viscosity * radius / mass;
 }
 
-Result<StepPass> StepPass::create(StepVariant variant, const StepShader& shader) {
+Result<StepPass> StepPass::start(StepVariant variant, const StepShader& shader) {
     std::string defines = shader.defines + "#define RELIEF_TYPES " + std::to_string(variant.types) + "\n";
     const auto defineIf = [&](bool wanted, const std::string& what) {
         defines += wanted ? "#define " + what + "\n" : "";
@@ -57,20 +57,28 @@ Result<StepPass> StepPass::create(StepVariant variant, const StepShader& shader)
     StepPass pass;
     pass.tours_ = toursMaps(variant);
     defineIf(pass.tours_, "RELIEF_TOUR");
-    pass.program_ = RELIEF_TRY(variant.compute ? makeComputeProgram(shader.file, defines)
-                                               : makeScreenProgram(shader.file, defines));
-    pass.program_.use();
-    pass.program_.set("u_position", kPositionUnit);
-    pass.program_.set("u_velocity", kVelocityUnit);
-    pass.program_.set("u_birth", kBirthUnit);
-    if (variant.collider != nullptr) {
-        variant.collider->attach(pass.program_, kColliderBinding);
-    }
-    for (const StepFeature* feature : variant.features) {
-        feature->attach(pass.program_);
-    }
+    pass.started_ = RELIEF_TRY(variant.compute ? startComputeProgram(shader.file, defines)
+                                               : startScreenProgram(shader.file, defines));
     pass.variant_ = std::move(variant);
     return pass;
+}
+
+Result<void> StepPass::finish() {
+    if (program_) {
+        return {};
+    }
+    program_ = RELIEF_TRY(started_.finish());
+    program_.use();
+    program_.set("u_position", kPositionUnit);
+    program_.set("u_velocity", kVelocityUnit);
+    program_.set("u_birth", kBirthUnit);
+    if (variant_.collider != nullptr) {
+        variant_.collider->attach(program_, kColliderBinding);
+    }
+    for (const StepFeature* feature : variant_.features) {
+        feature->attach(program_);
+    }
+    return {};
 }
 
 void StepPass::use(const Values& values) const {

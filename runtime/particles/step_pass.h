@@ -71,10 +71,15 @@ class StepPass {
     };
 
     StepPass() = default;
+    /// Starts to compile the program.
     /// \param variant  points to its collider and features, which must outlive the pass.
     /// \param shader  includes particles/step.glsl. If it defines its own solids, `variant` has no collider.
+    /// Errors: kFailure (a shader file is missing).
+    [[nodiscard]] static Result<StepPass> start(StepVariant variant, const StepShader& shader = {});
+
+    /// Waits until the program is compiled; no effect if it is. Call it before the functions below.
     /// Errors: kFailure (shader compilation).
-    [[nodiscard]] static Result<StepPass> create(StepVariant variant, const StepShader& shader = {});
+    [[nodiscard]] Result<void> finish();
 
     /// Makes the program current, sets its uniforms, and binds the collider's textures. If usesStorage(), also binds
     /// the collider's uniform block as shader storage, at kTourStorage.
@@ -91,6 +96,7 @@ class StepPass {
   private:
     StepVariant variant_;
     bool tours_ = false;
+    StartedProgram started_;
     GlProgram program_;
 };
 

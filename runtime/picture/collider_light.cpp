@@ -85,11 +85,14 @@ void ColliderLight::frameVolumes() {
 
 Result<void> ColliderLight::createPrograms() {
     const std::string defines = collider_.textures->defines();
-    coarse_program_ =
-        RELIEF_TRY(makeScreenProgram("picture/sun_map.frag", "#define RELIEF_COARSE 1\n" + defines));
-    sun_program_ = RELIEF_TRY(makeScreenProgram("picture/sun_map.frag", defines));
-    occupied_.program = RELIEF_TRY(makeScreenProgram("picture/occupancy.frag", defines));
+    StartedProgram sun = RELIEF_TRY(startScreenProgram("picture/sun_map.frag", defines));
+    StartedProgram coarse =
+        RELIEF_TRY(startScreenProgram("picture/sun_map.frag", "#define RELIEF_COARSE 1\n" + defines));
+    StartedProgram occupied = RELIEF_TRY(startScreenProgram("picture/occupancy.frag", defines));
     sky_.program = RELIEF_TRY(makeScreenProgram("picture/sky_share.frag"));
+    occupied_.program = RELIEF_TRY(occupied.finish());
+    coarse_program_ = RELIEF_TRY(coarse.finish());
+    sun_program_ = RELIEF_TRY(sun.finish());
     const float side = sun_texel_ * static_cast<float>(kSunSide);
     for (const GlProgram* program : {&coarse_program_, &sun_program_}) {
         collider_.textures->attach(*program, kColliderBinding);

@@ -153,6 +153,10 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     const auto context = RELIEF_TRY(makeContext(options));
     auto simulation =
         RELIEF_TRY(Simulation::create(loaded, {.path = options.path, .watchdog = options.watchdog}));
+    if (options.events.empty() && loaded.scene.time.steps > 0) {  // the list of hits changes the program
+        RELIEF_TRY(
+            watched(options.watchdog, "the shaders of particles", [&] { return simulation.startStep(); }));
+    }
     Outputs outputs(options, loaded, simulation.textures());
     RELIEF_TRY(outputs.open(guard));
     if (EventsLog* events = outputs.events(); events != nullptr) {

@@ -44,6 +44,9 @@ class Simulation {
     /// textures name the world of the scene, or its first collider.
     [[nodiscard]] static Result<Simulation> create(const LoadedScene& loaded, SimulationOptions options = {});
 
+    /// ParticleSystem::startStep()
+    [[nodiscard]] Result<void> startStep() { return particles_->startStep(); }
+
     /// Emits births, including births of [[spawn]] from events of the step before the last; updates poses and shapes of
     /// colliders to the end of the step; then steps the particles.
     /// Errors: those of LiveCollider::update and ParticleSystem::step.
@@ -98,7 +101,7 @@ class Simulation {
         return stream_ ? std::optional(stream_->counts()) : std::nullopt;
     }
     /// Returns the current poses of the colliders, in the order of the scene. The pose of an animated collider places
-    /// mesh(), whose origin is the centre of the moving box (AnimatedCollider::placed()).
+    /// mesh(), whose origin is the centre of the collider's box (AnimatedCollider::middle()).
     [[nodiscard]] std::vector<Pose> poses() const { return posesNow(particles_->time()); }
     /// Returns the current mesh of a deforming collider; null for other colliders.
     [[nodiscard]] const GpuMesh* mesh(std::size_t collider) const;
@@ -115,7 +118,7 @@ class Simulation {
         std::size_t index;  // collider of the scene
         AnimatedCollider collider;
         std::optional<MeshPose> pose = {};  // overrides the clip
-        /// The origin of the last pose: one run of a clip, or setPose(). A change of origin is a jump.
+        /// The source of the last pose: one run of a clip, or setPose(). A change of source is a jump.
         struct Source {
             std::optional<std::size_t> clip;
             double run = 0.0;

@@ -8,7 +8,7 @@ namespace relief {
 inline constexpr int kAirFieldsMax = 8;
 /// Maximum distance from the origin in lattice units: beyond it, floats do not resolve a cell of curl noise.
 inline constexpr float kCurlCellMax = 1048576.0F;
-/// Number of patterns of the first octave after which curl noise repeats in time.
+/// Curl noise repeats in time after this many patterns of the first octave.
 inline constexpr int kCurlPatterns = 128;
 
 }  // namespace relief

@@ -102,8 +102,12 @@ vec3 pointBefore(Solid s, vec3 p) {
     return p;
 }
 
-vec3 pointNow(int body, vec3 p) {
+vec3 placedNow(int body, vec3 p) {
     return p;
+}
+
+vec3 motionOf(int body, vec3 p) {
+    return vec3(0.0);
 }
 
 vec2 bodyResponse(int body) {

@@ -147,27 +147,20 @@ ivec4 reliefNextBodies(inout ReliefSearch search, vec3 p, float radius) {
     return found;
 }
 
-// Evaluates the union of all bodies. The distance is in world units; body is -1 if no body votes. Without `whole`, and
-// for placed bodies, only bodies whose boxes contain p are evaluated; boxes are enlarged by the radius of a ball. No
-// other body contains p, and patches have no distance outside their box. Each lane first searches for its next bodies,
-// so that all lanes then evaluate bodies at the same time.
+// Evaluates the union of the bodies whose boxes contain p; boxes are enlarged by the radius of a ball. No other body
+// contains p. The distance is in world units; body is -1 if no body votes; `whole` is only for placed bodies. Each lane
+// first searches for its next bodies, so that all lanes then evaluate bodies at the same time.
 ReliefField reliefUnion(vec3 p, float radius, bool whole, out int body) {
     ReliefField best = ReliefField(RELIEF_FAR_OUTSIDE, vec3(0.0), -1);
     body = -1;
-    if (whole && RELIEF_PLACED == 0) {
-        for (int b = 0; b < reliefBodyCount(); ++b) {
-            reliefJoinBody(best, body, b, p, radius, true);
-        }
-    } else {
-        ReliefSearch search = ReliefSearch(0, 0u, 0u, 0u);
-        bool more = true;
-        while (more) {
-            ivec4 next = reliefNextBodies(search, p, radius);
-            more = next.w >= 0;
-            while (next.x >= 0) {
-                reliefJoinBody(best, body, next.x, p, radius, whole);
-                next = ivec4(next.yzw, -1);
-            }
+    ReliefSearch search = ReliefSearch(0, 0u, 0u, 0u);
+    bool more = true;
+    while (more) {
+        ivec4 next = reliefNextBodies(search, p, radius);
+        more = next.w >= 0;
+        while (next.x >= 0) {
+            reliefJoinBody(best, body, next.x, p, radius, whole);
+            next = ivec4(next.yzw, -1);
         }
     }
     return best;
@@ -178,9 +171,20 @@ ReliefField reliefSolid(vec3 p) {
     return reliefUnion(p, 0.0, false, body);
 }
 
+// Evaluates the union of all bodies. Placed bodies are patches, which have no distance outside their boxes: of them, only
+// bodies whose boxes contain p are evaluated.
 ReliefField reliefEvaluate(vec3 p) {
     int body;
+#if RELIEF_PLACED
     return reliefUnion(p, 0.0, true, body);
+#else
+    body = -1;
+    ReliefField best = ReliefField(RELIEF_FAR_OUTSIDE, vec3(0.0), -1);
+    for (int b = 0; b < reliefBodyCount(); ++b) {
+        reliefJoinBody(best, body, b, p, 0.0, true);
+    }
+    return best;
+#endif
 }
 
 #if RELIEF_LIVE

@@ -9,7 +9,7 @@ inline constexpr int kWorldMapTexels = 9;
 inline constexpr int kWorldBodyTexels = 8;
 inline constexpr int kWorldLevels = 16;
 
-/// Materials (bodies/materials.glsl): texels per body, and the flag of entries that are bricks.
+/// Materials: texels per body, and the flag of entries that point to bricks (bodies/materials.glsl).
 inline constexpr int kMaterialHeadTexels = 2;
 inline constexpr int kMaterialIsBrick = 0x40000000;
 

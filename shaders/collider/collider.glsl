@@ -19,8 +19,8 @@
 
 //!include collider/maps.glsl
 
-// The combined vote. map: the deciding map, -1 if every map abstains; normal: zero if only "outside" is known (distance
-// RELIEF_FAR_OUTSIDE).
+// The combined vote. map: the deciding map, -1 if every map abstains; normal: zero if distance is RELIEF_FAR_OUTSIDE
+// (only "outside" is known, or no map votes).
 struct ReliefField {
     float distance;
     vec3 normal;
@@ -48,21 +48,27 @@ bool reliefReplaces(float vote, float best) {
 vec3 reliefPatchRoots(int i) {
     return vec3(0.0);
 }
-ReliefVote reliefVotePatches(int i, ivec4 info, vec3 p, bool whole) {
-    return ReliefVote(RELIEF_FAR_INSIDE, RELIEF_NO_CODE);
-}
 #endif
 
+// Does not name the votes of absent formats: drivers inline every call before they remove branches that are never taken.
 ReliefVote reliefVoteOf(int i, ivec4 info, vec3 p, bool whole) {
     vec3 in_map = reliefInMap(i, p);
     ivec4 place = reliefMapPlace(i);
-    ReliefVote vote;
+    ReliefVote vote = ReliefVote(RELIEF_FAR_INSIDE, RELIEF_NO_CODE);
+#if defined(RELIEF_HAS_PATCHES)
     if (reliefIsPatches(info)) {
         vote = reliefVotePatches(i, info, in_map, whole);
-    } else if (reliefIsCube(info)) {
+    } else
+#endif
+#if defined(RELIEF_HAS_CUBE)
+    if (reliefIsCube(info)) {
         vote = reliefVoteCube(i, in_map, place, info);
-    } else {
+    } else
+#endif
+    {
+#if defined(RELIEF_HAS_ORTHOGRAPHIC)
         vote = reliefVoteOrthographic(i, in_map, place, info, whole);
+#endif
     }
     return vote;
 }
@@ -89,7 +95,8 @@ void reliefJoin(inout ReliefBest best, int i, ivec4 info, vec3 p, bool whole) {
 
 ReliefField reliefFieldOf(ReliefBest best) {
     bool known = best.map >= 0 && best.distance < RELIEF_FAR_OUTSIDE;
-    return ReliefField(best.distance, known ? reliefDecode(best.normal) : vec3(0.0), best.map);
+    float distance = best.map >= 0 ? best.distance : RELIEF_FAR_OUTSIDE;
+    return ReliefField(distance, known ? reliefDecode(best.normal) : vec3(0.0), best.map);
 }
 
 // Evaluates only the maps [first, end), as reliefSolid or, with `whole`, reliefEvaluate.

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // For collider.glsl: tests of map formats, and the votes of projected maps, orthographic and cube.
 
+// ColliderTextures defines RELIEF_HAS_... for the formats present.
+#if defined(RELIEF_HAS_FLOAT) || defined(RELIEF_HAS_FIXED) || defined(RELIEF_HAS_FRONT_BACK)
+#define RELIEF_HAS_ORTHOGRAPHIC
+#endif
+
 // The tests of a map's format are constants if all maps have the same format: otherwise a GL may execute the branches of
-// all formats for every map. ColliderTextures defines RELIEF_HAS_... for the formats present.
+// all formats for every map.
 bool reliefIsCube(ivec4 info) {
 #if !defined(RELIEF_HAS_CUBE)
     return false;
-#elif defined(RELIEF_HAS_FLOAT) || defined(RELIEF_HAS_FIXED) || defined(RELIEF_HAS_FRONT_BACK)
+#elif defined(RELIEF_HAS_ORTHOGRAPHIC)
     return info.y == RELIEF_MAP_FORMAT_CUBE8;
 #else
     return true;
@@ -17,7 +22,7 @@ bool reliefIsCube(ivec4 info) {
 bool reliefIsPatches(ivec4 info) {
 #if !defined(RELIEF_HAS_PATCHES)
     return false;
-#elif defined(RELIEF_HAS_FLOAT) || defined(RELIEF_HAS_FIXED) || defined(RELIEF_HAS_CUBE) || defined(RELIEF_HAS_FRONT_BACK)
+#elif defined(RELIEF_HAS_ORTHOGRAPHIC) || defined(RELIEF_HAS_CUBE)
     return info.y == RELIEF_MAP_FORMAT_PATCHES;
 #else
     return true;

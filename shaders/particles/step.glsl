@@ -34,7 +34,7 @@ struct Solid {
     vec3 normal;
     int map;
     int body;
-    vec3 motion;  // inside a live body: displacement of its surface in this step; otherwise zero
+    vec3 motion;  // of sweep.hit, if a live body: displacement of its surface in this step; otherwise zero
 };
 
 // Returns true if a ball about p, at the start of the step, was inside the body of s at that time: either its centre or
@@ -43,8 +43,10 @@ struct Solid {
 bool insideBefore(vec3 p, float radius, Solid s, bool free);
 // Moves a point of the body of s back to the start of the step.
 vec3 pointBefore(Solid s, vec3 p);
-// Moves a point of a body from the start to the end of the step.
-vec3 pointNow(int body, vec3 p);
+// Moves a point with the pose of a body from the start to the end of the step.
+vec3 placedNow(int body, vec3 p);
+// Returns the displacement of the surface of a live body near p in this step, after placedNow(); otherwise zero.
+vec3 motionOf(int body, vec3 p);
 // Returns restitution and 1 - friction of a body, as factors on the values of the particle.
 vec2 bodyResponse(int body);
 
@@ -127,16 +129,6 @@ vec3 surfaceVelocity(Solid s, vec3 p) {
     return s.body < 0 ? vec3(0.0) : (p - pointBefore(s, p)) / u_dt;
 }
 
-// Returns the state of a particle permanently at rest, on a surface that may move.
-State rested(State state) {
-    int body = int(state.contact - float(RELIEF_CONTACT_STOPPED)) - 1;
-    vec3 carried = state.position;
-    if (body >= 0) {
-        carried = pointNow(body, state.position);
-    }
-    return State(carried, (carried - state.position) / u_dt, state.collisions, state.contact);
-}
-
 // Returns the velocity after gravity, fields and drag. Drag is integrated implicitly, v' = v + dt (g + k (w - v')),
 // which approaches the wind for any dt. The explicit form overshoots for dt k > 1 and diverges for dt k > 2.
 vec3 pushed(vec3 p, vec3 v, ParticleType type) {
@@ -217,12 +209,39 @@ State reacted(State state, Sweep sweep, ParticleType type, out bool dies) {
     return State(to, v, state.collisions + 1.0, contact);
 }
 
-State moved(State state, ParticleType type, out bool dies) {
-    Sweep sweep = sweepOf(state.position, pushed(state.position, state.velocity, type), type.radius);
+State moved(State state, Sweep sweep, ParticleType type, out bool dies) {
     State after = State(sweep.to, sweep.v, state.collisions, float(RELIEF_CONTACT_NONE));
     dies = false;
     if (sweep.hit.distance < 0.0) {
         after = reacted(state, sweep, type, dies);
+    }
+    return after;
+}
+
+// Returns the state after a step, also of a particle permanently at rest on a surface that may move. The motion of the
+// surface is evaluated once for both: drivers inline every call, and compile each copy.
+State moving(State state, ParticleType type, out bool dies) {
+    bool rests = state.contact >= float(RELIEF_CONTACT_STOPPED);
+    Sweep sweep;
+    int body;
+    vec3 surface;
+    if (rests) {
+        body = int(state.contact - float(RELIEF_CONTACT_STOPPED)) - 1;
+        surface = body < 0 ? state.position : placedNow(body, state.position);
+    } else {
+        sweep = sweepOf(state.position, pushed(state.position, state.velocity, type), type.radius);
+        body = sweep.hit.distance < 0.0 ? sweep.hit.body : -1;
+        surface = sweep.to - type.radius * sweep.hit.normal;  // a ball touches at its surface
+    }
+    vec3 motion = body < 0 ? vec3(0.0) : motionOf(body, surface);
+    State after;
+    if (rests) {
+        vec3 carried = body < 0 ? surface : surface + motion;
+        after = State(carried, (carried - state.position) / u_dt, state.collisions, state.contact);
+        dies = false;
+    } else {
+        sweep.hit.motion = motion;
+        after = moved(state, sweep, type, dies);
     }
     return after;
 }
@@ -257,10 +276,8 @@ void stepAt(ivec2 texel) {
         if (state.collisions >= 0.0) {
             writeDeath(state, death);
         }
-    } else if (state.contact >= float(RELIEF_CONTACT_STOPPED)) {
-        after = rested(state);
     } else {
-        after = moved(state, type, dies);
+        after = moving(state, type, dies);
 #if defined(RELIEF_MATERIAL_LOSS)
         g_lost += g_cost > 0.0 ? min(g_cost / (birth.y - birth.x), 1.0) : 0.0;
 #endif

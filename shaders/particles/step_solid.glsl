@@ -59,20 +59,14 @@ bool reliefDeeper(ReliefField field, float depth) {
     return reliefInside(field) && field.distance < -depth;
 }
 
-Solid solidOf(ReliefField field, int body, vec3 p, float radius) {
-    bool inside = reliefInside(field);
-    vec3 motion = vec3(0.0);
-    if (inside) {
-        // A ball touches at its surface.
-        motion = reliefBodyMotion(body, p - radius * field.normal);
-    }
-    return Solid(inside ? field.distance : RELIEF_FAR_OUTSIDE, field.normal, field.map, body, motion);
+Solid solidOf(ReliefField field, int body) {
+    return Solid(reliefInside(field) ? field.distance : RELIEF_FAR_OUTSIDE, field.normal, field.map, body, vec3(0.0));
 }
 
 Solid solid(vec3 p, float radius) {
     int body;
     ReliefField field = reliefUnion(p, radius, false, body);
-    return solidOf(field, body, p, radius);
+    return solidOf(field, body);
 }
 
 // The maps of a live body only represent the surface at the end of the step. The particle is therefore moved with the
@@ -93,14 +87,13 @@ vec3 pointBefore(Solid s, vec3 p) {
     return reliefMovedBack(s.body, p - s.motion);
 }
 
-vec3 pointNow(int body, vec3 p) {
-    vec3 now = p;
-    // A particle that stopped on a body of a collider that is no longer set stays in place.
-    if (body < reliefBodyCount()) {
-        now = reliefMoved(body, p);
-        now += reliefBodyMotion(body, now);
-    }
-    return now;
+// A particle that stopped on a body of a collider that is no longer set stays in place.
+vec3 placedNow(int body, vec3 p) {
+    return body < reliefBodyCount() ? reliefMoved(body, p) : p;
+}
+
+vec3 motionOf(int body, vec3 p) {
+    return body < reliefBodyCount() ? reliefBodyMotion(body, p) : vec3(0.0);
 }
 
 vec2 bodyResponse(int body) {
@@ -131,8 +124,12 @@ vec3 pointBefore(Solid s, vec3 p) {
     return p;
 }
 
-vec3 pointNow(int body, vec3 p) {
+vec3 placedNow(int body, vec3 p) {
     return p;
+}
+
+vec3 motionOf(int body, vec3 p) {
+    return vec3(0.0);
 }
 
 vec2 bodyResponse(int body) {

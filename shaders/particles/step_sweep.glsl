@@ -66,12 +66,18 @@ Sweep sweepOf(vec3 p, vec3 v, float radius) {
     }
     Solid next = orGround(solidOf(tour, to, radius), to, radius);
 #else
-    Solid next = solidOrGround(to, radius);
-    for (int i = 1; i < RELIEF_SWEEP && float(i) < pieces && next.distance >= 0.0; ++i) {
-        from = to;
-        end = (float(i) + 1.0) * share;
-        to = p + (end * u_dt) * v;
+    Solid next;
+    int i = 0;
+    bool going = true;
+    while (going) {
         next = solidOrGround(to, radius);
+        ++i;
+        going = i < RELIEF_SWEEP && float(i) < pieces && next.distance >= 0.0;
+        if (going) {
+            from = to;
+            end = (float(i) + 1.0) * share;
+            to = p + (end * u_dt) * v;
+        }
     }
 #endif
     return Sweep(v, from, to, share, from == p, end, next);

@@ -63,7 +63,7 @@ decltype(epoxy_glTexStorage2D) real_storage_2d = nullptr;
 decltype(epoxy_glBufferData) real_buffer_data = nullptr;
 decltype(epoxy_glGetError) real_get_error = nullptr;
 decltype(epoxy_glGetIntegerv) real_get_integer = nullptr;
-decltype(epoxy_glGetShaderiv) real_get_shader = nullptr;
+decltype(epoxy_glGetProgramiv) real_get_program = nullptr;
 
 bool failsNow(const char* call, GLenum target, GLsizeiptr width, GLsizeiptr height = 1,
               GLsizeiptr depth = 1) {
@@ -117,9 +117,9 @@ GLenum endlessError() {
 GLenum incomplete(GLenum /*target*/) {
     return GL_FRAMEBUFFER_UNSUPPORTED;
 }
-void shaderStatus(GLuint shader, GLenum what, GLint* value) {
-    real_get_shader(shader, what, value);
-    if (what == GL_COMPILE_STATUS) {
+void programStatus(GLuint program, GLenum what, GLint* value) {
+    real_get_program(program, what, value);
+    if (what == GL_LINK_STATUS) {
         *value = GL_FALSE;
     }
 }
@@ -209,7 +209,7 @@ class GlFaultTest : public GlTest {
         real_buffer_data = epoxy_glBufferData;
         real_get_error = epoxy_glGetError;
         real_get_integer = epoxy_glGetIntegerv;
-        real_get_shader = epoxy_glGetShaderiv;
+        real_get_program = epoxy_glGetProgramiv;
     }
 
     static AirSettings air() {
@@ -408,7 +408,7 @@ TEST_P(GlFaultTest, RejectedFramebuffersAndShadersAreErrors) {
         expectFails(outcome(particles_.readState()), ErrorCode::kUnsupported, "");
     }
     {
-        const Replaced status(epoxy_glGetShaderiv, &shaderStatus);
+        const Replaced status(epoxy_glGetProgramiv, &programStatus);
         expectFails(outcome(Frame::create(8, 8)), ErrorCode::kFailure, "base/quad.vert");
     }
     // The driver's message is included.

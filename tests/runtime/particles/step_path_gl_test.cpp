@@ -137,6 +137,7 @@ class StepPathGlTest : public GlTest {
             types[1].collides_with = 2U | kCollidesWithGround;
         }
         EXPECT_TRUE(particles.setTypes(types));
+        EXPECT_TRUE(particles.startStep());  // of settings that change before the first step
         EXPECT_TRUE(particles.setSweep(features.sweep));
         if (features.air) {
             AirSettings air;
@@ -159,6 +160,7 @@ class StepPathGlTest : public GlTest {
         }
         const auto half = static_cast<std::ptrdiff_t>(kParticles / 2);
         particles.spawn({births.begin(), births.begin() + half});
+        EXPECT_TRUE(particles.startStep());
         for (int i = 0; i < steps; ++i) {
             if (i == steps / 2) {
                 particles.spawn({births.begin() + half, births.end()});
@@ -252,7 +254,9 @@ TEST_P(StepPathGlTest, BothPathsGiveTheSameParticles) {
 TEST_P(StepPathGlTest, ToursAreUsedForSweepsOfASingleCollider) {
     const auto tours = [](const Result<WorldTextures>& textures, StepVariant variant) {
         variant.collider = &*textures;
-        return required(StepPass::create(variant)).usesStorage();
+        StepPass pass = required(StepPass::start(variant));
+        EXPECT_TRUE(pass.finish());
+        return pass.usesStorage();
     };
     const auto many = [](std::size_t maps) {
         Collider box = boxCollider();
