@@ -56,7 +56,7 @@ struct ContainerInfo {
 /// "'a.obj' is a mesh, not a collider; bake it first: relief bake …".
 [[nodiscard]] Result<void> rejectMeshName(const std::filesystem::path& path);
 
-/// Likewise, but accepts any name if the contents start with the container signature.
+/// Likewise, but accepts any name if the first byte is that of the container signature.
 [[nodiscard]] Result<void> rejectMesh(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Material responses by name, with which scenes and worlds override the values of containers.
+// Material responses by name. Scenes and worlds use them to override the values in containers.
 #pragma once
 
 #include <optional>

@@ -382,7 +382,7 @@ Result<void> validatePatches(PatchTexels texels) {
     const auto [roots, levels] = patchTreeSize(texels);
     const std::uint64_t root_count = std::uint64_t{roots.x} * roots.y * roots.z;
     if (root_count == 0 || levels > kPatchLevelsMax || 1 + root_count > count) {
-        return invalid(0, "of its tree of patches has an invalid size");
+        return invalid(0, "of its tree of patches declares an invalid size");
     }
     // Check level by level: [at, end) are the records of one level, and the next level begins at `end`.
     std::uint64_t at = 1;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A map of patches: an octree whose leaves contain small depth maps of the surface. Each patch is projected along the
 // one of 13 axes that suits its piece of the surface best, so no part of a mesh is hidden. formats/README.md specifies
-// the format and shaders/engines/relief.glsl implements it in GLSL; change all three together.
+// the format; shaders/engines/relief.glsl, formats/single/relief.h and runtime/web/engines/patches.js also implement it:
+// change all together.
 //
 // Map space is measured in root cells: the volume is [0, n.x] × [0, n.y] × [0, n.z], and cells are cubes in object
 // space. A texel has 8 bytes, four little-endian words of 16 bits. Below, `low` is the first two words and `high` the

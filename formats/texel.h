@@ -8,7 +8,7 @@
 //                              B = half-float depth of the front   A = of the back
 //     front-back fixed    8    likewise with 16-bit fixed-point depths as in fixed8
 //     cube8               4    as fixed8, in six faces
-//     patches             8    a record of a tree, or heights: patch_tree.h. The functions below exclude this format
+//     patches             8    a record of a tree, or heights: patch_tree.h. encodeTexel() and decodeTexel() exclude it
 //
 // With the 11 significant bits of a half, depths over a box of length 2 are off by 2·10^-4 on average. Fixed point is
 // 32 times finer in the far half of the volume. Half floats are the paper's choice.

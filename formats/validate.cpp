@@ -83,7 +83,7 @@ Result<void> validateSize(const DepthMap& map) {
                             std::to_string(smallest));
     }
     if (cube && map.width != map.height) {
-        return invalidInput("its size " + size + " is not square, as required for cube faces");
+        return invalidInput("its size " + size + " is not square, but cube faces must be");
     }
     return {};
 }

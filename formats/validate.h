@@ -25,7 +25,7 @@ inline constexpr double kObjectPerMapTolerance = 1e-3;  ///< relative error of o
 // All Results fail with kInvalidInput, or with kLimit for too many texels. Messages name the field and its value.
 // Functions for one map do not name the map; callers add it with inMap().
 
-/// Returns the problems of the bounds, which come first, and of the unit, provenance and materials.
+/// Returns the problems of the bounds, unit, provenance and materials; those of the bounds come first.
 [[nodiscard]] std::vector<Issue> descriptionIssues(const Collider& collider);
 
 /// Validates a map except its texels, which may be missing.
@@ -40,7 +40,7 @@ inline constexpr double kObjectPerMapTolerance = 1e-3;  ///< relative error of o
 /// Prefixes an error with the index of its map.
 [[nodiscard]] Error inMap(std::size_t index, const Error& error);
 
-/// Returns a mesh's name in containers, which is also its file's name in the folder render.meshes of a scene:
+/// Returns a mesh's name in containers, which is also its file name in the folder that a scene's render.meshes names:
 /// cleanUtf8() with '_' for '/' and '\', because node names may look like paths; truncated to kMeshNameMax bytes.
 [[nodiscard]] std::string storedMeshName(std::string name);
 

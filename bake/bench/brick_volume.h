@@ -8,7 +8,7 @@
 // - Nodes store exact distances, or a least-squares fit to the exact distances at random points of the voxels that the
 //   surface crosses. Points close to the surface have the largest weights.
 // - 8-bit codes for distances up to `band` voxels; larger distances are clamped.
-// - In an octree, the cubes with the largest displacement of the surface are split until the bytes are used up.
+// - In an octree, the cubes with the largest total surface error are split until the bytes are used up.
 // - Sizes are bytes on the GPU: the nodes and the index. The index is a dense or two-level grid of the cubes, whichever
 //   is smaller; for an octree, it has one entry per root and eight per split cube.
 // - A point beyond the box is outside; its distance to the box is added to the field at the nearest point of the box.

@@ -10,7 +10,7 @@
 // - 16-bit signed normalised values. Their range is either the largest distance of any node, or a narrow band around
 //   the surface, where the resolution is finer; the caller measures both.
 // - The lookup is trilinear in double precision, although texture units of GPUs have 8-bit weights.
-// - Points beyond the box are outside, regardless of the border nodes; their distance to the box is added.
+// - Points beyond the box are outside: their distance to the box is added to the border value, clamped to at least 0.
 #pragma once
 
 #include <cstdint>

@@ -96,7 +96,7 @@ Result<void> checkTogether(const ExportCommand& command) {
     }
     if (isWorldFile(command.file) && (!command.output.empty() || grids)) {
         return fail(ErrorCode::kUsage,
-                    quotedPath(command.file) + " is a level; only --engine exports levels");
+                    quotedPath(command.file) + " is a world; only --engine exports worlds");
     }
     if (command.voxels && !grids) {
         return fail(ErrorCode::kUsage, "--voxels has no effect without --vdb or --mesh; add one of them");

@@ -111,7 +111,7 @@ Result<void> runGroundCheck(const CheckCommand& command, const std::string& file
                     shortNumber(wrong) +
                         " % of the points near the surface are on the wrong side, more than --max-error " +
                         shortest(*command.max_error) +
-                        " %; set --mesh and --heights to those of the bake, or raise --max-error");
+                        " %; set --mesh and --heights as in the bake, or raise --max-error");
     }
     return {};
 }

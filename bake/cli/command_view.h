@@ -14,9 +14,8 @@
 namespace relief {
 
 /// Checks, before the long work, that a page can be made and written. \param html  the value of --page; empty: no page
-/// \return the player page for a world, otherwise empty
-/// Errors: kUsage; kUnsupported if there is no player; kInvalidInput if the player is from another release; those of
-/// FileGuard.
+/// \return playerPage() for a world, otherwise empty
+/// Errors: kUsage; those of playerPage() and FileGuard.
 [[nodiscard]] Result<std::string> preflightPage(const std::string& file, const std::string& mesh,
                                                 const std::string& html, FileGuard& files);
 

@@ -159,7 +159,7 @@ Result<std::vector<EngineFile>> engineFiles(const LoadedWorld& loaded, std::stri
             RELIEF_TRY(withPrefix(loaded.world.colliders[i].file, engineMap(loaded.colliders[i])));
         const std::size_t first = texels.size() / kPatchTexelBytes;
         if (first + map->texels.size() / kPatchTexelBytes > kEngineTexelsMax) {
-            return fail(ErrorCode::kLimit, "the colliders of this level exceed the " +
+            return fail(ErrorCode::kLimit, "the colliders of this world exceed the " +
                                                std::to_string(kEngineTexelsMax) +
                                                " texels of one texture; bake it with a smaller --budget");
         }

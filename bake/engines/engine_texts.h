@@ -5,7 +5,8 @@
 
 namespace relief {
 
-/// Returns the text that embed.cmake makes of a file; empty for other files. \param path  of the file, in the project.
+/// Returns a file's text as embedded by embed.cmake; empty if it is not embedded. \param path  of the file, in the
+/// project.
 [[nodiscard]] std::string_view engineText(std::string_view path);
 
 }  // namespace relief

@@ -163,7 +163,7 @@ class GroundBaker {
             return fail(
                 ErrorCode::kLimit,
                 map_.name() +
-                    ": it is too far from the origin for floats to resolve its squares; give a smaller "
+                    ": it is too far from the origin for floats to resolve its spacing; give a smaller "
                     "--heights offset, or a larger spacing");
         }
         return {};
@@ -172,7 +172,7 @@ class GroundBaker {
     [[nodiscard]] tl::unexpected<Error> noGround() const {
         return invalidInput(
             map_.name() +
-            ": no square has ground, because each has a hole at a corner; check --heights hole");
+            ": there is no ground: each square of four samples has a hole; check --heights hole");
     }
 
     Result<std::vector<std::byte>> containerOf(const Collider& collider) const {

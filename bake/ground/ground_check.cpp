@@ -187,7 +187,7 @@ class GroundChecker {
         if (result_.squares == 0) {
             return invalidInput(
                 map_.name() +
-                ": no square has ground, because each has a hole at a corner; check --heights hole");
+                ": there is no ground: each square of four samples has a hole; check --heights hole");
         }
         return {};
     }

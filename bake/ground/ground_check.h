@@ -5,7 +5,7 @@
 //        y  |        . outside      points near the surface: side, and distance to the
 //           |    .  /  \            collider's surface along y
 //           |\_____/ .  \___        points anywhere: side, also beyond the edges and at holes;
-//           |  . inside     |       where there is ground, only above its floor
+//           |  . inside     |       over ground, only points above its floor
 //        ---+---------------+-- x
 #pragma once
 
@@ -30,7 +30,8 @@ inline constexpr std::uint64_t kGroundSamplesMax = 10'000'000;
 struct GroundCheckRequest {
     std::filesystem::path map;
     HeightsSpec heights;
-    std::uint64_t samples = 200'000;  ///< number each of points near the surface, near seams, and anywhere
+    /// Number of points of each kind: near the surface, near seams, anywhere.
+    std::uint64_t samples = 200'000;
     std::uint64_t seed = 1;
     /// Maximum distance of points near the surface, along y, in metres; nullopt: the sample spacing.
     std::optional<double> within;

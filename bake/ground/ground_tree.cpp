@@ -125,7 +125,7 @@ class GroundTree {
         const double single = cellSize(last_level_);
         if (!(std::max(std::abs(deepest_), std::abs(high_)) < kFloatSteps * place_.spacing)) {
             return fail(ErrorCode::kLimit,
-                        "its heights are too far from 0 for floats to resolve its squares; shift them by "
+                        "its heights are too far from 0 for floats to resolve its spacing; shift them by "
                         "--heights low and high, or give a larger spacing");
         }
         if (!(std::max(std::abs(deepest_), std::abs(high_)) < kCellsMax * root &&
@@ -146,8 +146,8 @@ class GroundTree {
     [[nodiscard]] tl::unexpected<Error> tooLarge(const std::string& why) const {
         return fail(ErrorCode::kLimit,
                     why + " that the tree exceeds " + std::to_string(kPatchTexelsMax) +
-                        " texels of 8 bytes; bake tiles with --world, smaller ones with --heights "
-                        "tile=, or give a larger spacing or a smaller range of heights");
+                        " texels of 8 bytes; bake tiles with --world (smaller ones with --heights "
+                        "tile=), or give a larger spacing or a smaller range of heights");
     }
 
     /// Classifies a cell. Returns kSplit if one patch cannot represent its column.

@@ -10,9 +10,9 @@
 //        |       _.-´|   |inside |___|___|
 //        |___.--´|___|___|_______|_______|       inside
 //
-// The surface of a leaf's 4² squares may cross several stacked cells; these cells and the next cell below share its
-// heights. Distances are therefore measured to the surface itself, down to one leaf side below it. A column of cells
-// that is partly without ground, or too steep, is split into single squares of 2² heights.
+// The surface of a leaf's 4² squares may cross several stacked cells; these cells and the next cell below share one set
+// of heights. Distances are therefore measured to the surface itself, down to one leaf side below it. A column of cells
+// that is partly without ground, or too steep, is split, at most to half squares of 2² heights.
 //
 // Every stored height differs from its sample by at most half a code step of its leaf. 255 steps span the range of the
 // leaf's 25 samples plus a 512th of the leaf's side; this span is rounded up by at most a sixteenth. The same bound
@@ -50,7 +50,7 @@ struct GroundPlace {
     /// The squares to count in Ground::steep; if tiles overlap, each square is counted in one tile.
     glm::uvec2 first{0};
     glm::uvec2 squares{std::numeric_limits<std::uint32_t>::max()};
-    /// Splits from a root down to a leaf; fewer for a coarse collider, which keeps the roots of the ground.
+    /// Number of splits from a root to a leaf; smaller for a coarse collider, which keeps the roots of the ground.
     unsigned leaf_level = kLeafLevel;
     /// Lowest and highest height that the roots must contain; nullopt: those of the samples.
     std::optional<glm::dvec2> heights = {};

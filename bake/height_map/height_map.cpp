@@ -72,7 +72,7 @@ Result<void> checkSettings(const SampleRows& rows, const HeightsSpec& spec) {
     }
     if (!spec.low || !spec.high) {
         return fail(ErrorCode::kUsage, std::string("--heights needs ") + (spec.low ? "high" : "low") +
-                                           "=, the height of sample " +
+                                           "=, the height of sample value " +
                                            (spec.low ? std::to_string(rows.most()) : "0"));
     }
     return checkHole(spec, 0, static_cast<int>(rows.most()));
@@ -154,8 +154,7 @@ Result<void> HeightMap::rewind() {
     std::unique_ptr<SampleRows> again = RELIEF_TRY(openRows());
     if (again->columns() != rows_->columns() || again->rows() != rows_->rows() ||
         again->most() != rows_->most()) {
-        return invalidInput(shown_ +
-                            ": the importer returned a different size the second time; save it again");
+        return invalidInput(shown_ + ": the importer returned two different sizes; save the image again");
     }
     rows_ = std::move(again);
     return {};

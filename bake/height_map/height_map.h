@@ -33,7 +33,7 @@ inline constexpr std::uint64_t kHeightSamplesMax = std::uint64_t{1} << 28;
 struct BetterFormat {
     std::optional<SampleType> type = {};  ///< nullopt: as given
     std::optional<ByteOrder> order = {};  ///< nullopt: as given
-    bool eight_bits = false;              ///< in the given order, they may be 8-bit samples times 256
+    bool eight_bits = false;              ///< in the given byte order, samples may be 8-bit values times 256
     /// No better setting was found, but the samples look like noise, or neighbours differ less with the other
     /// signedness.
     bool doubtful = false;

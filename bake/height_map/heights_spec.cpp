@@ -50,8 +50,7 @@ std::string faultOf(const HeightsSpec& spec) {
                "; swap them";
     }
     if (spec.tile % kTileStep != 0) {
-        return "tile is " + std::to_string(spec.tile) +
-               " but must be a multiple of 4, the squares along a leaf; use " +
+        return "tile is " + std::to_string(spec.tile) + " but must be a multiple of 4; use " +
                std::to_string(spec.tile / kTileStep * kTileStep);
     }
     return {};

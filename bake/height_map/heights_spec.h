@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Defines the settings of a height map: `relief bake --heights`.
 //
-//     spacing=1,low=0,high=500           an integer grey image: 0 means height low, the largest value height high
+//     spacing=1,low=0,high=500           an integer grey image: value 0 maps to low, the largest value to high
 //     spacing=0.5,hole=-9999             an EXR image in metres
 //     low=-10,high=90,width=2048,hole=0  raw samples of 16 bits, little-endian
 //     spacing=30,type=int16,order=big    raw samples in metres, big-endian, as in .hgt files

@@ -22,7 +22,7 @@
 
 namespace relief {
 
-/// Views by direction: 2 · axis, plus 1 for the negative direction. Also the order of the faces of a cube.
+/// Names by view: 2 · axis, plus 1 for the negative direction. Also the order of the faces of a cube.
 inline constexpr std::array<const char*, 6> kDirectionNames{"+x", "-x", "+y", "-y", "+z", "-z"};
 
 struct AxisGrid {
@@ -44,7 +44,7 @@ struct AxisGrid {
     [[nodiscard]] std::size_t pixel(std::uint32_t x, std::uint32_t y) const {
         return std::size_t{height - 1 - y} * width + x;
     }
-    /// Returns an image of these samples with zeros in all channels, a camera, and view, unit and bounds as attributes.
+    /// Returns an image of these samples, zero in all channels, with a camera and the attributes view, unit and bounds.
     /// \param near  position of the camera along the axis, object units.
     [[nodiscard]] ExrImage image(double near, const Collider& collider,
                                  const std::vector<std::string>& channels) const;

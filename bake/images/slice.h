@@ -25,7 +25,7 @@ struct SliceOptions {
 };
 
 /// Samples on a regular grid that covers the bounds, with a margin of a tenth of their longer side all around. The
-/// horizontal and vertical axes are (z, y) across x, (x, z) across y, and (x, y) across z.
+/// horizontal and vertical axes are (z, y) for axis x, (x, z) for axis y, and (x, y) for axis z.
 struct Slice : AxisGrid {
     float at = 0.0F;                     ///< object units
     std::vector<FieldSample> samples{};  ///< row by row from the bottom
@@ -63,7 +63,7 @@ enum class SideVerdict : std::uint8_t { kInside, kOutside, kFalseInside, kFalseO
 /// A square of samples perpendicular to an axis, coloured by whether a collider classifies each point correctly.
 struct VerdictSlice {
     int axis = 2;
-    /// The horizontal and vertical axes: (z, y) across x, (x, z) across y, (x, y) across z.
+    /// The horizontal and vertical axes: (z, y) for axis x, (x, z) for axis y, (x, y) for axis z.
     int right = 0;
     int up = 1;
     glm::vec3 center{0.0F};             ///< the place of interest

@@ -175,7 +175,7 @@ Result<void> replaceSparse(const GltfValue& sparse, GltfBuffers& buffers, std::u
     const std::optional<GltfValue> indices = RELIEF_TRY(sparse.object("indices"));
     const std::optional<GltfValue> values = RELIEF_TRY(sparse.object("values"));
     if (count == 0 || count > all || !indices || !values) {
-        return sparse.wrong("has no indices, no values, or a count outside 1 to the accessor's count");
+        return sparse.wrong("has no indices, no values, or a count that is 0 or exceeds the accessor's");
     }
     const std::uint64_t type = RELIEF_TRY(indices->number("componentType"));
     if (type != kUnsignedByte && type != kUnsignedShort && type != kUnsignedInt) {
@@ -375,9 +375,9 @@ Result<std::vector<T>> readAccessor(const GltfValue& accessor, GltfUse use, Gltf
         return accessor.wrong("has no data; export it uncompressed", ErrorCode::kUnsupported);
     }
     if (count > count_max) {
-        return accessor.wrong("has " + std::to_string(count) + " elements, more than the limit of " +
+        return accessor.wrong("has " + std::to_string(count) + " elements, but only " +
                                   std::to_string(count_max) +
-                                  " for all together; simplify the mesh, or raise --max-triangles",
+                                  " are left; simplify the mesh, or raise --max-triangles",
                               ErrorCode::kLimit);
     }
     std::vector<T> values(count, T{});

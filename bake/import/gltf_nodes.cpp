@@ -274,7 +274,7 @@ Result<std::vector<GltfNode>> readGltfNodes(const GltfValue& document, HiddenMod
     // A node has at most one parent, so nodes that no root reaches form a cycle or are below one.
     const std::vector<std::uint32_t> all = nodesBelow(rootsOf(nodes), nodes);
     if (all.size() != nodes.size()) {
-        return invalidInput("its nodes are their own parents; nodes must form trees");
+        return invalidInput("its nodes contain a cycle; nodes must form trees");
     }
     RELIEF_TRY(hideNodes(all, hidden, nodes));
     return nodes;

@@ -152,7 +152,7 @@ Result<void> ImportProcess::finish(bool begun) {
                                                " bytes; " + smaller_ + ", or raise --max-import-memory");
         case kImportExitArguments:
             return fail(ErrorCode::kFailure,
-                        "the importer was started by another version, or lost its parent; reinstall Relief");
+                        "the importer was started by another version, or its parent ended; reinstall Relief");
         case kImportExitTooLarge:
             return fail(ErrorCode::kLimit, std::string("the ") + noun_ + " is too large to transfer; " +
                                                smaller_ +
@@ -185,8 +185,8 @@ tl::unexpected<Error> ImportProcess::ended(int number) const {
         case SIGSYS:
             return fail(
                 ErrorCode::kInvalidInput,
-                "the importer made a forbidden system call (SIGSYS), as a hostile file can cause; do not "
-                "trust the file, or report it if you do");
+                "the importer made a forbidden system call (SIGSYS), which suggests a hostile file; do not "
+                "use the file; if you trust it, report a bug");
         case SIGBUS:  // not a truncated file: its memory is anonymous
             return systemError("could not continue", ENOMEM);
         default:

@@ -18,8 +18,8 @@ namespace relief {
 ///
 /// The header OFF is optional and may have the prefixes ST, C and N. The counts of vertices, faces and, optionally,
 /// edges follow. Vertices and faces may span several lines. The rest of their last line, usually colours, is skipped.
-/// A line may hold several vertices or faces if the header's counts fit this reading. Faces that share a line have no
-/// colours; vertices that share a line have as many numbers after their coordinates as the prefixes require.
+/// A line may hold several vertices or faces if the file then matches the header's counts. Faces that share a line have
+/// no colours; vertices that share a line have as many numbers after their coordinates as the prefixes require.
 [[nodiscard]] Result<PolygonMesh> readOff(std::span<const std::byte> bytes);
 
 /// Reads STL, as text or binary.
@@ -48,8 +48,8 @@ namespace relief {
 /// Skinned meshes get the pose of the nodes, and morph targets are ignored, both with a warning.
 [[nodiscard]] Result<ImportScene> readGltf(const ImportJob& job, ImportFiles& files);
 
-/// Reads TriangleMesh::animation of a glTF file, with unit and warnings, for jobs of kAnimated and kClips. Reads the
-/// same data as readGltf(), plus morph targets and animations; animated_import.h defines which of them the mesh keeps.
+/// Reads TriangleMesh::animation of a glTF file, with unit and warnings, for jobs of kAnimated and kClips. For
+/// kAnimated, reads the data of readGltf(), plus morph targets and animations; for kClips, only nodes and animations.
 [[nodiscard]] Result<TriangleMesh> readAnimatedGltf(const ImportJob& job, ImportFiles& files);
 
 }  // namespace relief

@@ -47,7 +47,7 @@ struct ScenePart {
     std::vector<std::string> names{};   ///< of its mesh, group and material, for --as
 };
 
-/// Appends to part.positions, in order, those of `positions` that its triangles use, and renumbers their corners.
+/// Copies the used entries of `positions` to part.positions, in order, and renumbers the corners of part.triangles.
 /// \return the indices in `positions` of the copied positions.
 std::vector<std::uint32_t> compact(const std::vector<glm::vec3>& positions, ScenePart& part);
 

@@ -187,7 +187,7 @@ Result<Level> splitLevel(TriangleMesh all, bool materials) {
         return invalidInput("it has no mesh with an area; export it again");
     }
     if (std::ranges::find(placed, false) != placed.end()) {
-        return invalidInput("the importer returned a mesh that nothing places; export it again");
+        return invalidInput("the importer returned a mesh that no body places; export it again");
     }
     return level;
 }

@@ -64,13 +64,13 @@ class LevelMeshes {
 /// transform, sorted by name; skips other files and subfolders.
 /// \param path  a file or a folder.
 /// Errors: those of importLevelInWorker; for a folder also kUsage (ImportOptions::names is not empty), kInvalidInput
-/// (no mesh file, or only some with a unit), kLimit.
+/// (no mesh file, or only some have a unit), kLimit.
 [[nodiscard]] Result<Level> importLevel(const std::filesystem::path& path, const ImportOptions& options = {},
                                         const ImportLimits& limits = {});
 
 /// Splits a level into its meshes, finishes them, and merges equal ones. Skips meshes without area and their bodies,
 /// with a warning.
-/// \param all        with a name; its lists of meshes and bodies are untrusted.
+/// \param all        its name is set; its lists of meshes and bodies are untrusted.
 /// \param materials  as in LevelMeshes::add().
 /// Errors, without the file path: kInvalidInput (inconsistent lists, or no mesh left).
 [[nodiscard]] Result<Level> splitLevel(TriangleMesh all, bool materials = true);

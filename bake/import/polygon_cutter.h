@@ -20,7 +20,7 @@ namespace relief {
 /// the origin.
 ///
 /// The first attempt repeats assimp's tests in float precision, so that baked files stay byte-identical. Its result is
-/// used only if every triangle has an area.
+/// used unless another attempt is better.
 class PolygonCutter {
   public:
     /// Triangulates a polygon.

@@ -222,7 +222,7 @@ class ColladaReader {
     Result<void> visit(const pugi::xml_node& node, const pugi::xml_node& instance, const std::string& url,
                        std::vector<std::uint32_t>& children) {
         if (!url.starts_with('#')) {
-            return fail(ErrorCode::kUnsupported, placeOf(node, instance) + " instances '" +
+            return fail(ErrorCode::kUnsupported, placeOf(node, instance) + " instantiates '" +
                                                      cleanUtf8(url, kUrlMax) +
                                                      "', which is in another file; merge the files");
         }
@@ -249,7 +249,7 @@ class ColladaReader {
                             const std::string& url, const char* what) {
         if (missing_++ == 0) {
             nodes_.missing =
-                placeOf(node, instance) + " instances '" + cleanUtf8(url, kUrlMax) + "', which " + what;
+                placeOf(node, instance) + " instantiates '" + cleanUtf8(url, kUrlMax) + "', which " + what;
         }
         return {};
     }

@@ -17,7 +17,7 @@
 
 namespace relief {
 
-/// Suffix that patchedFbx() adds to a node's name in exchange for its class "LodGroup", which is as long.
+/// Suffix that patchedFbx() adds to a node's name while it removes the class "LodGroup", which has the same length.
 inline constexpr std::string_view kLodGroupMark = "\x02LodGrp\x02";
 
 /// Patches an FBX document, binary or text, without changing its length, so that assimp exposes hidden nodes and levels

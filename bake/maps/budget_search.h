@@ -19,7 +19,7 @@ namespace relief {
 
 inline constexpr std::uint64_t kBudgetMin = 4096;  ///< bytes
 
-/// Bakes a tree of patches. Records the budget, but not the map or the texel.
+/// Bakes a tree of patches. The provenance records the budget, but no map or texel.
 /// \param budget_bytes  at least kBudgetMin; 0: no limit, only options.texel applies
 /// \param options  its maps are ignored
 /// Errors: kUsage (below kBudgetMin), those of bake.

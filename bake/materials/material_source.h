@@ -18,7 +18,7 @@ struct MaterialSource {
     std::vector<glm::uvec3> triangles;  ///< counter-clockwise seen from outside
     std::vector<std::uint8_t> ids;      ///< per triangle, an index into `list`
     std::vector<Material> list;         ///< in file order
-    /// True if holes are closed and the source has no repairs, sheets or terrains. The normal then distinguishes the
+    /// True for a bake with closed holes and no repair, sheets or terrains. The normal then distinguishes the
     /// materials on the two sides of a thin wall; a sheet has one material on both sides.
     bool sides = true;
 

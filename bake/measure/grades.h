@@ -22,8 +22,8 @@ inline constexpr double kPartLost = 25.0;
 
 /// Minimum length of a lost part that counts, as a fraction of the asset's diagonal: about twice the standard deviation
 /// of the offset of points near the surface. If the unit is metres, at most kNoticeableMetres, because a person notices
-/// a brick on a landscape. Smaller lost parts and coarse parts count if together they make more than kGoodPercent of
-/// the points near the surface wrongly outside.
+/// a brick on a landscape. Smaller lost parts and coarse parts count if, because of them, more than kGoodPercent of the
+/// points near the surface are falsely outside.
 inline constexpr double kNoticeableShare = 0.01;
 inline constexpr double kNoticeableMetres = 0.1;
 /// A lost part may exist with a slightly different surface. It is therefore tested again at this distance, a fraction

@@ -81,7 +81,7 @@ struct PartsAccuracy {
     /// Named nodes, if there are several, then named materials, if there are several; each least accurate first.
     std::vector<GroupAccuracy> groups;
     std::uint64_t count[kPartVerdicts] = {};  ///< number of parts in each state
-    /// Minor and coarse parts together make more than kGoodPercent of the points near the surface wrongly outside.
+    /// More than kGoodPercent of the points near the surface are falsely outside because of minor and coarse parts.
     bool minor_counts = false;
     IgnoredParts ignored;
 
@@ -95,10 +95,10 @@ struct PartsAccuracy {
 /// except that a shell ends at its target_thickness. If a part is lost and had fewer than 256 points, it is measured
 /// again with 256.
 ///
-/// A lost part is minor if it is shorter than `min_part`. It is also minor if it is not missing, and enough points at a
-/// distance of kNoticeableExcess times `min_part` are on the right side. Exception: if PartsAccuracy::minor_counts is
-/// set and `min_part` is the default, missing minor parts are lost.
-/// The result does not depend on the number of threads.
+/// A lost part is minor if it is shorter than `min_part`. It is also minor if most of it is present, and enough points
+/// at a distance of kNoticeableExcess times `min_part` are on the right side. But minor parts mostly classified as
+/// outside are lost if PartsAccuracy::minor_counts is set and `min_part` is the default. The result does not depend on
+/// the number of threads.
 /// \param query  of the solid of `parts`.
 [[nodiscard]] PartsAccuracy measureParts(const MeshQuery& query, const SurfaceParts& parts,
                                          const Field& field, const PartOptions& options);

@@ -56,8 +56,8 @@ class RayQuery {
 #endif
     }
 
-    /// Returns the query of a filter function. EmbreeContext is the first member, and Embree passes its pointer to the
-    /// filter.
+    /// Returns the query of a filter function. Embree passes the filter a pointer to the first member, an
+    /// EmbreeContext.
     static RayQuery* of(const RTCFilterFunctionNArguments* args) {
         return reinterpret_cast<RayQuery*>(args->context);
     }
@@ -99,7 +99,7 @@ class RayQuery {
         init(&arguments);
         arguments.context = &context_;
         arguments.filter = filter_;
-        // Without this flag, Embree runs only the filters of geometries.
+        // Without ARGUMENT_FILTER, Embree runs only the filters of geometries.
         const int flags =
             (order_ == RayOrder::kCoherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT) |
             (filter_ != nullptr ? RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER : RTC_RAY_QUERY_FLAG_NONE);
@@ -112,7 +112,7 @@ class RayQuery {
 #endif
 };
 
-/// Builds a ray in Embree's coordinates; `end` is a multiple of the length of `direction`.
+/// Builds a ray in the space of EmbreeMesh::toLocal(); `end` is in lengths of `direction`.
 [[nodiscard]] inline RTCRayHit rayHit(const glm::vec3& origin, const glm::vec3& direction, float end) {
     RTCRayHit query{};
     query.ray.org_x = origin.x;

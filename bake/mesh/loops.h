@@ -28,8 +28,8 @@ template <class Value, class Index = std::uint32_t>
 class Buckets {
   public:
     Buckets() = default;
-    /// \param forEach  calls its argument with (bucket, value) for every value, in the same order each time; it is called
-    /// twice.
+    /// \param forEach  calls its argument with (bucket, value) for every value. forEach is called twice, and must
+    /// repeat the order.
     template <class ForEach>
     Buckets(std::size_t count, const ForEach& forEach) : first_(count + 1, 0) {
         forEach([&](std::size_t bucket, const Value&) { ++first_[bucket + 1]; });

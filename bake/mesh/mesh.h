@@ -39,7 +39,8 @@ struct SurfaceName {
     friend auto operator<=>(const SurfaceName&, const SurfaceName&) = default;
 };
 
-/// A distinct mesh of a level. It consists of the next `positions` and `triangles` of an importer's TriangleMesh.
+/// A distinct mesh of a level. Its positions and triangles follow those of the previous mesh in an importer's
+/// TriangleMesh.
 struct LevelMesh {
     std::string name;
     std::uint64_t positions = 0;
@@ -141,8 +142,8 @@ inline void addTriangle(Bounds& bounds, const TriangleMesh& mesh, std::uint32_t 
 }
 
 /// Mean number of triangle boxes on a line through the mesh's box: about the number of triangles tested per ray.
-/// Typical models have 2 to 15, forty layers of walls 70, and a fan of 20,000 long thin triangles 4,000, regardless of
-/// the BVH.
+/// It is 2 to 15 for typical models, 70 for forty layers of walls, and 4,000 for a fan of 20,000 long thin triangles,
+/// regardless of the BVH.
 [[nodiscard]] double boxesOnLine(const TriangleMesh& mesh);
 
 /// Returns the fraction of an ordinary mesh's ray count that is affordable: 1 up to 32 boxes per line, then inversely

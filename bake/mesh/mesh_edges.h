@@ -35,8 +35,8 @@ struct EdgeUse {
     bool down = false;      ///< directed from high to low
 };
 
-/// Returns all sides of triangles with distinct positions, sorted by edge, then triangle, then side.
-/// \param vertices  number of positions.
+/// Returns all sides of triangles, sorted by edge, then triangle, then side.
+/// \param triangles  of welded vertices. \param vertices  number of positions.
 [[nodiscard]] std::vector<EdgeUse> edgeUses(const std::vector<glm::uvec3>& triangles, std::size_t vertices);
 
 struct MeshEdges {

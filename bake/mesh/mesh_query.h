@@ -47,7 +47,7 @@ struct LineHit {
     friend auto operator<=>(const LineHit&, const LineHit&) = default;
 };
 
-/// Tracks the bodies that contain the current point of a path.
+/// Tracks which bodies (sets of triangles: MeshQuery::bodyOf) a path is in.
 struct BodyCounter {
     int winding = 0;                 ///< winding number for body 0
     std::vector<std::uint32_t> odd;  ///< other bodies, crossed an odd number of times so far
@@ -79,7 +79,7 @@ class MeshQuery {
     /// Classifies a point by the majority of seven rays, kParityDirections. Their parity is independent of the winding
     /// and tolerates holes for most points. If PreparedMesh::woundShells(), the winding number decides, so that the
     /// overlap of two solids is inside. In a union (PreparedMesh::unionOf), each body that uses parity is tested
-    /// separately; if the winding number decides for all bodies, three rays vote. Voids are inside.
+    /// separately; if none does, three rays vote on the winding number. Voids are inside.
     [[nodiscard]] bool inside(const glm::vec3& p) const;
 
     /// Like inside(), but voids are outside.

@@ -27,8 +27,8 @@ struct SurfacePart {
     double area = 0.0;             ///< of its triangles in the source
     std::uint64_t triangles = 0;   ///< number in the source
     double thickness = 0.0;        ///< of the shell that represents a sheet, object units; else 0
-    /// The portion of `thickness` that counts as correct: all of a requested thickness; at most a tenth of the longest
-    /// side if the thickness is a default.
+    /// The thickness that the shell should have: `thickness` if it was requested; for a default thickness, at most a
+    /// tenth of the part's longest side.
     double target_thickness = 0.0;
 
     [[nodiscard]] double size() const { return static_cast<double>(bounds.longestSide()); }

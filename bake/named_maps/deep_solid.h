@@ -35,8 +35,8 @@ class DeepSolid {
     }
 
     /// Returns whether the half-space n·(P − O) ≥ offset, with O at depth 0 of the texel's centre ray, may contain deep
-    /// solid: a point of the texel that is deeper in the solid than the texel's diagonal at that depth. False positives
-    /// are rare. False negatives occur only for open meshes, where lines enter and leave unequally often.
+    /// solid: a solid point of the texel whose distance to the surface exceeds the texel's diagonal there. False
+    /// positives are rare. False negatives occur only for open meshes, where lines enter and leave unequally often.
     [[nodiscard]] bool cutBy(const glm::dvec3& normal, double offset);
 
   private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Converts between one RayEnd of a view and plane fits (plane_fit.h), where rays start at the viewer.
+// Converts rays and planes between a RayEnd of a view and plane fits (plane_fit.h), where rays start at the viewer.
 #pragma once
 
 #include <algorithm>

@@ -8,7 +8,7 @@
 //
 //      ·       ·
 //        \   ·          · points, heights upwards
-//     ·   \·____·       the facet over the origin, |
+//     ·   \·____·       the facet; | is the origin
 //          |
 #pragma once
 

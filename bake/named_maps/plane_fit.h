@@ -5,9 +5,9 @@
 // candidate is pushed towards the viewer until no sampled surface point lies in front of it, and is rounded so that
 // this remains true. The candidate with the least free space behind it wins:
 //
-//       viewer            In front of its plane a texel is outside, behind it inside. A pushed plane never
+//       viewer            Points in front of the plane are outside, points behind it inside. A pushed plane never
 //      | | | | |          misclassifies the solid behind a sampled surface point. The fit minimises the space between
-//     --.-----.-- plane   plane and surface, which is wrongly inside. Other maps that see this space correct it, so
+//     --.-----.-- plane   plane and surface, which is wrongly inside. Other maps correct this space if they see it, so
 //       |\   /|            additional views can only help.
 //      surface
 //
@@ -43,17 +43,17 @@ struct PlaneFitOptions {
     double pixel_cost = 0.0;  ///< mean free space per ray, in u, below which the fit stops
     bool cautious = false;    ///< the rays around the footprint constrain all planes, not only steep ones
     int refinements = 3;      ///< rounds of search among neighbouring normals; 0: none
-    /// Moves planes inwards by this fraction of the sampled points' spread; more free space, but also solid, is then
-    /// outside. Has no effect at steps, where the spread exceeds `span`/4.
+    /// Moves planes inwards by this fraction of the sampled points' spread; more free space is then outside, but also
+    /// some solid. Has no effect at steps, where the spread exceeds `span`/4.
     double inward_shift = 0.0;
-    /// Maximum distance of a point of the texel from its nearest ray, in texel diagonals. At a normal-ray cosine below
-    /// rays_apart, a plane drops by more than about a texel diagonal over that distance.
+    /// Maximum distance of a point of the texel from its nearest ray, in texel diagonals. If the |cosine| of
+    /// normal and ray is below rays_apart, a plane drops by more than about a texel diagonal over that distance.
     double rays_apart = 0.0;
     /// Rays start in free space. If false, a ray without a hit may be entirely in the solid.
     bool starts_free = true;
 };
 
-/// A half-space in the units of a texel.
+/// A half-space, quantised as in a texel.
 struct FittedPlane {
     glm::dvec3 normal{0.0};  ///< unit length, towards the free side; as decoded by decodeNormal()
     NormalIndex index;
@@ -78,7 +78,7 @@ void forNeighbours(NormalIndex from, int step, const Visit& visit) {
 /// Fits a plane to a texel.
 /// \param rays    the footprint: 1 to kFootprintRaysMax.
 /// \param around  returns rays around the footprint, whose surface points may not lie in front of steep planes either.
-/// Called at most once, for the first steep plane. May be null.
+/// Called at most once, when first needed. May be null.
 /// \param edge    rays that barely hit a surface, next to rays that miss it. Their points may not lie in front of steep
 /// planes either. If no ray of the footprint hits, the plane faces the viewer at the nearest of these points.
 /// \param centre  the texel's centre ray, from the viewer; the depth of the plane is measured along it.

@@ -37,7 +37,7 @@ class RayProbe {
     /// Whether the ray hit the inner side of a closed mesh.
     [[nodiscard]] bool hitsInnerSide(const Hit& hit) const { return hit.fromBehind() != scene_.insideOut(); }
     /// Traces rays beside the original ray, because Embree misses some vertices and edges that a ray hits exactly, even
-    /// in robust mode. A triangle that such a ray hits before `hit` counts if the original ray touches the triangle.
+    /// in robust mode. A triangle in front of `hit` counts if such a ray hits it and the original ray touches it.
     [[nodiscard]] Hit traceBeside(std::uint32_t face, std::uint32_t x, std::uint32_t y, const Hit& hit);
     [[nodiscard]] RTCRayHit traced(const Segment& segment) const;
     /// \param along  dot(normal, direction of growing depth)

@@ -59,8 +59,8 @@ class RayScene : public MeshQuery {
     bool closed_;
 };
 
-/// Returns whether the rays of this end start at a centre on the surface of a closed solid. A ray that first hits the
-/// inner side of a surface then starts in the solid. Empty texels may still mean outside.
+/// Returns whether the rays of this end start at a centre on the surface of a closed solid. In this case, a ray whose
+/// first hit is on an inner side starts in the solid. Empty texels may still mean outside.
 [[nodiscard]] inline bool centreMayBeInSolid(const RayScene& scene, const View& view, RayEnd end) {
     return view.centre_on_surface && end == RayEnd::kNear && scene.closed();
 }

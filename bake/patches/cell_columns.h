@@ -67,10 +67,10 @@ struct CellPlane {
 [[nodiscard]] std::array<MeshCell, 8> childrenOf(const MeshQuery& query, const MeshCell& cell,
                                                  std::span<const UnitTriangle> triangles);
 
-/// `across` × `across` lines through the unit cube along w of a PatchFrame, and their data that are equal in all cells.
-/// Rows are ordered by v. A row interleaves its four quarters: the first line of each quarter, then the second of each,
-/// and so on. Fits can thus process four lines at once (lanes.h), even if the four lie between different heights
-/// of the patch.
+/// `across` × `across` lines through the unit cube along w of a PatchFrame, and the data of these lines shared by all
+/// cells. Rows are ordered by v. A row interleaves its four quarters: the first line of each quarter, then the second
+/// of each, and so on. Fits can thus process four lines at once (lanes.h): along a row, each lane stays between the
+/// same two heights.
 class LineGrid {
   public:
     /// Distance from the side of the cube to the first line, in line spacings. Not 0.5, because models are built on

@@ -33,7 +33,7 @@ inline constexpr std::array<PatchShape, 8> kPatchShapes = {
 inline constexpr std::size_t kFlats = 2;
 inline constexpr std::size_t kSinglePatchShapesEnd = 5;
 
-/// Planes of a leaf for points deep inside, in addition to its surface (depth_planes.h).
+/// Planes of a leaf for points deep inside, in addition to any surface (depth_planes.h).
 enum class DepthPlanes : std::uint8_t {
     kNone,
     kOne,  ///< for a leaf without a surface, in a separate record

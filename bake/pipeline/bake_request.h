@@ -19,7 +19,7 @@
 
 namespace relief {
 
-inline constexpr std::uint64_t kBudgetDefault = 1'000'000;  ///< bytes; also if no budget is recorded
+inline constexpr std::uint64_t kBudgetDefault = 1'000'000;  ///< bytes; also used if no budget is recorded
 
 enum class Holes : std::uint8_t { kClose, kKeep };
 template <>

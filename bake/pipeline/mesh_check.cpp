@@ -36,8 +36,8 @@ Result<void> checkSameMesh(const Collider& collider, const std::string& repair, 
         if (!same) {
             return fail(ErrorCode::kInvalidInput,
                         mesh.name + " has bounds " + shortest(mesh.bounds.min) + " to " +
-                            shortest(mesh.bounds.max) + " but the collider, of " +
-                            cleanUtf8(collider.provenance.mesh_name) + ", has " +
+                            shortest(mesh.bounds.max) + ", but the collider baked from " +
+                            cleanUtf8(collider.provenance.mesh_name) + " has " +
                             shortest(collider.bounds.min) + " to " + shortest(collider.bounds.max) +
                             "; set --mesh to the mesh that it was baked from");
         }

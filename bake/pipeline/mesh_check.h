@@ -68,13 +68,13 @@ struct MeshCheck {
     [[nodiscard]] const Measured& judged() const { return repaired ? *repaired : original; }
     [[nodiscard]] double wrongPercent() const { return judged().accuracy.field.near.total(); }
     /// Whether the accuracy against the imported mesh is within the limit, and no part is lost.
-    /// \param max_error  percent; nullopt: no limit.
+    /// \param max_error  percent; nullopt always passes.
     [[nodiscard]] bool passes(std::optional<float> max_error) const;
 };
 
-/// Returns the solid that the recorded options make of a mesh. Its shells have the recorded thickness. If a repair left
-/// no sheets, no thickness is recorded; the shells then get the default thickness for the recorded texel or, without
-/// a texel, for kBudgetDefault, so that colliders of all budgets are compared with the same solid.
+/// Returns the solid that the recorded options make of a mesh. Its shells have the recorded thickness. If a repair
+/// removed all sheets, no thickness is recorded; imported sheets then get the default thickness for the recorded texel
+/// or, without a texel, for kBudgetDefault, so that colliders of all budgets are compared with the same solid.
 /// Errors: those of makeSolid.
 [[nodiscard]] Result<ShapedMesh> recordedSolid(BakeRequest recorded, const PreparedMesh& mesh);
 
@@ -91,10 +91,10 @@ struct MeshCheck {
     const CheckRequest& request, Collider collider, std::optional<TriangleMesh> given = {},
     const std::function<void()>& checkpoint = [] {});
 
-/// Suggests commands for a collider that is not accurate enough, after trying them in memory. The causes of the worst
-/// places determine the commands: patches with twice the bytes, closed holes, thicker sheets, a wrapped mesh. The best
-/// command comes first; commands that did not help come last. The result does not depend on the number of threads or
-/// the machine, because the choice of trials does not depend on time.
+/// Suggests commands for a collider that is not accurate enough. Tries them in memory, except slow ones. The causes of
+/// the worst places determine the commands: patches with twice the bytes, closed holes, thicker sheets, a wrapped mesh.
+/// The best command comes first; commands that did not help come last. The result does not depend on the number of
+/// threads or the machine, because the choice of trials does not depend on time.
 /// \param run  result of a check. \param mesh_file, output  file names for the commands
 [[nodiscard]] std::vector<Advice> adviceFor(const MeshCheck& run, const std::string& mesh_file,
                                             const std::string& output);

@@ -53,7 +53,7 @@ Result<void> checkThickness(const BakeRequest& request, const TriangleMesh& mesh
     return fail(ErrorCode::kUsage, "--thickness is " + shortest(static_cast<float>(thickness->length)) +
                                        " but " + mesh.name + " is " + shortest(longest) +
                                        " long; give at most " + shortest(float(kThicknessMax)) +
-                                       " times that");
+                                       " times its length");
 }
 
 }  // namespace

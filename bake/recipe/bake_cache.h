@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Records the inputs of each output of a recipe, so that only stale outputs are baked again.
 //
-// An entry records the hashes of the inputs and the output, the options and the program. Baking is deterministic: if an
-// entry matches the current files, the output is correct, no matter who wrote the entry. A wrong entry costs only one
-// bake. Contents are always hashed; times are never compared.
+// An entry records the program, the options, and the hashes of the inputs and the output. Baking is deterministic: if
+// an entry matches the current files, the output is correct, no matter who wrote the entry. A wrong entry costs only
+// one bake. Contents are always hashed; times are never compared.
 #pragma once
 
 #include <filesystem>

@@ -20,7 +20,7 @@ class GlobPattern {
   public:
     /// Parses a pattern.
     /// Errors: kInvalidInput (empty, absolute, a zero byte, a part `..`, `**` at the end), kLimit (more than 64 parts).
-    /// The message is meant to follow the pattern: "names no file; …".
+    /// The caller puts the pattern before the message: "names no file; …".
     [[nodiscard]] static Result<GlobPattern> parse(std::string_view text);
 
     /// Whether any part has a wildcard.

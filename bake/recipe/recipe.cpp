@@ -76,7 +76,7 @@ std::vector<std::string> textsOf(const TomlValue& value) {
     }
     if (value.array()->size() > kRecipePatternsMax) {
         throw LimitExceeded{value.place() + ": " + value.name() + " lists more than " +
-                            std::to_string(kRecipePatternsMax) + "; use patterns"};
+                            std::to_string(kRecipePatternsMax) + " entries; use patterns"};
     }
     std::vector<std::string> texts;
     for (std::size_t i = 0; i < value.array()->size(); ++i) {

@@ -50,8 +50,8 @@ struct RecipeJobs {
 /// \param output_folder  need not exist; empty for the recipe's folder.
 /// \param files  already contains all other inputs.
 /// Errors, with a position in the recipe: kInvalidInput (a pattern without a match, a file outside the recipe's folder,
-/// an output that is outside the output folder, neither a collider nor a world, equal to another output or an input, or
-/// in the folder of another world), kLimit (kRecipeJobsMax), those of globFiles.
+/// an output that is outside the output folder, is in the folder of another world, equals another output or an input,
+/// or is neither a collider nor a world), kLimit (kRecipeJobsMax), those of globFiles.
 [[nodiscard]] Result<RecipeJobs> recipeJobs(const std::vector<RecipeAsset>& assets,
                                             const std::filesystem::path& recipe,
                                             const std::filesystem::path& output_folder, FileGuard files = {});

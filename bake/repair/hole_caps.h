@@ -51,7 +51,7 @@ using BorderLoop = std::vector<BorderStep>;
 /// Returns the mesh unchanged if it is closed or not nearly closed: a terrain, a sheet, or a bowl without thickness, up
 /// to half a sphere. In a nearly closed mesh, at most about one ray in seven leads out through a hole. Also returns the
 /// mesh unchanged if the caps would swap parts of inside and outside, as with panels whose seams do not meet.
-/// \param probes  number of test points on the surface, and in the box; fewer suffice for a small part of a mesh.
+/// \param probes  number of test points on the surface, and as many in the bounds; fewer suffice for a small part.
 /// Errors: those of MeshQuery::build.
 [[nodiscard]] Result<PreparedMesh> closeHoles(const PreparedMesh& mesh,
                                               std::size_t probes = kEnclosureProbes);

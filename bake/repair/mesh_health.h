@@ -14,7 +14,7 @@
 
 namespace relief {
 
-/// The first fault of a kind, by lowest vertex or triangle.
+/// The first fault of a kind, by lowest vertex or triangle index.
 struct MeshFault {
     std::string description;   ///< with its article: "a boundary edge"
     glm::vec3 position{0.0F};  ///< object space: the vertex, or the middle of the edge or triangle

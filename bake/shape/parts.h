@@ -29,8 +29,8 @@ struct Part {
                                         std::span<const ShapeAs> kinds = {});
 
 /// Finds triangles that coincide with an earlier one of their part, in either winding, if the part is closed without
-/// them: copies of a solid, or of a piece of it. Keeps the second side of a fin, because its part would be open without
-/// it.
+/// them: copies of a solid, or of a piece of it. Omits the back of a two-sided fin, without which the part would
+/// be open.
 /// \param welded  weldedVertices() of the mesh.
 /// \return indices, ascending.
 [[nodiscard]] std::vector<std::uint32_t> copiesInSolids(const TriangleMesh& mesh,

@@ -14,10 +14,10 @@ namespace relief {
 /// How a triangle of a union seals off space. kNothing: a shell requested with --as, whose two sides stay free.
 enum class Wall : std::uint8_t { kSolid, kSheet, kNothing };
 
-/// Finds free space that leads outside only through a sheet, or through openings that lie between grid nodes and pass
-/// at most 1 % of all rays. A grid of 64 nodes along the longest side finds candidates, whose volume is at least 1e-4
-/// times that side cubed. A grid of 192 nodes refines the box of the candidates. A cavity of a solid is not a void. The
-/// result does not depend on the number of threads.
+/// Finds enclosed free space that would be open to the outside without the sheets. Ignores openings that lie between grid nodes
+/// and pass at most 1 % of all rays. A grid of 64 nodes along the longest side finds candidates, whose volume is at
+/// least 1e-4 times that side cubed. A grid of 192 nodes refines the box of the candidates. A cavity of a solid is not
+/// a void. The result does not depend on the number of threads.
 /// \param walls  per triangle.
 [[nodiscard]] Voids sealedVoids(const MeshQuery& query, const std::vector<Wall>& walls);
 

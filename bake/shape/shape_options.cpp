@@ -76,7 +76,7 @@ Result<ShapeOptions> parseShapeOptions(const std::vector<std::string>& words) {
         }
         if (name.empty()) {
             return wrong(
-                "must have a name of the mesh file before the =; leave out the = for the whole mesh");
+                "must have a name from the mesh file before the =; leave out the = for the whole mesh");
         }
         if (name.size() > kSelectedNameBytesMax) {
             return wrong("a name has at most " + std::to_string(kSelectedNameBytesMax) +
@@ -87,7 +87,7 @@ Result<ShapeOptions> parseShapeOptions(const std::vector<std::string>& words) {
         }
         if (options.named.size() == kSelectedNamesMax) {
             return fail(ErrorCode::kLimit, "--as gives more than " + std::to_string(kSelectedNamesMax) +
-                                               " names; use a parent node, or another default");
+                                               " names; name a parent node, or change the default");
         }
         options.named.push_back({name, *as});
     }

@@ -27,7 +27,7 @@ struct Sheet {
 };
 
 /// If the cosine between two triangles' normals is less, the shell is cut at their edge; a mitre would be longer than
-/// twice the shell's thickness.
+/// the shell's thickness.
 inline constexpr double kFoldCosine = -0.5;
 
 /// Builds a sheet.

@@ -42,7 +42,7 @@ class PartBuilder {
             part_.sources.push_back(source);
         }
     }
-    /// Adds a wall below the side from a to b of a triangle seen from above.
+    /// Adds a wall below the side from a to b of a triangle seen from above; each is {top, bottom}.
     void addWall(std::uint32_t source, const std::array<std::uint32_t, 2>& a,
                  const std::array<std::uint32_t, 2>& b) {
         addTriangle(source, b[0], a[0], a[1]);

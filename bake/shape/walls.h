@@ -23,7 +23,7 @@ struct ShellWall {
 
 struct ShellWalls {
     std::vector<ShellWall> walls;
-    /// Outer and inner candidates whose largest rims nearly face each other, although the inner one is in no wall. At
+    /// Pairs of outer and inner candidates whose largest rims nearly face each other; the inner one is in no wall. At
     /// least one of the two has WallCandidate::may_be_solid.
     std::vector<std::array<std::size_t, 2>> unjoined;
 };

@@ -35,7 +35,7 @@ void fields(FieldVisitor& visit, const IgnoredParts& ignored);
 /// Returns how to keep a lost or coarse part: a budget, a resolution, a thickness, or a separate bake.
 [[nodiscard]] std::string partFix(const SurfacePart& part, const Collider& collider);
 
-/// Lists the worst parts, the worst named nodes and the worst named materials, and states which parts do not lower the
+/// Lists the worst parts, named nodes and named materials, and states which parts do not lower the
 /// grade. Returns "" if all parts are represented.
 [[nodiscard]] std::string partsText(const PartsAccuracy& accuracy, const SurfaceParts& parts,
                                     const Collider& collider);

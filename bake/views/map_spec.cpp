@@ -222,7 +222,7 @@ Result<void> MapSpecBuilder::setBudget(std::string_view value) {
     if (!bytes || *bytes < kPatchBytesMin || *bytes > kPatchBytesMax) {
         return badValue(
             "budget", value,
-            std::to_string(kPatchBytesMin) + " to " + std::to_string(kPatchBytesMax) + ", or as 1MB");
+            std::to_string(kPatchBytesMin) + " to " + std::to_string(kPatchBytesMax) + " bytes, such as 1MB");
     }
     spec_.bytes = *bytes;
     return {};

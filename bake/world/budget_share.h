@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Distributes the bytes of a level among its colliders, so that each byte goes where it reduces the error most.
 //
-// Each mesh has a curve of its errors, which fall as its bytes grow. A small plan provides the start of the curve, and
-// a power law continues it. In all shares, one more byte reduces the weighted error by the same amount:
+// Each mesh has a curve of its errors, which fall as its bytes grow. A small patch plan provides the start of the
+// curve, and a power law continues it. In all shares, one more byte reduces the weighted error by the same amount:
 //
 //     weight · −d wrong / d bytes = worth.
 //

@@ -30,7 +30,7 @@ struct BodyAccuracy {
     std::string mesh;
     std::uint64_t points = 0;
     WrongPercent wrong;
-    std::size_t tiles = 1;     ///< bodies for `node`, one per tile; 0: unknown, as node counts differ
+    std::size_t tiles = 1;     ///< bodies for `node`, one per tile; 0: level and world node counts differ
     glm::vec3 position{0.0F};  ///< world space: a typical misclassified point, or the position of the body
 };
 
@@ -48,7 +48,7 @@ struct WorldAccuracy {
     std::vector<std::size_t> worst;    ///< bodies with misclassified points, worst first, at most ten
     std::vector<WorldPlace> places;    ///< of `worst`, in the same order
     std::vector<LostParts> lost;       ///< meshes that lose parts, in the order of the level
-    std::size_t coarse = 0;            ///< other meshes, whose kCoarse parts lower the grade
+    std::size_t coarse = 0;            ///< other meshes with kCoarse parts that lower the grade
     IgnoredParts ignored;              ///< of all meshes; sizes in world space
     std::vector<std::string> warnings;
     std::vector<std::string> dependencies;  ///< files that the level references

@@ -63,7 +63,7 @@ Result<std::vector<float>> groupWeights(const AnimatedMesh& mesh, std::string_vi
         wanted[i] = wanted[i] != 0 && !name.empty() && mesh.nodes[mesh.joints[i].node].name == name ? 1 : 0;
     }
     if (std::count(wanted.begin(), wanted.end(), 1) == 0) {
-        return invalidInput(partNotFound("joint or node with vertices", name, groupNames(mesh)));
+        return invalidInput(partNotFound("vertex group (joint or node)", name, groupNames(mesh)));
     }
     std::vector<float> weights(mesh.positions.size(), 0.0F);
     for (std::size_t vertex = 0; vertex < weights.size(); ++vertex) {

@@ -52,7 +52,7 @@ enum class FieldForm : std::uint8_t {
     kCustom,  ///< FieldType::custom, or read_form and form_text
 };
 
-class TomlValue;   // formats/config/toml_reader.h
+class TomlValue;   // formats/config/toml_value.h
 struct FieldJson;  // formats/fields/json_value.h
 
 /// Functions of a type with its own file format. If one is null, FieldForm decides.

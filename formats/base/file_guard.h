@@ -59,7 +59,7 @@ class FileGuard {
     [[nodiscard]] Result<void> reads(const std::filesystem::path& path);
     /// Registers an output. "-" is standard output; an empty path is ignored.
     /// \param option  the option that names the file, for messages: "--dump".
-    /// \param made    a folder that the run creates with its parents and fills; may contain the file.
+    /// \param made    a folder that the run creates (with its parents) and fills; may contain the file.
     /// Errors: those of preflightFile; kUsage if it is an input, another output, or a link out of `made`.
     [[nodiscard]] Result<void> writes(const std::filesystem::path& path, std::string_view option,
                                       const std::filesystem::path& made = {});

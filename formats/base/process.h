@@ -15,7 +15,7 @@ namespace relief {
 
 /// Start parameters. The program inherits the environment and working folder, but no signal handlers.
 struct ProcessStart {
-    std::string program;                 ///< a path; names without '/' are searched on PATH
+    std::string program;                 ///< a path; names without '/' are looked up in PATH
     std::vector<std::string> arguments;  ///< argv, starting with the program's name
     /// files[n], borrowed, becomes descriptor n; -1 means /dev/null. No other descriptors are inherited.
     std::vector<int> files;

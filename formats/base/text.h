@@ -53,7 +53,8 @@ void appendShortest(std::string& out, float value);
 /// Converts A…Z to a…z; other bytes are unchanged.
 [[nodiscard]] std::string lowerCase(std::string_view text);
 
-/// Returns the entry of `known` nearest to `word` if at most a third of the letters of `word` differ, otherwise "".
+/// Returns the entry of `known` nearest to `word` if it starts with `word`, or if one letter or at most a third of the
+/// letters of `word` differ; else "".
 [[nodiscard]] std::string_view nearest(std::string_view word, std::span<const std::string_view> known);
 /// Returns "; did you mean 'size'?" for the nearest entry, or "".
 [[nodiscard]] std::string didYouMean(std::string_view word, std::span<const std::string_view> known);
@@ -66,7 +67,7 @@ enum class Bidi : std::uint8_t { kReplace, kKeep };
 /// \param size_max  bytes; truncates before the character that would exceed it.
 [[nodiscard]] std::string cleanUtf8(std::string_view bytes, std::size_t size_max = std::string::npos,
                                     Bidi bidi = Bidi::kReplace);
-/// Like cleanUtf8, but with hexadecimal escapes ("\x1b"), so that different names stay different.
+/// Like cleanUtf8, but with hexadecimal escapes ("\x1b"), so that replaced bytes stay distinct.
 [[nodiscard]] std::string escapedUtf8(std::string_view bytes);
 /// Cleans another program's output for a one-line message: cleanUtf8, control characters as spaces, trimmed.
 [[nodiscard]] std::string oneCleanLine(std::string_view text);

@@ -33,7 +33,7 @@ class TextScanner {
     /// Skips the rest of this line. \return false if it was the last one.
     bool nextLine();
 
-    /// Returns the line number, from 1, at which the text returned last starts; initially 1.
+    /// Returns the number, from 1, of the line where the last returned text starts; initially 1.
     [[nodiscard]] std::size_t line() const { return word_line_; }
     /// Returns the unread text.
     [[nodiscard]] std::string_view rest() const;

@@ -29,7 +29,7 @@ struct BrickAtlas {
     glm::uvec3 cells{1};      ///< voxels per brick; a brick has one more node along each axis
     float range = 1.0F;       ///< distance of the largest code, in object units
     std::uint32_t bits = 8;   ///< per code: 8 or 16
-    std::uint64_t bytes = 0;  ///< size that relief-accuracy reports: its index may be smaller or absent
+    std::uint64_t bytes = 0;  ///< size that relief-accuracy reports, with a smaller index or none
     std::vector<std::uint32_t>
         index;  ///< per cube, x fastest: kOutside, kInside, or kFirstBrick + brick number
     std::vector<std::int16_t> codes;  ///< brick by brick, nodes x fastest: ±codeMax() encodes ±range

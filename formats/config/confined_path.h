@@ -15,9 +15,9 @@ namespace relief {
 /// \param text    path as written in the file; untrusted.
 /// \param owner   kind of file that owns the folder, for the message.
 /// \param root    additional allowed folder, chosen on the command line; empty: none.
-/// Errors: kInvalidInput if the path is empty, contains a zero byte, is absolute, or leaves the folder by `..` or a
-/// symbolic link, even a dangling one, unless it leads into `root`. Callers prefix the message with the key, such as
-/// "path = ": "'/x' is …; …".
+/// Errors: kInvalidInput if the path is empty, contains a zero byte, is absolute, or leaves the folder (except into
+/// `root`) by `..` or a symbolic link, even a dangling one. The message is "'/x' is …; …"; callers prefix it with
+/// the key: "path = ".
 [[nodiscard]] Result<std::filesystem::path> resolveInside(const std::filesystem::path& folder,
                                                           std::string_view text,
                                                           std::string_view owner = "scene",

@@ -13,9 +13,12 @@ namespace relief {
 namespace {
 
 std::string rangeText(const FieldRange& range) {
-    const std::string low = (range.low_included ? "" : "above ") + numberText(range.low);
-    return std::isfinite(range.high) ? "choose " + low + " to " + numberText(range.high)
-                                     : "choose " + low + " or more";
+    const std::string low = numberText(range.low);
+    if (!std::isfinite(range.high)) {
+        return range.low_included ? "choose " + low + " or more" : "choose more than " + low;
+    }
+    return (range.low_included ? "choose " + low + " to " : "choose more than " + low + ", up to ") +
+           numberText(range.high);
 }
 
 /// Returns the number of tables in an array, 1 for a single table, otherwise 0.

@@ -68,7 +68,7 @@ class TomlValue {
     [[nodiscard]] std::size_t word(std::span<const std::string_view> words) const;
     /// Returns a path, resolved.
     [[nodiscard]] std::filesystem::path path() const;
-    /// Returns the index of one of the top-level tables `key`; the value is that index or the table's name.
+    /// Returns the index of the top-level table [[key]] that the value refers to, by index or by name.
     [[nodiscard]] std::int64_t indexOf(std::string_view key, const FieldRange& range) const;
     /// Returns an array of `size` numbers. \param unit  starts with the names of the elements: "[a, b, …]".
     [[nodiscard]] const toml::array& list(std::size_t size, bool whole, std::string_view unit) const;

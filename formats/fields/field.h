@@ -34,8 +34,8 @@ template <class T>
 [[nodiscard]] std::optional<T> onlyIf(bool condition, T value) {
     return condition ? std::optional<T>(std::move(value)) : std::nullopt;
 }
-/// Constructs a view of each element: `viewsOf<PlaceReport>(places, collider)` returns PlaceReport{place, collider} for
-/// each place.
+/// Constructs a report struct for each element: `viewsOf<PlaceReport>(places, collider)` returns PlaceReport{place,
+/// collider} for each place.
 template <class View, class T, class... More>
 [[nodiscard]] std::vector<View> viewsOf(const std::vector<T>& all, const More&... more) {
     std::vector<View> views;
@@ -53,7 +53,8 @@ template <class View, class T, class... More>
     return text.empty() ? std::nullopt : std::optional(text);
 }
 
-/// An empty T. It initializes the references of a view, so that a schema can be derived from the type of the view.
+/// An empty T. References in report structs default to it, so that a schema can be derived from a default-constructed
+/// struct.
 template <class T>
 inline const T kNone{};
 

@@ -24,9 +24,12 @@ std::string decimal(double value) {
 }
 
 std::string rangeText(const FieldRange& range) {
-    const std::string low = (range.low_included ? "" : "above ") + decimal(range.low);
-    return std::isfinite(range.high) ? "choose " + low + " to " + decimal(range.high)
-                                     : "choose " + low + " or more";
+    const std::string low = decimal(range.low);
+    if (!std::isfinite(range.high)) {
+        return range.low_included ? "choose " + low + " or more" : "choose more than " + low;
+    }
+    return (range.low_included ? "choose " + low + " to " : "choose more than " + low + ", up to ") +
+           decimal(range.high);
 }
 
 /// Thrown by the functions below if a value is invalid; readJson() converts it into an Error.

@@ -29,8 +29,8 @@ struct FieldJson {
 /// exclude. With FieldRules::single, a list of one table becomes that table.
 [[nodiscard]] Json jsonOf(FieldRef value);
 
-/// Returns the schema of a field. Objects accept no other keys, and require all fields without left_out or `only`.
-/// \param value  any value. The schema covers the fields of all kinds() of its type, if declared, or else of this value.
+/// Returns the schema of a field. Objects accept only fields, and require all those without left_out or `only`.
+/// \param value  any value of the type. The schema covers its fields, or those of all T::kinds() if declared.
 [[nodiscard]] Json schemaOf(FieldRef value);
 [[nodiscard]] Json schemaOf(FieldRef value, const FieldInfo& info);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Relief colliders in one file, for C99 and C++11. It depends only on the C standard library. Define
+/* Relief colliders as a single-header library for C99 and C++11. It depends only on the C standard library. Define
  * RELIEF_IMPLEMENTATION in one source file before the include; other files only include it.
  *
  *     relief_collider bunny;
@@ -11,8 +11,8 @@
  *     relief_close(&bunny);
  *
  * It reads the containers that `relief bake` writes by default: one map of patches, not compressed. Containers baked
- * with `--compress` also need a decompressor: pass ZSTD_decompress of <zstd.h>. Containers baked with `--map` or
- * `--paper` are rejected as RELIEF_UNSUPPORTED.
+ * with `--compress` also need a decompressor: pass ZSTD_decompress of <zstd.h>. Containers with other maps
+ * (`--map`, `--paper`) are rejected as RELIEF_UNSUPPORTED.
  *
  * Files may be hostile. relief_open() validates a container completely, as formats/README.md specifies. The other
  * functions therefore never read outside the texels.

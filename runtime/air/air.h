@@ -61,7 +61,7 @@ struct AirSettings {
     std::vector<Attractor> attractors;  ///< at most kAttractorsMax
     std::vector<Vortex> vortices;       ///< at most kVorticesMax
     /// Dynamic viscosity, object mass units / (object length units · s), ≥ 0. Enables drag by Stokes' law, which
-    /// depends on a particle's size and mass. If unset, all particles have one drag rate.
+    /// depends on a particle's size and mass. If unset, the drag rate is Forces::drag / mass.
     std::optional<float> viscosity;
     friend bool operator==(const AirSettings&, const AirSettings&) = default;
 };

@@ -112,7 +112,7 @@ Result<void> AirBlock::update(const AirSettings& air) {
     if (const unsigned missing = kindsOf(changed) & ~kinds_; missing != 0) {
         return fail(
             ErrorCode::kUsage,
-            "the air was created without a kind of force that is set now; recreate it and its programs");
+            "the settings add a kind of force after the air was created; recreate it and its programs");
     }
     if (!block_) {
         return {};

@@ -41,8 +41,8 @@ struct Work {
     std::function<void()> after = {};   ///< called after each block, not timed; may be empty
 };
 
-/// A block is a number of calls between two glFinish. Each call is flushed like the end of a frame; otherwise a driver
-/// may hold back calls until glFinish, and the GPU would idle.
+/// A block is a workload's calls between two glFinish(). Each call is flushed like the end of a frame; otherwise a
+/// driver may hold back calls until glFinish, and the GPU would idle.
 struct Blocks {
     int rounds = 7;  ///< blocks per workload; --blocks overrides it
     int calls = 0;   ///< calls per block; 0: as many as take 10 ms

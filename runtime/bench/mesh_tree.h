@@ -30,8 +30,8 @@ struct MeshTree {
     static constexpr std::size_t kTexels = 3;
 
     Bounds box;
-    /// Three texels per node, the root first. Bytes and codes of a word start with child 0 in the lowest bits. A face
-    /// of a child box lies a multiple of a power of 2 (the box unit of the axis) above the node's lowest corner:
+    /// Three texels per node, the root first. Bytes and codes of a word start with child 0 in the lowest bits. Faces of
+    /// child boxes are bytes: offsets from the node's lowest corner in box units (a power of 2 for each axis):
     ///     0: lowest corner as float bits; log2 of the box units of x, y, z, plus 127, in 8 bits each
     ///     1: first child node (24 bits) and codes of children 0, 1; first triangle (24 bits) and codes of children 2, 3;
     ///        lower faces x; lower faces y

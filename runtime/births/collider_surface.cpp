@@ -210,7 +210,7 @@ Result<ColliderSurface> colliderSurface(const Collider& collider, std::uint32_t 
     ColliderSurface made = Contour(collider, cells).run();
     if (made.triangles.empty()) {
         return invalidInput("no surface found: every part is thinner than 1/" + std::to_string(cells) +
-                            " of its longest side; set emitter.mesh to the mesh that it was baked from");
+                            " of the collider's longest side; set emitter.mesh to its source mesh");
     }
     return made;
 }

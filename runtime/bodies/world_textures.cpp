@@ -143,8 +143,8 @@ Result<void> WorldTextures::exchange(std::size_t body, const Collider& collider,
     if (!patches || of.maps != 1 ||
         !world_->bodies.setMap(of.first_map, blockMap(map, place), insideBox(collider))) {
         return fail(ErrorCode::kUnsupported,
-                    "only maps of patches can be streamed; bake again without --map, "
-                    "--paper and --holes keep");
+                    "only maps of patches can be streamed; bake again without --holes "
+                    "keep, --map and --paper");
     }
     ++revision_;
     updateWorld();

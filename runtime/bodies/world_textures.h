@@ -31,7 +31,7 @@ struct ColliderBody {
     const Collider* collider = nullptr;  ///< used only by create()
     Pose pose{};
     float restitution = 1.0F;  ///< multiplies the particle's restitution, 0…1
-    /// ν, 0…1: (1 − ν) multiplies the particle's own factor on tangential speed.
+    /// 0…1; contacts multiply tangential speed by 1 − friction of the body and by that of the particle.
     float friction = 0.0F;
     bool live = false;  ///< the collider's maps have no texels yet; they are rendered later
     /// Bit of ParticleType::collides_with for this body, 0 to 7. nullopt: min(index of the body, 7).
@@ -73,8 +73,8 @@ class WorldTextures : public ShaderCollider {
     /// \param first  index of a texel in the texture, room() or above.
     /// \param texels  whole texels of 8 bytes; may be part of a map.
     void upload(std::size_t first, std::span<const std::byte> texels);
-    /// Replaces the map of all bodies that share this body's collider by a map of patches in the reserved range, or
-    /// restores their original map.
+    /// Sets the map of all bodies with this body's collider to a map of patches in the reserved range, or to the
+    /// original map.
     /// \param first  first texel of the new map; nullopt: the original map.
     /// Errors: kUnsupported (not a single map of patches, or flags that differ from the previous map).
     [[nodiscard]] Result<void> exchange(std::size_t body, const Collider& collider,

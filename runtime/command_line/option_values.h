@@ -102,8 +102,8 @@ OptionRef addParsed(CLI::App& app, const std::string& names, std::optional<T>& f
         must, help);
 }
 
-/// Default of ContainerLimits::memory in the tools, bytes. Texels may exceed it up to 16 times the file size. One map
-/// of 4096 x 4096 texels of eight bytes fits.
+/// Default of ContainerLimits::memory in the tools, bytes. More are accepted, up to 16 times the file size. One
+/// map of 4096 x 4096 texels of eight bytes fits.
 inline constexpr std::uint64_t kToolMemory = 160'000'000;
 
 /// Sets limits.memory to kToolMemory, and adds --max-memory, which changes it. `limits` must outlive the app.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Renders a moving mesh on the GPU to front-back maps with 16-bit depths, whose texels decode to planes. Texels follow
-// formats/README.md. They match plane fits to a single ray, through the texel centre, to within one unit in the last
-// place of the depth. `relief bake` fits planes to 16 rays per texel, or 1 or 36 (--quality).
+// formats/README.md. They match texels that `relief bake` fits to one ray, through the texel centre, to within one unit
+// in the last place of the depth. Its default is 16 rays per texel; --quality sets 1 or 36.
 //
 // The rasteriser only determines the triangle that a texel's ray hits. A texel's plane is computed from that triangle
 // because rasterisers snap vertices to a grid of 1/256 pixel. Texels with an edge near their centre may get the

@@ -3,8 +3,8 @@
 // (depth_map_renderer.h).
 //
 // Positions are stored in a 2-D float texture so that shaders can fetch the corners of any triangle. Triangles are
-// drawn with an index buffer over *slots*: slot t < triangleCount() belongs only to triangle t and is its last,
-// provoking corner, so that a flat varying of gl_VertexID identifies the triangle (fragment shaders of OpenGL ES 3.0
+// drawn with an index buffer over *slots*: slot t < triangleCount() is the last, provoking corner of triangle t and of
+// no other triangle, so that a flat varying of gl_VertexID identifies the triangle (fragment shaders of OpenGL ES 3.0
 // have no gl_PrimitiveID). Vertices without such a slot get one after these slots.
 //
 //                       b                 slots of t:  a (t's own, provoking), b and c (owned by other

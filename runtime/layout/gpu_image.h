@@ -38,7 +38,7 @@ struct GpuImage {
     std::string defines;                           ///< `#define` lines for collider.glsl
 };
 
-/// Returns the textures of placed maps. The texels and the motion of live maps are zero.
+/// Returns the textures of placed maps. Zero where live maps and their motion are drawn.
 [[nodiscard]] std::array<GpuTexture, kTexelKinds> mapTextures(std::span<const PlacedMap> maps,
                                                               const MapLayout& layout);
 

@@ -28,7 +28,7 @@ Result<void> reserve(std::span<const PlacedMap> maps, std::int32_t side_max, std
     for (TexelLayout& texture : textures) {
         if (!texture.finish(side_max)) {
             return fail(ErrorCode::kLimit, "the collider's maps have " + std::to_string(texture.texels()) +
-                                               " texels of one layout; this GL context supports " +
+                                               " texels of one size; this GL context supports " +
                                                std::to_string(side_max) + "x" + std::to_string(side_max) +
                                                " in a texture; bake it with a smaller budget");
         }

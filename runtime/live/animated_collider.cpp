@@ -66,7 +66,7 @@ Result<void> AnimatedCollider::check(const MeshPose& pose) const {
             box.size(), box_size_ + kRoomSlack * std::max({box_size_.x, box_size_.y, box_size_.z})))) {
         return fail(ErrorCode::kUsage, "a pose occupies " + sidesText(box.size()) +
                                            ", more than the box of the animated collider, " +
-                                           sidesText(box_size_) + "; create it with a larger one");
+                                           sidesText(box_size_) + "; create it with a larger box");
     }
     return {};
 }

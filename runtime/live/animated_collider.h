@@ -53,7 +53,8 @@ class AnimatedCollider {
     /// Moves the vertices; update() renders them. Call it at most once between two updates.
     /// Errors: those of check(); kUsage (called twice). The state is then unchanged.
     [[nodiscard]] Result<void> setPose(const MeshPose& pose);
-    /// Treats the last change of setPose() as a jump (LiveCollider::settle()). WorldTextures handles jumps of the body.
+    /// Treats the last setPose() as a jump (LiveCollider::settle()). If the body jumps, call WorldTextures::setPoses()
+    /// twice.
     void settle() { live_.settle(); }
 
     /// Returns the pose of the centre of the box, for WorldTextures. \param body  pose of the mesh's origin.

@@ -6,7 +6,8 @@
 //     bytes on the GPU ≈ 4 · kSunSide² (1.0 MB) + 2 · voxels (0.9 MB for a cube)
 //
 // Accuracy. Light leaks behind surfaces: sunlight up to sunBias(), sky light up to 1.5 voxels. voxel() is 1/40 of the
-// collider's longest side. The sun map may miss details thinner than four of its texels, perpendicular to the light.
+// collider's longest side. The sun map may miss details thinner than four of its texels, measured perpendicular to the
+// light.
 #pragma once
 
 #include <cstdint>

@@ -8,9 +8,9 @@
 //     bytes on the GPU = 16 · texels, texels = capacity rounded up to a power of two (and to whole rows of kWidth):
 //         order  2 × RG32UI (double-buffered)    index of a particle, key: float bits of the squared distance to eye
 //
-// Every update() recomputes all keys and continues the sequence. No pass makes the order worse, and the number of ranks
-// is a power of two (proofs: runtime/METHOD.md, "The depth sort"). If keys and extent do not change, the order is exact
-// after one complete sequence; otherwise the order lags by the motion during one to two sequences.
+// Every update() recomputes all keys and continues the sequence. No pass makes the order worse, and shrinking the
+// number of ranks loses no particle (proofs: runtime/METHOD.md, "The depth sort"). If keys and extent do not change,
+// the order is exact after one complete sequence; otherwise the order lags one to two sequences behind the motion.
 #pragma once
 
 #include <cstdint>
@@ -45,7 +45,7 @@ class DepthSorter {
     /// \param positions  RGBA32F, particle i at texel (i mod width, i / width): xyz in object space, w < 0 for
     ///                   dead particles. Only used during the call.
     /// \param width      texels in a row of `positions`, > 0.
-    /// \param extent     sorts particles with indices below it; clamped to the capacity.
+    /// \param extent     only particles with lower indices are sorted; clamped to the capacity.
     /// \param eye        object space.
     /// \param passes     any number; 0 only refreshes the keys. See passesPerFrame(). Ignored on the compute path.
     void update(const GlTexture& positions, std::uint32_t width, std::uint32_t extent, const glm::vec3& eye,

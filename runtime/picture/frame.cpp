@@ -24,9 +24,10 @@ Result<Frame> Frame::create(std::uint32_t width, std::uint32_t height) {
     const auto limit = static_cast<std::uint32_t>(std::min({side_max, viewport_max[0], viewport_max[1]}));
     const std::uint64_t pixels = std::uint64_t{width} * height;
     if (std::max(width, height) > limit || pixels > kPixelsMax) {
-        return fail(ErrorCode::kLimit,
-                    "a picture of " + size + " pixels is too large; this GL context supports sides up to " +
-                        std::to_string(limit) + ", and Relief " + std::to_string(kPixelsMax) + " pixels");
+        return fail(ErrorCode::kLimit, "a picture of " + size +
+                                           " pixels is too large; this GL context supports sides up to " +
+                                           std::to_string(limit) + ", and Relief supports " +
+                                           std::to_string(kPixelsMax) + " pixels");
     }
     Frame frame;
     frame.width_ = width;

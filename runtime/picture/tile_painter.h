@@ -13,9 +13,9 @@
 //         entries   2 × 8 bytes (double-buffered), 3 per sprite
 //         layer     RGBA16F
 //
-// Nothing is read back. Tiles overflow if the entry buffer is too small (a thousand sprites as large as the picture) or
-// a tile has more than 65,536 entries (a distant cloud). The GPU then leaves the layer empty, and an indirect draw
-// draws the sprites.
+// Nothing is read back. Tiles overflow if the sprites need too many entries (a thousand sprites as large as the
+// picture) or a tile has more than 65,536 entries (a distant cloud). The GPU then leaves the layer empty, and an
+// indirect draw draws the sprites.
 #pragma once
 
 #include <cstdint>

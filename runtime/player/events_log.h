@@ -24,7 +24,7 @@ class EventsLog {
     /// Errors: kIo.
     [[nodiscard]] static Result<EventsLog> create(const std::filesystem::path& path, float min_speed);
 
-    /// Writes a line for each new contact. \param step  its tag is the number of the step.
+    /// Writes a line for each new contact. \param step  with the step number as its tag.
     /// \param materials  WorldTextures::materialNames().
     /// Errors: kIo.
     [[nodiscard]] Result<void> write(const StepEvents& step, std::span<const std::string> materials);

@@ -42,7 +42,7 @@ struct LoadedScene {
     std::vector<std::shared_ptr<const Collider>> world_colliders;
     ContainerLimits limits;  ///< for colliders that are read later
     /// Colliders of the scene, in its order. Entries of the same file share one Collider, except colliders that deform
-    /// or play clips; with a [stream], a collider table that names a file does not share it with the world.
+    /// or play clips; with a [stream], a [[collider]] with a file does not share a Collider with the world.
     std::vector<std::shared_ptr<const Collider>> colliders;
     /// Per collider: its mesh if it deforms; its entry in `colliders` then has maps without texels.
     std::vector<std::optional<LiveMesh>> live;

@@ -326,8 +326,8 @@ Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
             return fail(
                 ErrorCode::kInvalidInput,
                 nth("type", i, ".collides_with") +
-                    " names a body that does not exist; the number of bodies, including the world, is " +
-                    std::to_string(numbered(scene)) + ", numbered from 0");
+                    " names a body that does not exist; the number of bodies, including the world's, is " +
+                    std::to_string(numbered(scene)) + "; the first is 0");
         }
         type.collides_with &= bodiesOf(scene);
     }

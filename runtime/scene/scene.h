@@ -136,7 +136,7 @@ struct SceneRender {
 void fields(FieldVisitor& visit, SceneRender& r);
 [[nodiscard]] std::optional<FieldFault> check(SceneRender& render, const GivenFields& given);
 
-/// Reads and writes ParticleType::collides_with as a list of bodies.
+/// Reads and writes ParticleType::collides_with as a list such as [0, "ground"].
 struct CollidesList {
     std::uint32_t& bits;
 };

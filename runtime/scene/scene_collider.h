@@ -80,8 +80,8 @@ struct SceneCollider {
     std::filesystem::path path;  ///< resolved against the scene's folder
     std::string origin;  ///< position of its key, "scene.toml:3:8", for messages; empty without a scene file
     std::string node;    ///< node of the world's body that provides missing values; empty: none
-    /// For another tile of the node's mesh: the index of the collider that names the node. The tile moves and collides
-    /// like that collider.
+    /// If this is a further tile of a node's mesh: the index of the collider that names the node. The tile moves and
+    /// collides like that collider.
     std::optional<std::size_t> tile_of{};
     ScenePose given_pose;
     float scale = 1.0F;

@@ -63,7 +63,7 @@ std::optional<FieldFault> checkPlace(SceneEmitter& emitter, const GivenFields& g
     }
     if (given("attach") && emitter.shape == EmitterShape::kBox && !emitter.has_box) {
         return FieldFault{"attach",
-                          "needs a place in the space of the collider; add emitter.point, for example"};
+                          "needs a position in the space of the collider; add emitter.point, for example"};
     }
     if (emitter.followsShape() && !given("attach")) {
         return FieldFault{

@@ -99,8 +99,8 @@ void fields(FieldVisitor& visit, SceneSpawn& spawn);
 [[nodiscard]] std::optional<FieldFault> check(SceneSpawn& spawn, const GivenFields& given);
 
 /// Fills missing values. By default, particles fall like snow from a box above the collider.
-/// \param bounds, scale  of the collider; scale is its longest side, but at least 1e-3 of the largest coordinate of its
-/// centre, and 1e-6.
+/// \param bounds, scale  of the collider; scale: the largest of 1e-6, its longest side, and 1e-3 times its centre's
+/// largest coordinate.
 /// \param seconds, capacity  of the run. Emitters without a rate share the capacity that the others leave.
 /// Errors: kInvalidInput if no capacity is left.
 [[nodiscard]] Result<void> completeEmitters(std::span<SceneEmitter> emitters, const Bounds& bounds,

@@ -43,7 +43,7 @@ struct PlayedMesh {
     [[nodiscard]] double run(double time) const;
 };
 
-/// Applies the clip, start and speed of `from`. Errors: those of loadPlayedMesh(); `played` is then unchanged.
+/// Applies the clip, start, speed and loop of `from`. Errors: those of loadPlayedMesh(); `played` is then unchanged.
 [[nodiscard]] Result<void> changeClip(PlayedMesh& played, const SceneCollider& from);
 
 /// Finds the clip, and chooses maps that cover all clips of the mesh.

@@ -31,7 +31,7 @@ struct DrawnMeshes {
 };
 
 /// Returns the files of render.meshes for the colliders of the scene, sorted, without reading them. The file of a world
-/// collider is named storedMeshName() of its mesh; the file of another collider has the name of its container.
+/// collider has the storedMeshName() of its mesh; the file of any other collider has the name of its container.
 /// Colliders that deform or play clips need no file: their own moving mesh is drawn.
 /// \param loaded  its scene must set render.meshes.
 /// Errors: kInvalidInput (no such file; a link to a file outside the folder; a mesh without a name).

@@ -97,7 +97,7 @@ void readNames(const TomlValue& from, void* value, const FieldInfo& /*info*/) {
 void readCollides(const TomlValue& from, void* value, const FieldInfo& /*info*/) {
     std::uint32_t& bits = static_cast<const CollidesList*>(value)->bits;
     constexpr std::string_view kWanted =
-        "numbers of colliders, and optionally \"ground\", as in [0, \"ground\"]";
+        "indices of colliders, and optionally \"ground\", as in [0, \"ground\"]";
     static constexpr std::array<std::string_view, 1> kGround{"ground"};
     if (from.array() == nullptr) {
         from.wrongType(kWanted);

@@ -12,7 +12,7 @@
 
 namespace relief {
 
-/// Provides colliders in the order of the requests. All calls come from one thread.
+/// Provides the requested colliders in any order. All calls come from one thread.
 class ColliderSource {
   public:
     struct Arrival {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A world whose colliders are streamed to the GPU on demand. Their coarse colliders are always resident, so that no
 // particle falls through. A thread loads the full maps. Each update uploads a limited number of bytes. If there is no
-// room, the update evicts full maps that no point of interest needs, and full maps that do not fit beside nearer needed
-// maps. The least recently needed maps are evicted first.
+// room, the update evicts full maps that no point of interest needs, and needed full maps for which nearer needed maps
+// leave no room. The least recently needed maps are evicted first.
 //
 //     auto world = *WorldStream::open("level/world.json", {.gpu_bytes = 64 << 20});
 //     particles.setCollider(&world->textures());

@@ -51,7 +51,7 @@ export class ParticleSystem {
                 throw new ReliefError("the option 'world' needs a World from loadWorld() or streamWorld(); did you forget to await it?");
             }
             if (options.collider) {
-                throw new ReliefError("use either 'world' or 'collider'; name more colliders in the scene, with 'files'");
+                throw new ReliefError("use either 'world' or 'collider'; to add colliders, name them in the scene and pass 'files'");
             }
             options.world.handle; // throws if disposed
         }
@@ -341,7 +341,7 @@ export class ParticleSystem {
     pose(body, joints = [], weights = []) {
         this.#ready();
         if (!Number.isInteger(body) || body < 0 || joints.length % 16 !== 0) {
-            throw new ReliefError("pose() needs the number of a body, and 16 numbers per joint");
+            throw new ReliefError("pose() needs the index of a body, and 16 numbers per joint");
         }
         callChecked("relief_player_pose", this.handle, body, checkFinite("pose()", Float32Array.from(joints)), joints.length / 16,
                     checkFinite("pose()", Float32Array.from(weights)), weights.length);

@@ -68,8 +68,8 @@ struct Player {
 /// colours of colliders.
 /// \param emitters  whether the emitters restart.
 /// Errors: kUsage if the world, number of colliders, capacity, integrator, materials, stream.memory or the presence of
-/// [stream] change; if a collider changes in more than position, axis, angle and clip; or if the position, axis
-/// or angle changes for a collider with keys, or for a single collider that neither had a pose nor deforms.
+/// [stream] change; if a collider changes in more than position, axis, angle and clip playback; or if the position,
+/// axis or angle changes for a collider with keys, or for a single collider that neither had a pose nor deforms.
 [[nodiscard]] Result<int> changePlayer(Player& player, const char* text, const char* path, bool emitters);
 
 [[nodiscard]] Result<int> drawPlayer(Player& player, const CameraMatrices& camera,

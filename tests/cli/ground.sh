@@ -63,7 +63,7 @@ expect 0 "$relief" check w/world.json --mesh hills.png --json --samples 5000
 json stdout "d['heights'] == 'spacing=1,low=0,high=100,offset=5/-3/1,tile=100' and d['near']['missing'] == d['seams']['missing'] == 0"
 json stdout "0 < d['seams']['error']['max'] < 0.03 and d['seams']['wrong_percent'] < 1 and d['warnings'] == []"
 expect 7 "$relief" check ground.relief --mesh hills.png --heights $settings,offset=0/0.5/0 --samples 5000 --max-error 10
-grep -q 'set --mesh and --heights to those of the bake, or raise' stderr || die "a shift is not detected: $(cat stderr)"
+grep -q 'set --mesh and --heights as in the bake, or raise' stderr || die "a shift is not detected: $(cat stderr)"
 expect 0 "$relief" check ground.relief --mesh hills.r16 --samples 500
 grep -q 'warning: hills.r16 is not the file' stderr || die "a different file: $(cat stderr)"
 heights larger.png 140

@@ -78,7 +78,7 @@ done
 expect_error 1 "engine is 'quake' but must be one of c|godot" "$relief" export engine.relief --engine quake none
 expect_error 1 'engine' "$relief" export engine.relief --engine c
 expect_error 1 'b.relief.*: engines read one map of patches.* bake it again without --map' "$relief" export b.relief --engine c none
-expect_error 1 'only --engine exports levels' "$relief" export level/world.json -o none
+expect_error 1 'only --engine exports worlds' "$relief" export level/world.json -o none
 [ ! -e none ] || die "a rejected export created a folder"
 
 # Outputs are deterministic.

@@ -105,7 +105,7 @@ function readPayload(bytes, end, { width, height, compression, payload }, decomp
           `map 0: its stored_size ${stored} does not match its raw_size ${raw} and its compression`);
     check(raw <= kPayloadMax && (compression === 0 || raw <= Math.max(kUnpackedMax, kUnpackedPerStored * bytes.length)),
           `map 0: its ${raw} bytes exceed the limit for a file of ${bytes.length} bytes; bake again without --compress`);
-    check(raw >= 16, "map 0: texel 0 of its tree of patches has an invalid size");
+    check(raw >= 16, "map 0: texel 0 of its tree of patches declares an invalid size");
     const place = Math.ceil(end / 64) * 64;
     check(offset === place, `map 0: its payload's offset is ${offset} instead of ${place}`);
     check(offset + stored <= bytes.length, `map 0: its payload of ${stored} bytes extends beyond the end`);

@@ -41,7 +41,7 @@ export function validateTree(words) {
     const { roots, levels } = treeSize(words);
     const rootCount = roots[0] * roots[1] * roots[2];
     check(rootCount > 0 && levels <= kLevelsMax && 1 + rootCount <= count, 0,
-          "of its tree of patches has an invalid size");
+          "of its tree of patches declares an invalid size");
     // Texels at … end − 1 are the records of one level, and the next level begins at `end`.
     let [at, end] = [1, 1 + rootCount];
     const leaves = [];

@@ -95,7 +95,7 @@ class PageTextures {
         this.textures = textures.map(({ width, height, texels }, i) => {
             const [, internal, format, type, Words] = kTextures[i];
             if (texels && Math.max(width, height) > most) {
-                throw new Error(`this collider has a texture of ${width} × ${height} texels, but this browser allows ${most}: ` +
+                throw new Error(`this collider has a ${width} × ${height} texture; this browser allows sides up to ${most}: ` +
                                 "bake it with a smaller --budget");
             }
             const texture = gl.createTexture();

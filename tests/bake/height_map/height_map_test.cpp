@@ -229,8 +229,8 @@ TEST_F(HeightMaps, RawSamplesAreSquareWithoutAWidth) {
     rejects(cut, "low=0,high=1,width=7", "do not form rows of 7 samples");
     rejects(write("odd.raw", std::vector<std::byte>(99)), "low=0,high=1", "99 bytes");
     rejects(write("none.raw", {}), "low=0,high=1", "0 bytes");
-    rejects(square, "low=0", "needs high=, the height of sample 65535", ErrorCode::kUsage);
-    rejects(square, "high=0", "needs low=, the height of sample 0", ErrorCode::kUsage);
+    rejects(square, "low=0", "needs high=, the height of sample value 65535", ErrorCode::kUsage);
+    rejects(square, "high=0", "needs low=, the height of sample value 0", ErrorCode::kUsage);
     rejects(square, "low=0,high=1,hole=0.5", "whole number from 0 to 65535", ErrorCode::kUsage);
     rejects(writeRaw("a.bin", {1, 2, 3, 4}), "low=0,high=1",
             "give --heights type= or width=", ErrorCode::kUnsupported);

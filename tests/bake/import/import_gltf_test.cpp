@@ -486,7 +486,7 @@ TEST(ImportGltf, ScenesMustBeNonemptyTrees) {
          node(R"("children":[0])", ""),
          node(R"("children":[5])", "child"),
          parts({.nodes = R"({"children":[1]},{"children":[2]},{"children":[1],"mesh":0})"}, "two parents"),
-         parts({.nodes = R"({"mesh":0},{"children":[2]},{"children":[1]})"}, "own parents"),
+         parts({.nodes = R"({"mesh":0},{"children":[2]},{"children":[1]})"}, "contain a cycle"),
          parts({.roots = "0,0"}, "twice"),
          parts({.nodes = R"({"children":[1]},{"mesh":0})", .roots = "0,1"}, "parent"),
          parts({.nodes = unfolding + R"({"mesh":0})"}, "two parents")});

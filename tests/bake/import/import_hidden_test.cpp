@@ -447,7 +447,7 @@ TEST(ImportHidden, MissingColladaInstancesAreNamed) {
     const std::string lost = R"(<node name="lost"><instance_geometry url="#missing"/></node>)";
     const TriangleMesh mesh = imported("missing.dae", dae(kShownNode + lost));
     EXPECT_EQ(mesh.triangles.size(), 4U);
-    EXPECT_TRUE(warns(mesh, "line 1: the node 'lost' instances '#missing', which does not exist"))
+    EXPECT_TRUE(warns(mesh, "line 1: the node 'lost' instantiates '#missing', which does not exist"))
         << ::testing::PrintToString(mesh.warnings);
     for (const char* element : {"instance_controller", "instance_node"}) {
         const std::string node = std::string("<node id=\"lost\"><") + element + R"( url="#missing"/></node>)";
@@ -464,7 +464,7 @@ TEST(ImportHidden, MissingColladaInstancesAreNamed) {
     expectWrong(
         "missing.dae",
         {{dae(std::string(kShownNode) + R"(<node name="x"><instance_geometry url="b.dae#g"/></node>)"),
-          "line 1: the node 'x' instances 'b.dae#g', which is in another file", ErrorCode::kUnsupported}});
+          "line 1: the node 'x' instantiates 'b.dae#g', which is in another file", ErrorCode::kUnsupported}});
 }
 
 }  // namespace

@@ -243,9 +243,9 @@ TEST(SceneErrors, TypesAndMaterials) {
                               {"[[spawn]]\non = \"death\"\nmaterial = \"a\"\n", "5:12", "collision"}});
     expectErrors(
         "[[collider]]\nfile = \"a.relief\"\n[[collider]]\nfile = \"b.relief\"\n",
-        {{"[[type]]\ncollides_with = 0\n", "6:17", "numbers of colliders"},
+        {{"[[type]]\ncollides_with = 0\n", "6:17", "indices of colliders"},
          {"[[type]]\ncollides_with = [2]\n", "6:18", "choose 0 to 1"},
-         {"[[type]]\ncollides_with = [1.5]\n", "6:18", "numbers of colliders"},
+         {"[[type]]\ncollides_with = [1.5]\n", "6:18", "indices of colliders"},
          {"[[type]]\ncollides_with = [\"floor\"]\n", "6:18", "ground"},
          {"[ground]\nenabled = false\n[[type]]\ncollides_with = [\"ground\"]\n", "8:18", "disables"}});
 }
