@@ -70,6 +70,7 @@ TEST(BakeRequest, EveryFieldRoundTrips) {
 TEST(BakeRequest, ErrorsNameTheOptionAndTheFix) {
     for (const auto& [name, word, begin] :
          {std::tuple{"budget", "much", "--budget is 'much' but must be a number of bytes"},
+          std::tuple{"budget", "4095", "--budget is '4095' but must be a number of bytes, at least 4096"},
           std::tuple{"max_error", "-1", "--max-error is '-1' but must be a percentage, such as 1.5"},
           std::tuple{"quality", "bset", "--quality is 'bset' but must be one of fast, normal, best"},
           std::tuple{"depth", "x", "--depth is 'x' but must be unorm16 or half"},
