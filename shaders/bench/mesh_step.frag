@@ -98,18 +98,4 @@ bool insideBefore(vec3 p, float radius, Solid s, bool free) {
     return inside;
 }
 
-vec3 pointBefore(Solid s, vec3 p) {
-    return p;
-}
-
-vec3 placedNow(int body, vec3 p) {
-    return p;
-}
-
-vec3 motionOf(int body, vec3 p) {
-    return vec3(0.0);
-}
-
-vec2 bodyResponse(int body) {
-    return vec2(1.0);
-}
+//!include particles/step_still.glsl

@@ -119,21 +119,5 @@ vec4 materialOf(int body, vec3 p, vec3 n) {
 #endif
 
 #if RELIEF_BODIES == 0
-
-vec3 pointBefore(Solid s, vec3 p) {
-    return p;
-}
-
-vec3 placedNow(int body, vec3 p) {
-    return p;
-}
-
-vec3 motionOf(int body, vec3 p) {
-    return vec3(0.0);
-}
-
-vec2 bodyResponse(int body) {
-    return vec2(1.0);
-}
-
+//!include particles/step_still.glsl
 #endif
