@@ -256,7 +256,6 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
            .unit = "bytes",
            .range = {static_cast<double>(kBudgetMin)},
            .fallback = "1MB",
-           .must = "a number of bytes, at least 4096, such as 256kB or 4MB",
            .recorded = true,
            .details = "The file is a few hundred bytes larger, or smaller with --compress. With --max-error "
                       "or --texel, the budget is an upper limit. With --world, it is shared by all "

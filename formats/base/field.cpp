@@ -3,6 +3,7 @@
 
 #include <bit>
 #include <cassert>
+#include <cmath>
 #include <cstring>
 
 namespace relief {
@@ -24,6 +25,15 @@ void store(void* to, double value) {
 }
 
 }  // namespace
+
+std::string rangeAdvice(const FieldRange& range, std::string (*text)(double)) {
+    const std::string low = text(range.low);
+    if (!std::isfinite(range.high)) {
+        return range.low_included ? "choose " + low + " or more" : "choose more than " + low;
+    }
+    return (range.low_included ? "choose " + low + " to " : "choose more than " + low + ", up to ") +
+           text(range.high);
+}
 
 FieldVisitor::~FieldVisitor() = default;
 

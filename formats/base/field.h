@@ -56,6 +56,10 @@ struct FieldRange {
     }
 };
 
+/// Returns "choose 1 to 5", "choose 1 or more", "choose more than 0, up to 5".
+/// \param text  writes a limit.
+[[nodiscard]] std::string rangeAdvice(const FieldRange& range, std::string (*text)(double));
+
 constexpr FieldRange within(double limit) {
     return {-limit, limit};
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/config/toml_value.h"
 
-#include <cmath>
 #include <cstdio>
 #include <exception>
 
@@ -11,15 +10,6 @@
 
 namespace relief {
 namespace {
-
-std::string rangeText(const FieldRange& range) {
-    const std::string low = numberText(range.low);
-    if (!std::isfinite(range.high)) {
-        return range.low_included ? "choose " + low + " or more" : "choose more than " + low;
-    }
-    return (range.low_included ? "choose " + low + " to " : "choose more than " + low + ", up to ") +
-           numberText(range.high);
-}
 
 /// Returns the number of tables in an array, 1 for a single table, otherwise 0.
 std::size_t tableCount(const toml::node* node) {
@@ -118,7 +108,7 @@ double TomlValue::number(const FieldRange& range) const {
     const double value = node_->is_integer() ? static_cast<double>(*node_->value_exact<std::int64_t>())
                                              : *node_->value_exact<double>();
     if (!range.holds(value)) {
-        fail(name_ + " = " + numberText(value) + " is out of range; " + rangeText(range));
+        fail(name_ + " = " + numberText(value) + " is out of range; " + rangeAdvice(range, numberText));
     }
     return value;
 }
@@ -129,7 +119,7 @@ std::int64_t TomlValue::whole(const FieldRange& range) const {
     }
     const std::int64_t value = *node_->value_exact<std::int64_t>();
     if (!range.holds(static_cast<double>(value))) {
-        fail(name_ + " = " + std::to_string(value) + " is out of range; " + rangeText(range));
+        fail(name_ + " = " + std::to_string(value) + " is out of range; " + rangeAdvice(range, numberText));
     }
     return value;
 }

@@ -23,15 +23,6 @@ std::string decimal(double value) {
                : shortest(static_cast<float>(value));
 }
 
-std::string rangeText(const FieldRange& range) {
-    const std::string low = decimal(range.low);
-    if (!std::isfinite(range.high)) {
-        return range.low_included ? "choose " + low + " or more" : "choose more than " + low;
-    }
-    return (range.low_included ? "choose " + low + " to " : "choose more than " + low + ", up to ") +
-           decimal(range.high);
-}
-
 /// Thrown by the functions below if a value is invalid; readJson() converts it into an Error.
 struct JsonError {
     std::string message;
@@ -88,7 +79,7 @@ double JsonValue::number(const FieldRange& range) const {
     }
     const auto value = json_->get<double>();
     if (!range.holds(value)) {
-        fail("= " + decimal(value) + " is out of range; " + rangeText(range));
+        fail("= " + decimal(value) + " is out of range; " + rangeAdvice(range, decimal));
     }
     return value;
 }
@@ -100,7 +91,7 @@ std::uint64_t JsonValue::whole(const FieldRange& range) const {
     const auto value = json_->get<std::uint64_t>();
     if (!range.holds(static_cast<double>(value))) {
         fail("= " + std::to_string(value) + " is out of range; " +
-             rangeText({std::max(range.low, 0.0), range.high}));
+             rangeAdvice({std::max(range.low, 0.0), range.high}, decimal));
     }
     return value;
 }

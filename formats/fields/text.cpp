@@ -28,7 +28,8 @@ std::string requirementOf(const FieldInfo& info, std::uint64_t least, std::uint6
         return std::string(info.must);
     }
     if (isBytes(info)) {
-        return "a number of bytes, such as 1MB or 512KiB";
+        return "a number of bytes, " + (least > 1 ? "at least " + std::to_string(least) + ", " : "") +
+               "such as 1MB or 512KiB";
     }
     const bool any = least == 0 && most == std::numeric_limits<std::uint64_t>::max();
     return "a whole number" + (any ? "" : " from " + std::to_string(least) + " to " + std::to_string(most));
