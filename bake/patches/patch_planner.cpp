@@ -370,15 +370,15 @@ class Planner {
     }
 
     /// Finds the lowest worth of a byte whose tree fits, and chooses that tree.
-    /// \param spare  fraction of the bytes that the tree may leave unused.
+    /// \param unused  fraction of the bytes that the tree may leave unused.
     /// \return the worth of a byte.
-    double chooseLowestWorth(WorthRange range, double spare) {
+    double chooseLowestWorth(WorthRange range, double unused) {
         if (!(range.low_worth > 0.0)) {
             return range.high_worth;
         }
         double byte = range.low_worth;
         const auto square = [](double x) { return x * x; };
-        for (int i = 0; i < kWorthTrials && range.bytes_at_high < (1.0 - spare) * bytes_; ++i) {
+        for (int i = 0; i < kWorthTrials && range.bytes_at_high < (1.0 - unused) * bytes_; ++i) {
             const double share = (square(bytes_ / range.bytes_at_high) - 1.0) /
                                  (square(bytes_ / range.bytes_at_high) - square(bytes_ / range.bytes_at_low));
             byte = range.high_worth + std::clamp(share, 0.1, 0.9) * (range.low_worth - range.high_worth);
