@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
@@ -21,9 +20,7 @@ constexpr std::uint16_t kHalfOne = 0x3c00;
 
 /// Nine significant digits distinguish any two floats.
 std::string number(double value) {
-    char text[32];
-    std::snprintf(text, sizeof(text), "%.9g", value);
-    return text;
+    return formatted("%.9g", value);
 }
 
 std::string words(const glm::vec3& v) {
