@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bake/engines/engine_export.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <span>
 
 #include "bake/engines/body_cells.h"

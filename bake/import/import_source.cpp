@@ -2,7 +2,6 @@
 #include "bake/import/import_source.h"
 
 #include <fcntl.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
