@@ -175,6 +175,18 @@ std::span<std::byte> DepthMap::texelAt(std::uint32_t face, std::uint32_t x, std:
     return std::span(texels).subspan(((std::size_t{face} * height + y) * width + x) * size, size);
 }
 
+void DepthMap::setPatches(std::span<const PatchRecord> records) {
+    const PatchMapSize size = patchMapSize(records.size());
+    width = size.width;
+    height = size.height;
+    texels.clear();
+    texels.reserve(texelBytes());
+    for (const PatchRecord& record : records) {
+        appendPatchTexel(texels, record);
+    }
+    texels.resize(texelBytes());
+}
+
 std::optional<Vote> vote(const DepthMap& map, const glm::vec3& p) {
     const glm::vec3 in_map = map.object_to_map.apply(p);
     switch (map.projection()) {
