@@ -9,6 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include "formats/base/finite.h"
+#include "formats/base/hash.h"
 #include "formats/base/text.h"
 #include "formats/patch_tree.h"
 
@@ -53,8 +54,7 @@ std::string faultOfName(const std::string& name) {
 }
 
 std::string faultOfHash(std::string_view hash) {
-    const bool digits = hash.find_first_not_of("0123456789abcdef") == std::string_view::npos;
-    return digits && (hash.empty() || hash.size() == 32)
+    return hash.empty() || isHash(hash)
                ? ""
                : "provenance.mesh_hash is neither empty nor 32 lower-case hexadecimal digits";
 }

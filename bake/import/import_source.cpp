@@ -20,10 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool isHash(const std::string& text) {
-    return text.size() == 32 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
-}
-
 }  // namespace
 
 ImportSource::ImportSource(fs::path path, std::string extension, std::vector<std::byte> bytes)
