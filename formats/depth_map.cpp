@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/matrix.hpp>
 
+#include "formats/base/finite.h"
 #include "formats/patch_tree.h"
 
 namespace relief {
@@ -163,6 +164,12 @@ glm::dmat3 Affine::linear() const {
 
 glm::dmat3 Affine::inverse() const {
     return glm::inverse(linear());
+}
+
+bool Affine::isFinite() const {
+    return std::all_of(std::begin(row), std::end(row), [](const glm::vec4& r) {
+        return relief::isFinite(glm::vec3(r)) && std::isfinite(r.w);
+    });
 }
 
 std::span<const std::byte> DepthMap::texelAt(std::uint32_t face, std::uint32_t x, std::uint32_t y) const {

@@ -56,6 +56,8 @@ struct Affine {
     [[nodiscard]] glm::dmat3 linear() const;
     /// Returns the inverse of linear(), which must exist.
     [[nodiscard]] glm::dmat3 inverse() const;
+    /// Returns whether no entry is infinite or NaN.
+    [[nodiscard]] bool isFinite() const;
     friend bool operator==(const Affine&, const Affine&) = default;
 };
 
