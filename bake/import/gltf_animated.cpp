@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "bake/import/animated_import.h"
 #include "bake/import/gltf_scene.h"
 #include "bake/import/import_readers.h"
 #include "bake/import/import_scene.h"
