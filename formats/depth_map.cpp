@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/matrix.hpp>
 
+#include "formats/base/finite.h"
 #include "formats/patch_tree.h"
 
 namespace relief {
@@ -165,6 +166,12 @@ glm::dmat3 Affine::inverse() const {
     return glm::inverse(linear());
 }
 
+bool Affine::isFinite() const {
+    return std::all_of(std::begin(row), std::end(row), [](const glm::vec4& r) {
+        return relief::isFinite(glm::vec3(r)) && std::isfinite(r.w);
+    });
+}
+
 std::span<const std::byte> DepthMap::texelAt(std::uint32_t face, std::uint32_t x, std::uint32_t y) const {
     const std::size_t size = texelSize(format);
     return std::span(texels).subspan(((std::size_t{face} * height + y) * width + x) * size, size);
@@ -173,6 +180,18 @@ std::span<const std::byte> DepthMap::texelAt(std::uint32_t face, std::uint32_t x
 std::span<std::byte> DepthMap::texelAt(std::uint32_t face, std::uint32_t x, std::uint32_t y) {
     const std::size_t size = texelSize(format);
     return std::span(texels).subspan(((std::size_t{face} * height + y) * width + x) * size, size);
+}
+
+void DepthMap::setPatches(std::span<const PatchRecord> records) {
+    const PatchMapSize size = patchMapSize(records.size());
+    width = size.width;
+    height = size.height;
+    texels.clear();
+    texels.reserve(texelBytes());
+    for (const PatchRecord& record : records) {
+        appendPatchTexel(texels, record);
+    }
+    texels.resize(texelBytes());
 }
 
 std::optional<Vote> vote(const DepthMap& map, const glm::vec3& p) {

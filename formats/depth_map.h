@@ -56,6 +56,8 @@ struct Affine {
     [[nodiscard]] glm::dmat3 linear() const;
     /// Returns the inverse of linear(), which must exist.
     [[nodiscard]] glm::dmat3 inverse() const;
+    /// Returns whether no entry is infinite or NaN.
+    [[nodiscard]] bool isFinite() const;
     friend bool operator==(const Affine&, const Affine&) = default;
 };
 
@@ -81,6 +83,8 @@ inline constexpr float kFarInside = -16777215.0F * 2.028240960365167e31F;
 
 /// Minimum size of an orthographic map: one texel inside the border. The maximum is kMapSizeMax.
 inline constexpr std::uint32_t kMapSizeMin = 3;
+
+struct PatchRecord;  // patch_tree.h
 
 struct DepthMap {
     MapFormat format = MapFormat::kFixed8;
@@ -114,6 +118,8 @@ struct DepthMap {
     [[nodiscard]] std::span<const std::byte> texelAt(std::uint32_t face, std::uint32_t x,
                                                      std::uint32_t y) const;
     [[nodiscard]] std::span<std::byte> texelAt(std::uint32_t face, std::uint32_t x, std::uint32_t y);
+    /// Sets width, height and texels of a map with the format kPatches. \param records  all texels of the tree
+    void setPatches(std::span<const PatchRecord> records);
 
     friend bool operator==(const DepthMap&, const DepthMap&) = default;
 };

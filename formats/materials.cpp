@@ -12,10 +12,6 @@
 namespace relief {
 namespace {
 
-bool isFraction(float value) {
-    return value >= 0.0F && value <= 1.0F;
-}
-
 std::string faultOfList(const Materials& materials) {
     if (materials.list.size() > kMaterialsMax) {
         return "there are " + std::to_string(materials.list.size()) + " materials, more than " +

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 #include "formats/base/finite.h"
+#include "formats/base/hash.h"
 #include "formats/base/text.h"
 #include "formats/patch_tree.h"
 
@@ -21,9 +21,7 @@ constexpr std::uint16_t kHalfOne = 0x3c00;
 
 /// Nine significant digits distinguish any two floats.
 std::string number(double value) {
-    char text[32];
-    std::snprintf(text, sizeof(text), "%.9g", value);
-    return text;
+    return formatted("%.9g", value);
 }
 
 std::string words(const glm::vec3& v) {
@@ -56,8 +54,7 @@ std::string faultOfName(const std::string& name) {
 }
 
 std::string faultOfHash(std::string_view hash) {
-    const bool digits = hash.find_first_not_of("0123456789abcdef") == std::string_view::npos;
-    return digits && (hash.empty() || hash.size() == 32)
+    return hash.empty() || isHash(hash)
                ? ""
                : "provenance.mesh_hash is neither empty nor 32 lower-case hexadecimal digits";
 }

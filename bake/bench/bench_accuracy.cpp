@@ -8,7 +8,6 @@
 #include <exception>
 #include <glm/vec2.hpp>
 #include <nlohmann/json.hpp>
-#include <span>
 
 #include "bake/bench/brick_volume.h"
 #include "bake/bench/distance_volume.h"

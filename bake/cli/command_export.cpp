@@ -36,10 +36,6 @@ struct ExportCommand {
 
 constexpr std::uint32_t kResolution = 512;
 
-bool isPatches(const DepthMap& map) {
-    return map.format == MapFormat::kPatches;
-}
-
 /// An image of -o.
 struct NamedImage {
     std::string name;
@@ -51,7 +47,7 @@ std::vector<NamedImage> imagesOf(const Collider& collider, std::uint32_t resolut
     std::vector<NamedImage> images;
     for (std::size_t i = 0; i < collider.maps.size(); ++i) {
         const DepthMap& map = collider.maps[i];
-        const std::uint32_t faces = isPatches(map) ? 0 : map.faceCount();
+        const std::uint32_t faces = map.format == MapFormat::kPatches ? 0 : map.faceCount();
         for (std::uint32_t face = 0; face < faces; ++face) {
             images.push_back({mapImageName(map, i, face),
                               [&map, face, &collider] { return mapImage(map, face, collider.unit); }});

@@ -39,10 +39,6 @@ constexpr std::string_view kHeights = "--heights=";
 /// Options that apply to the whole run, and are therefore not keys of recipes.
 constexpr std::array<std::string_view, 3> kRunOptions = {"threads", "json", "depfile"};
 
-std::string keyOf(const FieldWords& field) {
-    return optionName(field.name).substr(2);
-}
-
 std::vector<FieldWords> fieldsOfAsset() {
     std::vector<FieldWords> all = fieldsOf(BakeRequest());
     std::ranges::move(fieldsOf(BakeOutputs()), std::back_inserter(all));
@@ -340,7 +336,7 @@ Result<void> writeFiles(const BakeCommand& command, RecipeWork& work,
 std::vector<RecipeKey> recipeKeys() {
     std::vector<RecipeKey> keys;
     for (const FieldWords& field : fieldsOfAsset()) {
-        keys.push_back({keyOf(field), field.kind});
+        keys.push_back({optionName(field.name).substr(2), field.kind});
     }
     return keys;
 }

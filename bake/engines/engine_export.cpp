@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bake/engines/engine_export.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <span>
 
 #include "bake/engines/body_cells.h"
@@ -87,13 +84,9 @@ std::string inUrl(std::string_view name) {
     return result;
 }
 
-std::vector<std::byte> bytesOf(std::string_view text) {
-    const auto bytes = std::as_bytes(std::span(text));
-    return {bytes.begin(), bytes.end()};
-}
-
-template <class T>
-std::vector<std::byte> bytesOf(const std::vector<T>& values) {
+/// \param values  a string or a vector
+template <class Values>
+std::vector<std::byte> bytesOf(const Values& values) {
     const auto bytes = std::as_bytes(std::span(values));
     return {bytes.begin(), bytes.end()};
 }

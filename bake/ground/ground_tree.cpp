@@ -386,14 +386,7 @@ class GroundTree {
             map.object_to_map.row[axis][axis] = static_cast<float>(1.0 / root);
             map.object_to_map.row[axis].w = static_cast<float>(-origin[axis] / root + 0.0);  // no −0
         }
-        const PatchMapSize size = patchMapSize(texels.size());
-        map.width = size.width;
-        map.height = size.height;
-        map.texels.reserve(map.texelBytes());
-        for (const PatchRecord& texel : texels) {
-            appendPatchTexel(map.texels, texel);
-        }
-        map.texels.resize(map.texelBytes());
+        map.setPatches(texels);
     }
 
     const HeightGrid& grid_;

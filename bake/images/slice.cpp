@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <optional>
 #include <string>
@@ -99,9 +98,8 @@ class Figure {
             canvas_->fill(x, top_ + y, em_, 1.0, distanceColor(1.0 - 2.0 * (y + 0.5) / bar_));
         }
         for (int i = -2; i <= 2; ++i) {
-            char number[32];
-            std::snprintf(number, sizeof(number), "%.3g", 0.5 * i * range_);
-            canvas_->text(x + 1.5 * em_, top_ + 0.25 * bar_ * (2 - i) + 0.35 * em_, number);
+            canvas_->text(x + 1.5 * em_, top_ + 0.25 * bar_ * (2 - i) + 0.35 * em_,
+                          formatted("%.3g", 0.5 * i * range_));
         }
         canvas_->text(x, top_ - 0.5 * em_, "distance" + (unit_.empty() ? "" : ", " + unit_));
     }

@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "bake/images/canvas.h"
 #include "bake/images/slice.h"
+#include "formats/base/text.h"
 
 namespace relief {
 namespace {
@@ -50,9 +50,7 @@ double scaleOf(double side) {
 }
 
 std::string lengthWords(double length, const std::string& unit) {
-    std::array<char, 32> number{};
-    std::snprintf(number.data(), number.size(), "%.5g", length);
-    return number.data() + (unit.empty() ? "" : " " + unit);
+    return formatted("%.5g", length) + (unit.empty() ? "" : " " + unit);
 }
 
 }  // namespace

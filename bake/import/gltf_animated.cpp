@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "bake/import/animated_import.h"
 #include "bake/import/gltf_scene.h"
 #include "bake/import/import_readers.h"
 #include "bake/import/import_scene.h"
@@ -32,11 +31,6 @@ Affine rowsOf(const Transform& transform) {
                            transform.offset[row]};
     }
     return affine;
-}
-
-bool areNumbers(const Affine& affine) {
-    return std::all_of(std::begin(affine.row), std::end(affine.row),
-                       [](const glm::vec4& row) { return isFinite(glm::vec3(row)) && std::isfinite(row.w); });
 }
 
 glm::vec4 unitRotation(const glm::dvec4& q) {
@@ -146,7 +140,7 @@ class AnimatedReader {
             Skin skin{RELIEF_TRY(readGltfSkin(*place, buffers_)), {}};
             for (const Transform& bind : skin.joints.binds) {
                 skin.binds.push_back(rowsOf(bind));
-                if (!areNumbers(skin.binds.back())) {
+                if (!skin.binds.back().isFinite()) {
                     return place->wrong("has inverseBindMatrices that are not numbers");
                 }
             }

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "formats/base/text.h"
 #include "formats/fields/strict_json.h"
 
 namespace relief {

@@ -8,6 +8,7 @@
 
 #include "bake/import/import_files.h"
 #include "bake/import/level.h"
+#include "formats/base/finite.h"
 #include "formats/base/text.h"
 
 namespace relief {
@@ -135,10 +136,6 @@ void write(Writer& writer, const Result<TriangleMesh>& raw) {
     } else {
         writer.array(raw.error().message, kErrorBytesMax);
     }
-}
-
-bool isFraction(float value) {
-    return value >= 0.0F && value <= 1.0F;  // false for NaN
 }
 
 tl::unexpected<Error> noMessage() {

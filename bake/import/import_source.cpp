@@ -2,7 +2,6 @@
 #include "bake/import/import_source.h"
 
 #include <fcntl.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -20,10 +19,6 @@ namespace relief {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool isHash(const std::string& text) {
-    return text.size() == 32 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
-}
 
 }  // namespace
 

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <utility>
 
 #include "bake/measure/accuracy.h"
 #include "bake/measure/part_accuracy.h"
+#include "formats/base/text.h"
 #include "formats/patch_tree.h"
 
 namespace relief {
@@ -18,15 +18,11 @@ constexpr std::uint64_t kGrowth = 4;
 constexpr int kBisections = 4;
 
 std::string megabytes(std::uint64_t bytes) {
-    char text[32];
-    std::snprintf(text, sizeof(text), "%.3g MB", static_cast<double>(bytes) / 1e6);
-    return text;
+    return formatted("%.3g MB", static_cast<double>(bytes) / 1e6);
 }
 
 std::string percentText(double percent) {
-    char text[32];
-    std::snprintf(text, sizeof(text), "%.3g %%", percent);
-    return text;
+    return formatted("%.3g %%", percent);
 }
 
 /// Whether a bake may have failed because the budget was too small.

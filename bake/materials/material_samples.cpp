@@ -115,10 +115,8 @@ MaterialSource near(const MaterialSource& source, const Bounds& box) {
     part.sides = source.sides;
     for (std::size_t i = 0; i < source.triangles.size(); ++i) {
         const glm::uvec3& t = source.triangles[i];
-        Bounds own;
-        for (int k = 0; k < 3; ++k) {
-            own.add(source.positions[t[k]]);
-        }
+        const Bounds own =
+            boundsOf(std::array{source.positions[t.x], source.positions[t.y], source.positions[t.z]});
         if (glm::all(glm::lessThanEqual(own.min, box.max + room)) &&
             glm::all(glm::greaterThanEqual(own.max, box.min - room))) {
             part.triangles.push_back(t);

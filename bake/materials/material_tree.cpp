@@ -159,10 +159,8 @@ class TreeBuilder {
         for (std::size_t i = 0; i < source_.triangles.size(); ++i) {
             const glm::uvec3& t = source_.triangles[i];
             // A tile's tree needs only faces in the tile.
-            Bounds box;
-            for (int k = 0; k < 3; ++k) {
-                box.add(source_.positions[t[k]]);
-            }
+            const Bounds box =
+                boundsOf(std::array{source_.positions[t.x], source_.positions[t.y], source_.positions[t.z]});
             if (glm::any(glm::greaterThan(glm::dvec3(box.min), root.center + half)) ||
                 glm::any(glm::lessThan(glm::dvec3(box.max), root.center - half))) {
                 continue;

@@ -8,7 +8,6 @@
 #include <functional>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/vector_relational.hpp>
 
 #include "bake/measure/patch_cells.h"
 #include "bake/measure/percent.h"

@@ -9,7 +9,6 @@
 #include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
 #include <limits>
-#include <numeric>
 #include <tuple>
 #include <utility>
 

@@ -61,10 +61,6 @@ class Encoder {
                 writeLeaf(node, first[i], texels[1 + i], texels);
             }
         });
-        std::vector<std::byte> bytes;
-        for (const PatchRecord& texel : texels) {
-            appendPatchTexel(bytes, texel);
-        }
         DepthMap map;
         map.format = MapFormat::kPatches;
         map.decode = Decode::kPlane;
@@ -74,11 +70,7 @@ class Encoder {
             map.object_to_map.row[axis][axis] = static_cast<float>(1.0 / roots_.size);
             map.object_to_map.row[axis].w = static_cast<float>(-roots_.origin[axis] / roots_.size);
         }
-        const PatchMapSize size = patchMapSize(texels.size());
-        map.width = size.width;
-        map.height = size.height;
-        bytes.resize(map.texelBytes());
-        map.texels = std::move(bytes);
+        map.setPatches(texels);
         return map;
     }
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
-#include <span>
 
 #include "bake/patches/lanes.h"
 

@@ -8,7 +8,6 @@
 #include <limits>
 #include <memory>
 #include <mutex>
-#include <span>
 #include <vector>
 
 #include "bake/mesh/flat_faces.h"

@@ -238,15 +238,7 @@ DepthMap cutPatches(const DepthMap& whole, const glm::uvec3& first, const glm::u
     map.object_per_map = whole.object_per_map;
     map.encloses = whole.encloses;
     map.empty_is_outside = whole.empty_is_outside;
-    const std::vector<PatchRecord> texels = Copier(whole.texels).copy(first, count);
-    map.texels.reserve(texels.size() * texelSize(map.format));
-    for (const PatchRecord& texel : texels) {
-        appendPatchTexel(map.texels, texel);
-    }
-    const PatchMapSize size = patchMapSize(texels.size());
-    map.width = size.width;
-    map.height = size.height;
-    map.texels.resize(map.texelBytes());
+    map.setPatches(Copier(whole.texels).copy(first, count));
     return map;
 }
 

@@ -3,7 +3,6 @@
 
 #include "bake/import/animated_import.h"
 #include "bake/import/mesh_import.h"
-#include "bake/materials/material_tree.h"
 #include "bake/mesh/triangle_plane.h"
 #include "bake/pipeline/stages.h"
 #include "formats/animation/mesh_pose.h"

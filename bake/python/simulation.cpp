@@ -58,8 +58,6 @@ class HeadlessSimulation {
             static_cast<void>(loaded_.release());
         }
     }
-    HeadlessSimulation(const HeadlessSimulation&) = delete;
-    HeadlessSimulation& operator=(const HeadlessSimulation&) = delete;
 
     void step(std::uint32_t count) {
         need(context_->makeCurrent());

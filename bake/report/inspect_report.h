@@ -3,7 +3,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "bake/report/collider_report.h"
 #include "formats/inspect.h"

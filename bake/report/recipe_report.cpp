@@ -8,7 +8,6 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <cstdio>
 #include <numeric>
 #include <span>
 
@@ -21,9 +20,7 @@ namespace relief {
 namespace {
 
 std::string seconds(double ms) {
-    char text[32];
-    std::snprintf(text, sizeof(text), "%.1f s", ms / 1000.0);
-    return text;
+    return formatted("%.1f s", ms / 1000.0);
 }
 
 /// Fails if a file that will be truncated does not start with an event.

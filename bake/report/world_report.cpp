@@ -11,10 +11,6 @@
 namespace relief {
 namespace {
 
-std::string wrongText(const WorldColliderResult& collider) {
-    return collider.wrong ? percentText(collider.wrong->total()) : "-";
-}
-
 std::uint64_t gpuBytesOf(const WorldField& field) {
     std::uint64_t bytes = 0;
     for (const Collider& collider : field.colliders()) {
@@ -78,8 +74,8 @@ std::string worldBakeText(const WorldBakeResult& result, const std::string& fold
     for (const WorldColliderResult& c : result.colliders) {
         rows.push_back({c.mesh + (c.tile.empty() ? "" : " " + c.tile), std::to_string(c.bodies),
                         shortNumber(c.area), shortNumber(c.largest_scale),
-                        c.budget ? bytesText(*c.budget) : "-", bytesText(c.gpu_bytes), wrongText(c),
-                        std::string(wordOf(c.state))});
+                        c.budget ? bytesText(*c.budget) : "-", bytesText(c.gpu_bytes),
+                        c.wrong ? percentText(c.wrong->total()) : "-", std::string(wordOf(c.state))});
     }
     const std::size_t baked = result.countOf(WorldColliderState::kBaked);
     const std::size_t kept = result.countOf(WorldColliderState::kUpToDate);

@@ -4,7 +4,6 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "bake/report/bake_report.h"
 #include "bake/report/collider_report.h"

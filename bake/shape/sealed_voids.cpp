@@ -12,7 +12,6 @@
 #include <numeric>
 #include <utility>
 
-#include "bake/mesh/mersenne.h"
 #include "bake/mesh/mesh_query.h"
 #include "bake/mesh/surface_parts.h"
 #include "bake/mesh/surface_sampler.h"

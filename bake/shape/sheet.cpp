@@ -8,8 +8,6 @@
 #include <span>
 #include <utility>
 
-#include "bake/repair/hole_caps.h"
-
 namespace relief {
 namespace {
 

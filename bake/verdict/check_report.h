@@ -6,7 +6,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "bake/measure/accuracy.h"
 #include "bake/measure/depth_proof.h"

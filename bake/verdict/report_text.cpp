@@ -2,7 +2,6 @@
 #include "bake/verdict/report_text.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "bake/maps/budget_search.h"
 #include "bake/measure/patch_cells.h"
@@ -10,12 +9,6 @@
 
 namespace relief {
 namespace {
-
-std::string formatted(const char* format, double value) {
-    char text[32];
-    std::snprintf(text, sizeof(text), format, value);
-    return text;
-}
 
 /// Three digits, without an exponent: 1800, not 1.8e+03.
 std::string length(float value) {

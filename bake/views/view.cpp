@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "bake/mesh/mesh_query.h"
+#include "formats/base/finite.h"
 #include "formats/patch_tree.h"
 
 namespace relief {
@@ -125,18 +126,6 @@ void placeCube(View& view, const MapSpec& spec, const TriangleMesh& mesh) {
     // kLess is for a centre in free space; kGreater looks inwards from the surface of the volume.
     view.starts_free[0] = true;
     view.starts_free[1] = view.encloses;
-}
-
-bool isFinite(const View& view) {
-    for (int i = 0; i < 3; ++i) {
-        const glm::vec4& row = view.object_to_map.row[i];
-        const bool finite = std::isfinite(row.x) && std::isfinite(row.y) && std::isfinite(row.z) &&
-                            std::isfinite(row.w) && std::isfinite(view.object_per_map[i]);
-        if (!finite || !(view.object_per_map[i] > 0.0F)) {
-            return false;
-        }
-    }
-    return true;
 }
 
 }  // namespace
@@ -276,7 +265,9 @@ Result<View> makeView(const MapSpec& spec, const TriangleMesh& mesh) {
     } else {
         placeOrthographic(view, spec, mesh);
     }
-    if (!isFinite(view)) {
+    const glm::vec3& units = view.object_per_map;
+    if (!view.object_to_map.isFinite() || !isFinite(units) ||
+        !(std::min({units.x, units.y, units.z}) > 0.0F)) {
         return fail(ErrorCode::kUsage,
                     "--map '" + toString(spec) +
                         "': the volume is too small or too large for floats; change box or center");

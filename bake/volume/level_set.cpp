@@ -8,7 +8,6 @@
 #include <cmath>
 #include <functional>
 #include <glm/vector_relational.hpp>
-#include <limits>
 #include <new>
 #include <numbers>
 #include <string>

@@ -10,7 +10,6 @@
 #include "bake/world/coarse_collider.h"
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
-#include "formats/base/text.h"
 #include "formats/container.h"
 
 namespace relief {

@@ -3,7 +3,6 @@
 #include <array>
 #include <utility>
 
-#include "bake/pipeline/bake.h"
 #include "bake/world/world_bake.h"
 
 namespace relief {

@@ -29,11 +29,6 @@ Result<void> atMost(const char* list, std::size_t count, std::size_t most) {
                                        " entries; at most " + std::to_string(most) + " are allowed");
 }
 
-bool hasNumbers(const Affine& affine) {
-    return std::all_of(std::begin(affine.row), std::end(affine.row),
-                       [](const glm::vec4& row) { return isFinite(glm::vec3(row)) && std::isfinite(row.w); });
-}
-
 bool areFinite(const std::vector<float>& numbers) {
     return std::all_of(numbers.begin(), numbers.end(), [](float number) { return std::isfinite(number); });
 }
@@ -150,7 +145,7 @@ Result<void> checkNodes(const AnimatedMesh& mesh) {
         const double length = std::sqrt(double{glm::dot(node.rotation, node.rotation)});
         if (!isFinite(node.translation) || !isFinite(node.scale) ||
             !(std::abs(length - 1.0) <= double{kUnitTolerance}) ||
-            (node.matrix && !hasNumbers(*node.matrix))) {
+            (node.matrix && !node.matrix->isFinite())) {
             return wrong("nodes", i,
                          "has a transform that is not finite, or whose rotation is not a unit quaternion");
         }
@@ -165,7 +160,7 @@ Result<void> checkNodes(const AnimatedMesh& mesh) {
 Result<void> checkJoints(const AnimatedMesh& mesh) {
     RELIEF_TRY(atMost("joints", mesh.joints.size(), kMeshJointsMax));
     for (std::size_t i = 0; i < mesh.joints.size(); ++i) {
-        if (mesh.joints[i].node >= mesh.nodes.size() || !hasNumbers(mesh.joints[i].bind)) {
+        if (mesh.joints[i].node >= mesh.nodes.size() || !mesh.joints[i].bind.isFinite()) {
             return wrong("joints", i, "refers to a missing node, or has a transform that is not finite");
         }
     }

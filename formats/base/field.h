@@ -38,7 +38,6 @@
 #include <type_traits>
 #include <utility>
 #include <variant>
-#include <vector>
 
 #include "formats/base/enum_words.h"
 #include "formats/base/field_type.h"

@@ -11,4 +11,9 @@ namespace relief {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
+/// Returns whether a number is from 0 to 1; false for NaN.
+[[nodiscard]] inline bool isFraction(float value) {
+    return value >= 0.0F && value <= 1.0F;
+}
+
 }  // namespace relief

@@ -20,4 +20,8 @@ std::string xxh3_128Hex(std::span<const std::byte> bytes) {
     return text;
 }
 
+bool isHash(std::string_view text) {
+    return text.size() == 32 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
 }  // namespace relief

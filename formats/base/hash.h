@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace relief {
 
@@ -13,5 +14,7 @@ namespace relief {
 
 /// Returns XXH3-128 as 32 lower-case hexadecimal digits, high half first, as `xxhsum -H2` prints it.
 [[nodiscard]] std::string xxh3_128Hex(std::span<const std::byte> bytes);
+/// Returns whether a text is 32 lower-case hexadecimal digits.
+[[nodiscard]] bool isHash(std::string_view text);
 
 }  // namespace relief

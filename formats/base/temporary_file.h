@@ -16,9 +16,6 @@ namespace relief {
 /// remove it unless it was renamed. After SIGKILL or a power failure it remains until removeLeftovers().
 class TemporaryFile {
   public:
-    TemporaryFile() = default;
-    TemporaryFile(const TemporaryFile&) = delete;
-    TemporaryFile& operator=(const TemporaryFile&) = delete;
     ~TemporaryFile();
 
     /// create(), fill() and renameTo() return 0 or an errno.

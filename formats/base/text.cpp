@@ -6,6 +6,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <limits>
 #include <numeric>
@@ -120,6 +121,12 @@ std::string shortest(float value) {
 
 std::string shortest(const glm::vec3& value) {
     return shortest(value.x) + '/' + shortest(value.y) + '/' + shortest(value.z);
+}
+
+std::string formatted(const char* format, double value) {
+    char text[64];
+    std::snprintf(text, sizeof(text), format, value);
+    return text;
 }
 
 std::optional<float> parseFloat(std::string_view text) {

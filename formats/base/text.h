@@ -20,6 +20,10 @@ void appendShortest(std::string& out, float value);
 /// Joins the components with '/': "0.1/2/3".
 [[nodiscard]] std::string shortest(const glm::vec3& value);
 
+/// Formats a number like printf, with the decimal point of the locale; truncates to 63 characters.
+/// \param format  with one conversion, of a double
+[[nodiscard, gnu::format(printf, 1, 0)]] std::string formatted(const char* format, double value);
+
 /// Parses the whole text as a finite float, otherwise returns nullopt. Accepts a leading '+'; values that are too small
 /// become 0.
 [[nodiscard]] std::optional<float> parseFloat(std::string_view text);

@@ -6,7 +6,6 @@
 #include <bit>
 #include <cstring>
 #include <glm/vector_relational.hpp>
-#include <string>
 
 #include "formats/base/file_io.h"
 #include "formats/base/finite.h"

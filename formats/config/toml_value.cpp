@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/config/toml_value.h"
 
-#include <cstdio>
 #include <exception>
 
 #include "formats/base/file_io.h"
@@ -46,9 +45,7 @@ Result<void> caught(const TomlFile& file, const std::function<void()>& read) {
 }  // namespace
 
 std::string numberText(double value) {
-    char text[40];
-    std::snprintf(text, sizeof(text), "%.9g", value);
-    return text;
+    return formatted("%.9g", value);
 }
 
 std::string oneLine(std::string_view text) {

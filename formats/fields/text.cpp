@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cstdio>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -49,9 +48,7 @@ std::string expectedOneOfMessage(std::string_view word, std::span<const std::str
 
 std::string bytesWord(std::uint64_t bytes) {
     const auto scaled = [&](double unit, const char* name) {
-        char text[32];
-        std::snprintf(text, sizeof(text), "%.6g%s", static_cast<double>(bytes) / unit, name);
-        return std::string(text);
+        return formatted("%.6g", static_cast<double>(bytes) / unit) + name;
     };
     const std::string word = bytes >= 1'000'000'000 ? scaled(1e9, "GB")
                              : bytes >= 1'000'000   ? scaled(1e6, "MB")

@@ -32,10 +32,6 @@ std::string placeOf(const char* list, std::size_t i) {
     return std::string(list) + "[" + std::to_string(i) + "]";
 }
 
-bool isHash(const std::string& text) {
-    return text.size() == 32 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
-}
-
 /// \param files  files of the preceding colliders.
 Result<void> checkFile(const WorldFile& file, const std::string& place, std::set<std::string>& files) {
     if (!isHash(file.hash)) {

@@ -8,7 +8,6 @@
 #include "formats/base/stopwatch.h"
 #include "runtime/bench/bench.h"
 #include "runtime/bench/bench_scene.h"
-#include "runtime/bodies/world_bodies.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/particles/random.h"
 #include "runtime/stream/world_stream.h"

@@ -63,10 +63,6 @@ std::vector<Code> placed(const BrickAtlas& atlas, const glm::ivec3& bricks) {
     return texels;
 }
 
-std::uint64_t texelsOf(const glm::ivec3& size) {
-    return std::uint64_t(size.x) * size.y * size.z;
-}
-
 /// Returns the index with the atlas position of each brick.
 std::vector<std::uint32_t> packedIndex(const BrickAtlas& atlas, const glm::uvec3& bricks,
                                        const Packing& packing) {
@@ -104,7 +100,7 @@ void uploadCodes(Rival& rival, const BrickAtlas& atlas, const glm::ivec3& bricks
         texture = makeTexture3D(GL_R16_SNORM, size, GL_RED, GL_SHORT, GL_LINEAR, texels.data());
     }
     rival.textures.push_back({"u_atlas", std::move(texture), true});
-    rival.bytes += texelsOf(size) * atlas.bits / 8;
+    rival.bytes += std::uint64_t(size.x) * size.y * size.z * atlas.bits / 8;
 }
 
 std::function<void(const GlProgram&)> uniformsOf(const BrickAtlas& atlas, const glm::ivec3& bricks,

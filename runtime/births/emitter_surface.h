@@ -12,7 +12,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <span>

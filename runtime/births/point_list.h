@@ -8,7 +8,6 @@
 #include <glm/vec3.hpp>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "formats/base/result.h"
 #include "runtime/particles/emitter.h"

@@ -6,7 +6,6 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <map>
-#include <tuple>
 
 namespace relief {
 namespace {

@@ -42,11 +42,6 @@ BodyBox boxOf(const TableBody& body, std::uint32_t index, float reach) {
             reach + kSlack * std::max({far.x, far.y, far.z}), index, false};
 }
 
-bool contains(const Bounds& outer, const Bounds& inner) {
-    return glm::all(glm::lessThanEqual(outer.min, inner.min)) &&
-           glm::all(glm::greaterThanEqual(outer.max, inner.max));
-}
-
 Bounds unionOf(Bounds box, const Bounds& other) {
     box.add(other.min);
     box.add(other.max);
@@ -247,7 +242,8 @@ bool BodyTable::setMap(std::uint32_t first_map, const BlockMap& map, const std::
             std::memcpy(&words_[kWorldMapTexels * i], &own, sizeof(own));
             changes_.push_back({kWorldMapTexels * i, kWorldMapTexels * (i + 1)});
         }
-        if (body.box && !(box && contains(*body.box, *box))) {
+        if (body.box && !(box && glm::all(glm::lessThanEqual(body.box->min, box->min)) &&
+                          glm::all(glm::greaterThanEqual(body.box->max, box->max)))) {
             body.box = box ? std::optional(unionOf(*body.box, *box)) : std::nullopt;
             larger = true;
         }

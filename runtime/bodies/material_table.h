@@ -2,7 +2,6 @@
 // Encodes the materials of bodies as texels of the texture that shaders/bodies/materials.glsl reads. Independent of GL.
 #pragma once
 
-#include <cstdint>
 #include <glm/vec4.hpp>
 #include <span>
 #include <string>

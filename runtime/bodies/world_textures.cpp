@@ -49,7 +49,6 @@ Result<WorldTextures> WorldTextures::create(std::span<const ColliderBody> bodies
         return fail(ErrorCode::kLimit, std::to_string(bodies.size()) + " bodies exceed the limit of " +
                                            std::to_string(kBodiesMax) + "; merge some of them in one bake");
     }
-    const auto isFraction = [](float value) { return value >= 0.0F && value <= 1.0F; };
     std::vector<PlacedMap> maps;
     std::vector<TableBody> placed;
     std::vector<const Materials*> materials;

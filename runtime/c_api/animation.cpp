@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "formats/base/text.h"
-#include "runtime/bodies/world_bodies.h"
 #include "runtime/c_api/objects.h"
 
 using namespace relief;  // NOLINT: the C functions are outside of it

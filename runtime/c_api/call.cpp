@@ -2,18 +2,16 @@
 #include "runtime/c_api/call.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <mutex>
 
+#include "formats/base/text.h"
 #include "runtime/gl/gl_fault.h"
 
 namespace relief {
 namespace {
 
 std::string numberText(double value) {
-    char text[40];
-    std::snprintf(text, sizeof(text), "%.9g", value);
-    return text;
+    return formatted("%.9g", value);
 }
 
 /// In the order of HandleKind.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <array>
 #include <memory>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>

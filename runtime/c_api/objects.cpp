@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "runtime/gl/gl_functions.h"
-#include "runtime/gl/gl_object.h"
 #include "shaders/shader_text.h"
 
 namespace relief {

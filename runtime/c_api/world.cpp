@@ -2,15 +2,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "formats/base/text.h"
 #include "runtime/bodies/world_bodies.h"
 #include "runtime/c_api/objects.h"
-#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/gl_object.h"
 #include "runtime/picture/collider_view.h"
 

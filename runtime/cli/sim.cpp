@@ -106,11 +106,6 @@ void addSimulation(CLI::App& app, SimCommand& command) {
         "compute if the GPU supports it)");
 }
 
-void addLimits(CLI::App& app, PlayerOptions& player) {
-    addFields(app, player.gpu);  // --device, --gpu-timeout
-    addMemoryOption(app, player.overrides.limits);
-}
-
 /// Rejects combinations of options that have no effect.
 Result<void> checkTogether(const SimCommand& command) {
     const PlayerOptions& player = command.player;
@@ -212,7 +207,8 @@ void defineSim(CLI::App& app, SimCommand& command) {
             "Print no progress and no summary; errors and the output of --json remain");
     addFrames(app, command);
     addSimulation(app, command);
-    addLimits(app, command.player);
+    addFields(app, command.player.gpu);  // --device, --gpu-timeout
+    addMemoryOption(app, command.player.overrides.limits);
     groupOptions(
         app, {{"Options", {"--help", "--version"}},
               {"Output",

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -14,6 +13,7 @@
 #include <utility>
 
 #include "formats/base/temporary_file.h"
+#include "formats/base/text.h"
 #include "runtime/command_line/command_line.h"
 
 namespace relief {
@@ -27,9 +27,7 @@ constexpr auto kInterval = std::chrono::milliseconds(100);
 constexpr double kUnknown = -1.0;  // progress of the stage
 
 std::string secondsText(double seconds) {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.3g s", seconds);
-    return text.data();
+    return formatted("%.3g s", seconds);
 }
 
 double secondsSince(Clock::time_point start) {

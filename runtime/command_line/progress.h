@@ -26,8 +26,6 @@ class Progress {
   public:
     /// Throws std::system_error if it cannot start a thread.
     explicit Progress(ProgressOptions options);
-    Progress(const Progress&) = delete;
-    Progress& operator=(const Progress&) = delete;
     /// Calls finish().
     ~Progress();
 

@@ -2,7 +2,6 @@
 #include "runtime/events/event_list.h"
 
 #include <algorithm>
-#include <glm/glm.hpp>
 #include <string>
 
 #include "runtime/gl/buffer_read.h"

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstring>
 #include <string>
-#include <vector>
 
 #include "formats/base/file_io.h"
 #include "formats/base/result.h"

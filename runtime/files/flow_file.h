@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <glm/vec3.hpp>
 #include <string>
-#include <vector>
 
 #include "formats/base/field.h"
 #include "formats/base/result.h"

@@ -29,8 +29,6 @@ class GlContext {
     [[nodiscard]] static Result<std::unique_ptr<GlContext>> create(const GlContextOptions& options);
     [[nodiscard]] static Result<std::unique_ptr<GlContext>> create(GlApi api = GlApi::kGl33Core);
     ~GlContext();
-    GlContext(const GlContext&) = delete;
-    GlContext& operator=(const GlContext&) = delete;
 
     /// Makes the context current on this thread again.
     /// Errors: kUsage if it is current on another thread.

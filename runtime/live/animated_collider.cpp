@@ -6,7 +6,6 @@
 #include <glm/glm.hpp>
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace relief {
 namespace {

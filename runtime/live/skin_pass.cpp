@@ -2,7 +2,6 @@
 #include "runtime/live/skin_pass.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <glm/glm.hpp>
 #include <string>
 #include <vector>

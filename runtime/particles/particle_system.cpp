@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <string>
 
 #include "formats/base/finite.h"
@@ -25,7 +26,6 @@ constexpr float kNoGround = -1e30F;
 constexpr std::uint32_t kIdMask = kBirthTypeMax;
 
 Result<void> checkTypes(std::span<const ParticleType> types) {
-    const auto isFraction = [](float value) { return value >= 0.0F && value <= 1.0F; };
     const auto finite = [](float value, float low) { return value >= low && std::isfinite(value); };
     for (const ParticleType& type : types) {
         if (!(finite(type.mass, kParticleMassMin) && finite(type.radius, 0.0F) &&

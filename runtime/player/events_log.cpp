@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/player/events_log.h"
-#include "runtime/events/event_recorder.h"
 
 #include <cerrno>
 #include <system_error>

@@ -29,8 +29,6 @@ class Outputs {
     Outputs(const PlayerOptions& options, const LoadedScene& loaded, const WorldTextures& textures)
         : options_(options), loaded_(loaded), textures_(textures) {}
     ~Outputs();
-    Outputs(const Outputs&) = delete;
-    Outputs& operator=(const Outputs&) = delete;
 
     /// Creates renderers, files and folders. Errors: those of ScenePicture and EventsLog; kIo for folders.
     [[nodiscard]] Result<void> open(FileGuard& guard);

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/player/player.h"
-#include "runtime/events/event_recorder.h"
 
 #include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "formats/base/file_io.h"
 #include "formats/base/stopwatch.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/player/outputs.h"

@@ -5,7 +5,6 @@
 #include <system_error>
 
 #include "formats/base/file_io.h"
-#include "formats/container.h"
 #include "runtime/picture/frame.h"
 #include "runtime/scene/scene_meshes.h"
 #include "runtime/scene/scene_pictures.h"

@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "formats/base/result.h"
+#include "formats/base/text.h"
 
 namespace relief {
 namespace {
@@ -46,8 +47,7 @@ Watchdog::~Watchdog() {
 }
 
 void Watchdog::feed(const std::string& what) {
-    char seconds[32];
-    std::snprintf(seconds, sizeof(seconds), "%g", static_cast<double>(limit_.count()) / 1000.0);
+    const std::string seconds = formatted("%g", static_cast<double>(limit_.count()) / 1000.0);
     const std::lock_guard lock(mutex);
     last_line = program_ + ": error: the GPU has not finished " + what + " within " + seconds +
                 " seconds; if it is only slow, raise --gpu-timeout (0: no limit)\n";

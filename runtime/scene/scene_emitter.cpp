@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "formats/base/file_io.h"
 #include "formats/base/result.h"
 
 namespace relief {

@@ -2,7 +2,6 @@
 #include "runtime/scene/scene_stream.h"
 #include "runtime/births/emitter_motion.h"
 
-#include <algorithm>
 #include <glm/geometric.hpp>
 
 #include "runtime/scene/scene_pictures.h"

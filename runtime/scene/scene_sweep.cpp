@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <map>
@@ -14,6 +13,7 @@
 #include <utility>
 
 #include "formats/base/file_io.h"
+#include "formats/base/text.h"
 #include "formats/nearest_surface.h"
 #include "runtime/particles/step_pass.h"
 #include "runtime/scene/scene_emitter.h"
@@ -30,9 +30,7 @@ constexpr int kHalvings = 5;                    // bisections of the last interv
 constexpr std::uint64_t kBirthsSampled = 1000;  // sampled births per emitter
 
 std::string number(double value) {
-    char text[32];
-    std::snprintf(text, sizeof(text), "%.3g", value);
-    return text;
+    return formatted("%.3g", value);
 }
 
 /// Returns the thickness inwards from a point of the surface, underestimated by at most 1/160; nullopt next to an edge.

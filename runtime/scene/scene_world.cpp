@@ -9,7 +9,6 @@
 
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
-#include "runtime/bodies/world_bodies.h"
 
 namespace relief {
 namespace {

@@ -18,8 +18,6 @@ class FileSource : public ColliderSource {
   public:
     FileSource(World world, std::filesystem::path folder, const ContainerLimits& limits)
         : world_(std::move(world)), folder_(std::move(folder)), limits_(limits), thread_([this] { run(); }) {}
-    FileSource(const FileSource&) = delete;
-    FileSource& operator=(const FileSource&) = delete;
 
     ~FileSource() override {
         {

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
-#include <limits>
 #include <span>
 #include <vector>
 

@@ -68,8 +68,6 @@ class WorldStream {
                                                                    const std::filesystem::path& path,
                                                                    const StreamOptions& options = {},
                                                                    const ContainerLimits& limits = {});
-    WorldStream(const WorldStream&) = delete;
-    WorldStream& operator=(const WorldStream&) = delete;
     ~WorldStream();
 
     /// The address of the textures is stable. Set poses with setPoses() below.
