@@ -95,8 +95,12 @@ InsideSample evaluateInside(const Collider& collider, const glm::vec3& p) {
     Vote best;
     InsideSample sample;
     for (std::size_t i = 0; i < collider.maps.size() && best.distance < 0.0F; ++i) {
-        if (const std::optional<Vote> v = vote(collider.maps[i], p);
-            v && replaces(v->distance, best.distance)) {
+        const DepthMap& map = collider.maps[i];
+        if (map.projection() == Projection::kLocal &&
+            isOutsidePatches(map.texels, map.object_to_map.apply(p))) {
+            return {.map = static_cast<int>(i)};
+        }
+        if (const std::optional<Vote> v = vote(map, p); v && replaces(v->distance, best.distance)) {
             best = *v;
             sample.map = static_cast<int>(i);
         }

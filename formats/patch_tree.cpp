@@ -84,10 +84,19 @@ std::uint8_t heightCode(PatchTexels texels, const PatchRecord& patch, std::uint3
     return static_cast<std::uint8_t>((side == 2 || (i & 4U) != 0 ? texel.high : texel.low) >> 8U * (i & 3U));
 }
 
-PatchVote votePatch(PatchTexels texels, const PatchRecord& patch, const glm::vec3& in_cell) {
-    const PatchFrame frame = patch.frame();
+float signOf(const PatchRecord& patch) {
+    return (patch.low & 16U) != 0 ? -1.0F : 1.0F;
+}
+
+/// The height of a patch at a point.
+struct HeightAt {
+    float ahead = 0.0F;  // from the surface to the point, along w of the frame; positive outside
+    float by_u = 0.0F;   // derivatives of the height
+    float by_v = 0.0F;
+};
+HeightAt heightAt(PatchTexels texels, const PatchRecord& patch, const glm::vec3& in_cell) {
     const std::uint32_t side = patch.side();
-    const glm::vec3 at = frame.across(in_cell);
+    const glm::vec3 at = patch.frame().across(in_cell);
     const auto last = static_cast<float>(side - 1);
     const float x = at.x * last;
     const float y = at.y * last;
@@ -106,12 +115,15 @@ PatchVote votePatch(PatchTexels texels, const PatchRecord& patch, const glm::vec
     const float lower = c00 + s * (c10 - c00);
     const float upper = c01 + s * (c11 - c01);
     const float height = heights.low() + step * (lower + t * (upper - lower));
-    const float by_u = (step * last) * ((c10 - c00) + t * ((c11 - c01) - (c10 - c00)));
-    const float by_v = (step * last) * (upper - lower);
-    glm::vec3 gradient = frame.gradient(by_u, by_v);
+    return {signOf(patch) * (at.z - height), (step * last) * ((c10 - c00) + t * ((c11 - c01) - (c10 - c00))),
+            (step * last) * (upper - lower)};
+}
+
+PatchVote votePatch(PatchTexels texels, const PatchRecord& patch, const glm::vec3& in_cell) {
+    const HeightAt surface = heightAt(texels, patch, in_cell);
+    const glm::vec3 gradient = patch.frame().gradient(surface.by_u, surface.by_v);
     const float per_length = 1.0F / std::sqrt(dot(gradient, gradient));
-    const float sign = (patch.low & 16U) != 0 ? -1.0F : 1.0F;
-    return {sign * ((at.z - height) * per_length), (sign * per_length) * gradient};
+    return {surface.ahead * per_length, (signOf(patch) * per_length) * gradient};
 }
 
 /// Returns the height of a code step for each PatchHeights::scale, in ascending order.
@@ -128,11 +140,21 @@ const std::array<float, 256>& stepsOfScales() {
     return kSteps;
 }
 
+/// Whether a point must be behind both surfaces of a pair to be inside; otherwise behind one of them.
+bool isIntersection(const PatchRecord& pair) {
+    return (pair.low & 16U) != 0;
+}
+
 PatchVote votePair(PatchTexels texels, const PatchRecord& pair, const glm::vec3& in_cell) {
     const PatchVote a = votePatch(texels, patchTexel(texels, pair.first()), in_cell);
     const PatchVote b = votePatch(texels, patchTexel(texels, pair.first() + 1), in_cell);
-    const bool both = (pair.low & 16U) != 0;
-    return (both ? b.distance > a.distance : b.distance < a.distance) ? b : a;
+    return (isIntersection(pair) ? b.distance > a.distance : b.distance < a.distance) ? b : a;
+}
+
+/// \param p  map space; NaN is outside.
+bool meetsRoots(PatchTexels texels, const glm::vec3& p) {
+    const glm::vec3 size(patchTreeSize(texels).roots);
+    return p.x >= 0.0F && p.y >= 0.0F && p.z >= 0.0F && p.x < size.x && p.y < size.y && p.z < size.z;
 }
 
 template <class Vec, class Real = typename Vec::value_type>
@@ -347,9 +369,7 @@ PatchLeaf patchLeafAt(PatchTexels texels, const glm::vec3& p) {
 }
 
 std::optional<PatchVote> votePatches(PatchTexels texels, const glm::vec3& p) {
-    const glm::vec3 size(patchTreeSize(texels).roots);
-    // This form treats NaN as outside.
-    if (!(p.x >= 0.0F && p.y >= 0.0F && p.z >= 0.0F && p.x < size.x && p.y < size.y && p.z < size.z)) {
+    if (!meetsRoots(texels, p)) {
         return std::nullopt;
     }
     const PatchLeaf leaf = patchLeafAt(texels, p);
@@ -371,6 +391,25 @@ std::optional<PatchVote> votePatches(PatchTexels texels, const glm::vec3& p) {
         vote.distance = onSide(leaf.inside, distance, leaf.cell * kNearest);
     }
     return vote;
+}
+
+bool isOutsidePatches(PatchTexels texels, const glm::vec3& p) {
+    if (!meetsRoots(texels, p)) {
+        return false;
+    }
+    const PatchLeaf leaf = patchLeafAt(texels, p);
+    const PatchRecord& record = leaf.record;
+    if (record.kind() != PatchRecord::Kind::kPatch) {
+        return !leaf.inside;
+    }
+    const auto ahead = [&](const PatchRecord& patch) {
+        return heightAt(texels, patch, leaf.in_cell).ahead >= 0.0F;
+    };
+    if (!record.isPair()) {
+        return ahead(record);
+    }
+    const bool first = ahead(patchTexel(texels, record.first()));
+    return first == isIntersection(record) ? first : ahead(patchTexel(texels, record.first() + 1));
 }
 
 Result<void> validatePatches(PatchTexels texels) {

@@ -154,7 +154,7 @@ struct PatchLeaf {
     glm::vec3 in_cell{0.0F};  ///< the point in the unit cube of the record's cell
     float cell = 1.0F;        ///< the size of that cell, in root cells
     bool beside = false;      ///< the leaf has no record
-    bool inside = false;      ///< valid if `beside`: the leaf is inside
+    bool inside = false;      ///< valid for a leaf without a patch
 };
 /// \param p  map space, within the roots.
 [[nodiscard]] PatchLeaf patchLeafAt(PatchTexels texels, const glm::vec3& p);
@@ -167,6 +167,10 @@ struct PatchVote {
 /// \param p  map space.
 /// \return nullopt outside the roots.
 [[nodiscard]] std::optional<PatchVote> votePatches(PatchTexels texels, const glm::vec3& p);
+/// Whether the vote at a point is outside. Faster than votePatches(), except in a leaf with a patch.
+/// \param p  map space.
+/// \return false outside the roots.
+[[nodiscard]] bool isOutsidePatches(PatchTexels texels, const glm::vec3& p);
 
 /// Checks that every record refers to texels of the map: split cells to the next free texels, level by level; patches
 /// and pairs to texels after the records of cells. Errors: kInvalidInput.

@@ -83,6 +83,25 @@ TEST(PatchHeights, AreWithinHalfAStep) {
     }
 }
 
+TEST(PatchTree, OutsideIsTheSignOfTheVote) {
+    std::mt19937 random(8);
+    std::uniform_real_distribution<float> anywhere(-0.2F, 4.2F);
+    int outside = 0;
+    int inside = 0;
+    for (int tree = 0; tree < 50; ++tree) {
+        const DepthMap map = randomPatches(random);
+        for (int i = 0; i < 500; ++i) {
+            const glm::vec3 p(anywhere(random), anywhere(random), anywhere(random));
+            const std::optional<PatchVote> vote = votePatches(map.texels, p);
+            ASSERT_EQ(isOutsidePatches(map.texels, p), vote && vote->distance >= 0.0F);
+            outside += vote && vote->distance >= 0.0F ? 1 : 0;
+            inside += vote && vote->distance < 0.0F ? 1 : 0;
+        }
+    }
+    EXPECT_GT(outside, 1000);
+    EXPECT_GT(inside, 1000);
+}
+
 TEST(PatchTree, PlanesAreExactUpToTheirCodes) {
     // Every frame and size stores the plane n·p = 0.5·(n.x + n.y + n.z) through the cell's centre, seen from above.
     for (const PatchFrame& frame : patchFrames()) {
