@@ -109,11 +109,12 @@ class Corner {
 
 class Search {
   public:
-    Search(const Collider& collider, const glm::vec3& p, const FieldSample& sample)
+    Search(const Collider& collider, const glm::vec3& p, const FieldSample& sample, float within)
         : collider_(collider),
           p_(p),
           side_(collider.bounds.longestSide()),
-          sign_(sample.distance < 0.0F ? -1.0F : 1.0F) {
+          sign_(sample.distance < 0.0F ? -1.0F : 1.0F),
+          best_{.distance = within} {
         if (sample.distance < kFarOutside) {
             follow({sign_ * sample.normal, sign_ * sample.distance}, nullptr, NearestSearch::kSteps);
         }
@@ -122,7 +123,7 @@ class Search {
         tilt();
     }
 
-    [[nodiscard]] bool found() const { return best_.distance < kFarOutside; }
+    [[nodiscard]] bool found() const { return best_.map >= 0; }
     [[nodiscard]] float sign() const { return sign_; }
     [[nodiscard]] const SurfaceSample& best() const { return best_; }  ///< its distance is unsigned
 
@@ -280,11 +281,14 @@ class Search {
     }
 
     /// If the vote at P led to no surface, probes rings around P, or around the nearest point of the bounds, until a
-    /// surface is found.
+    /// surface is found. A search with a limit needs no rings: probeAround() starts at the limit.
     void findAny() {
         const glm::vec3 center = clamped(p_);
         if (center != p_) {
             probe(center, true);
+        }
+        if (best_.distance < kFarOutside) {
+            return;
         }
         for (int k = NearestSearch::kFinestRing; k >= 0 && !found(); --k) {
             const float radius = std::ldexp(side_, -k);
@@ -340,7 +344,7 @@ class Search {
     float side_;
     float sign_;
     int left_ = NearestSearch::kEvaluationsMax - 1;
-    SurfaceSample best_;
+    SurfaceSample best_;    // before the first surface, its distance is the limit
     bool settled_ = false;  // a plane confirmed that no point of its surface is nearer
 };
 
@@ -372,19 +376,24 @@ bool canSearch(const Collider& collider, const glm::vec3& p) {
 
 }  // namespace
 
-SurfaceSample nearestSurface(const Collider& collider, const glm::vec3& p) {
+SurfaceSample nearestSurface(const Collider& collider, const glm::vec3& p, float within) {
     const FieldSample sample = evaluate(collider, p);
     if (sample.map < 0) {
         return {.point = p};
     }
     SurfaceSample nearest = fromVote(p, sample);
+    bool near = std::abs(nearest.distance) < within;
     if (canSearch(collider, p)) {
-        const Search search(collider, p, sample);
-        if (search.found()) {
+        const Search search(collider, p, sample, within);
+        near = search.found();
+        if (near) {
             nearest = search.best();
             // A distance of 0 has no sign.
             nearest.distance = search.sign() * std::max(nearest.distance, NearestSearch::kDistanceMin);
         }
+    }
+    if (!near && within < kFarOutside) {
+        return {.point = p};
     }
     nearest.normal = unit(nearest.normal);
     return nearest;

@@ -72,7 +72,10 @@ struct NearestSearch {
 ///
 /// \param p  object space; any finite point. The result is that of evaluate() if a coordinate of P or of the bounds
 /// exceeds 10¹⁵ in magnitude, or if the bounds' longest side is below 10⁻¹².
+/// \param within  object units, above 0. The search ignores surfaces at this distance or beyond, and is faster the
+/// smaller it is. If it finds no nearer surface, `distance` is kFarOutside and `map` is −1, even if P is inside.
 /// \return finite for all map contents.
-[[nodiscard]] SurfaceSample nearestSurface(const Collider& collider, const glm::vec3& p);
+[[nodiscard]] SurfaceSample nearestSurface(const Collider& collider, const glm::vec3& p,
+                                           float within = kFarOutside);
 
 }  // namespace relief
