@@ -3,8 +3,10 @@
 #include "runtime/births/emitter_motion.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/glm.hpp>
+#include <map>
 
 #include "formats/nearest_surface.h"
 
@@ -33,7 +35,7 @@ TouchFilter::TouchFilter(const LoadedScene& loaded, const SceneEmitter& emitter)
         const bool own = emitter.attach && wholeOf(scene, *emitter.attach) == wholeOf(scene, i);
         if (!own && !body.deforms()) {
             const Bounds box = worldBounds(body, loaded.colliders[i]->bounds);
-            bodies_.push_back({i, grown(box, touching_.within + kRoom * box.longestSide())});
+            bodies_.push_back({i, grown(box, kRoom * box.longestSide())});
         }
     }
 }
@@ -46,32 +48,46 @@ std::vector<bool> TouchFilter::operator()(std::span<const Birth> births,
     }
     std::vector<Body> near;
     std::copy_if(bodies_.begin(), bodies_.end(), std::back_inserter(near),
-                 [&](const Body& body) { return body.box.meets(all); });
+                 [&](const Body& body) { return grown(body.box, touching_.within).meets(all); });
     const bool all_rest = std::all_of(near.begin(), near.end(), [&](const Body& body) {
         return loaded_->scene.colliders[body.index].keys.empty();
     });
+    // Most births are far from everything. Among bodies at rest, one search finds this for a whole cell of a grid.
+    const float cell = 2.0F * touching_.within;
+    const float reach = touching_.within + std::sqrt(0.75F) * cell;
+    std::map<std::array<float, 3>, bool> cells;
+    const auto mayTouch = [&](const glm::vec3& p) {
+        const glm::vec3 low = glm::floor(p / cell);
+        const auto [at, is_new] = cells.try_emplace({low.x, low.y, low.z});
+        if (is_new) {
+            at->second = nearest(cell * (low + 0.5F), time, near, reach).has_value();
+        }
+        return at->second;
+    };
     std::vector<bool> touching;
     for (std::size_t i = 0; i < births.size(); ++i) {
+        const glm::vec3& p = births[i].position;
         const double moment = time - static_cast<double>(births[i].age);
-        const bool too_slow = all_rest && glm::length(velocities[i]) < touching_.min_speed;
-        touching.push_back(!too_slow && touches(births[i].position, velocities[i], moment, near));
+        const bool hopeless = all_rest && (glm::length(velocities[i]) < touching_.min_speed || !mayTouch(p));
+        touching.push_back(!hopeless && touches(p, velocities[i], moment, near));
     }
     return touching;
 }
 
 std::optional<TouchFilter::Touched> TouchFilter::touchedOf(const Body& body, const glm::vec3& p,
                                                            double moment, float within) const {
-    if (!body.box.contains(p)) {
+    if (!grown(body.box, within).contains(p)) {
         return std::nullopt;
     }
     const SceneCollider& placed = loaded_->scene.colliders[body.index];
     const Collider& shape = *loaded_->colliders[body.index];
     const Pose pose = poseAt(placed, moment);
     const glm::vec3 q = toObject(pose, p);
-    if (!grown(shape.bounds, within / pose.scale).contains(q)) {
+    const float reach = within / pose.scale;
+    if (!grown(shape.bounds, reach).contains(q)) {
         return std::nullopt;
     }
-    const SurfaceSample at = nearestSurface(shape, q);
+    const SurfaceSample at = nearestSurface(shape, q, reach);
     const float distance = pose.scale * std::abs(at.distance);
     if (at.map < 0 || !(distance < within)) {
         return std::nullopt;
@@ -84,10 +100,9 @@ std::optional<TouchFilter::Touched> TouchFilter::touchedOf(const Body& body, con
         motion.velocity + glm::cross(motion.turn, p - pose.position)};
 }
 
-bool TouchFilter::touches(const glm::vec3& p, const glm::vec3& velocity, double moment,
-                          std::span<const Body> near) const {
+std::optional<TouchFilter::Touched> TouchFilter::nearest(const glm::vec3& p, double moment,
+                                                         std::span<const Body> near, float within) const {
     std::optional<Touched> nearest;
-    float within = touching_.within;
     const auto offer = [&](const std::optional<Touched>& one) {
         if (one && one->distance < within) {
             within = one->distance;
@@ -101,10 +116,16 @@ bool TouchFilter::touches(const glm::vec3& p, const glm::vec3& velocity, double 
     if (ground.enabled && ground.height) {
         offer(Touched{std::abs(p.y - *ground.height), {}, glm::vec3(0.0F)});
     }
+    return nearest;
+}
+
+bool TouchFilter::touches(const glm::vec3& p, const glm::vec3& velocity, double moment,
+                          std::span<const Body> near) const {
+    const std::optional<Touched> touched = nearest(p, moment, near, touching_.within);
     const std::vector<std::string>& names = touching_.materials;
-    return nearest &&
-           (names.empty() || std::find(names.begin(), names.end(), nearest->material) != names.end()) &&
-           glm::length(velocity - nearest->velocity) >= touching_.min_speed;
+    return touched &&
+           (names.empty() || std::find(names.begin(), names.end(), touched->material) != names.end()) &&
+           glm::length(velocity - touched->velocity) >= touching_.min_speed;
 }
 
 std::vector<EmitterMotion> emitterMotions(const LoadedScene& loaded) {
