@@ -54,6 +54,13 @@ struct Unit {
     GLint texture_2d, texture_3d, sampler;
 };
 
+/// The PassStates of this thread.
+struct Open {
+    int sequences = 0;
+    int passes = 0;
+};
+thread_local Open open;
+
 void set(GLenum name, bool on) {
     if (on) {
         glEnable(name);
@@ -87,56 +94,79 @@ struct PassState::Saved {
     std::array<GLboolean, 4> color_mask;
     std::array<GLfloat, 4> clear_color;
     GLint polygon_mode, point_origin;
+
+    explicit Saved(bool gles);
 };
 
-PassState::PassState() : saved_(std::make_unique<Saved>()) {
-    Saved& s = *saved_;
-    const bool gles = isGles();
-    glGetIntegerv(GL_CURRENT_PROGRAM, &s.program);
-    glGetIntegerv(GL_VERTEX_ARRAY_BINDING, &s.vertex_array);
-    glGetIntegerv(GL_ARRAY_BUFFER_BINDING, &s.array_buffer);
-    glGetIntegerv(GL_UNIFORM_BUFFER_BINDING, &s.uniform_buffer);
-    glGetIntegerv(GL_PIXEL_PACK_BUFFER_BINDING, &s.pack_buffer);
-    glGetIntegerv(GL_PIXEL_UNPACK_BUFFER_BINDING, &s.unpack_buffer);
-    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &s.draw_framebuffer);
-    glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &s.read_framebuffer);
-    glGetIntegerv(GL_VIEWPORT, s.viewport.data());
-    glGetIntegerv(GL_SCISSOR_BOX, s.scissor.data());
-    glGetIntegerv(GL_ACTIVE_TEXTURE, &s.active_texture);
-    for (GLuint i = 0; i < s.units.size(); ++i) {
+PassState::Saved::Saved(bool gles) {
+    glGetIntegerv(GL_CURRENT_PROGRAM, &program);
+    glGetIntegerv(GL_VERTEX_ARRAY_BINDING, &vertex_array);
+    glGetIntegerv(GL_ARRAY_BUFFER_BINDING, &array_buffer);
+    glGetIntegerv(GL_UNIFORM_BUFFER_BINDING, &uniform_buffer);
+    glGetIntegerv(GL_PIXEL_PACK_BUFFER_BINDING, &pack_buffer);
+    glGetIntegerv(GL_PIXEL_UNPACK_BUFFER_BINDING, &unpack_buffer);
+    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &draw_framebuffer);
+    glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &read_framebuffer);
+    glGetIntegerv(GL_VIEWPORT, viewport.data());
+    glGetIntegerv(GL_SCISSOR_BOX, scissor.data());
+    glGetIntegerv(GL_ACTIVE_TEXTURE, &active_texture);
+    for (GLuint i = 0; i < units.size(); ++i) {
         glActiveTexture(GL_TEXTURE0 + i);
-        glGetIntegerv(GL_TEXTURE_BINDING_2D, &s.units[i].texture_2d);
-        glGetIntegerv(GL_TEXTURE_BINDING_3D, &s.units[i].texture_3d);
-        glGetIntegerv(GL_SAMPLER_BINDING, &s.units[i].sampler);
-        glBindSampler(i, 0);
+        glGetIntegerv(GL_TEXTURE_BINDING_2D, &units[i].texture_2d);
+        glGetIntegerv(GL_TEXTURE_BINDING_3D, &units[i].texture_3d);
+        glGetIntegerv(GL_SAMPLER_BINDING, &units[i].sampler);
     }
-    glActiveTexture(static_cast<GLenum>(s.active_texture));
-    for (std::size_t i = 0; i < s.switches.size(); ++i) {
+    glActiveTexture(static_cast<GLenum>(active_texture));
+    for (std::size_t i = 0; i < switches.size(); ++i) {
         if (supported(kSwitches[i], gles)) {
-            s.switches[i] = glIsEnabled(kSwitches[i].name);
-            set(kSwitches[i].name, kSwitches[i].wanted);
+            switches[i] = glIsEnabled(kSwitches[i].name);
         }
     }
-    for (std::size_t i = 0; i < s.pixel_stores.size(); ++i) {
-        glGetIntegerv(kPixelStores[i].name, &s.pixel_stores[i]);
-        glPixelStorei(kPixelStores[i].name, kPixelStores[i].wanted);
+    for (std::size_t i = 0; i < pixel_stores.size(); ++i) {
+        glGetIntegerv(kPixelStores[i].name, &pixel_stores[i]);
     }
-    glGetIntegerv(GL_BLEND_SRC_RGB, &s.blend_source_rgb);
-    glGetIntegerv(GL_BLEND_DST_RGB, &s.blend_destination_rgb);
-    glGetIntegerv(GL_BLEND_SRC_ALPHA, &s.blend_source_alpha);
-    glGetIntegerv(GL_BLEND_DST_ALPHA, &s.blend_destination_alpha);
-    glGetIntegerv(GL_BLEND_EQUATION_RGB, &s.blend_equation_rgb);
-    glGetIntegerv(GL_BLEND_EQUATION_ALPHA, &s.blend_equation_alpha);
-    glGetIntegerv(GL_DEPTH_FUNC, &s.depth_function);
-    glGetBooleanv(GL_DEPTH_WRITEMASK, &s.depth_mask);
-    glGetBooleanv(GL_COLOR_WRITEMASK, s.color_mask.data());
-    glGetFloatv(GL_COLOR_CLEAR_VALUE, s.clear_color.data());
+    glGetIntegerv(GL_BLEND_SRC_RGB, &blend_source_rgb);
+    glGetIntegerv(GL_BLEND_DST_RGB, &blend_destination_rgb);
+    glGetIntegerv(GL_BLEND_SRC_ALPHA, &blend_source_alpha);
+    glGetIntegerv(GL_BLEND_DST_ALPHA, &blend_destination_alpha);
+    glGetIntegerv(GL_BLEND_EQUATION_RGB, &blend_equation_rgb);
+    glGetIntegerv(GL_BLEND_EQUATION_ALPHA, &blend_equation_alpha);
+    glGetIntegerv(GL_DEPTH_FUNC, &depth_function);
+    glGetBooleanv(GL_DEPTH_WRITEMASK, &depth_mask);
+    glGetBooleanv(GL_COLOR_WRITEMASK, color_mask.data());
+    glGetFloatv(GL_COLOR_CLEAR_VALUE, clear_color.data());
     if (!gles) {
         GLint modes[2] = {};  // some drivers return front and back modes in compatibility contexts
         glGetIntegerv(GL_POLYGON_MODE, modes);
-        s.polygon_mode = modes[0];
+        polygon_mode = modes[0];
+        glGetIntegerv(GL_POINT_SPRITE_COORD_ORIGIN, &point_origin);
+    }
+}
+
+PassState::PassState(Scope scope) : scope_(scope) {
+    const bool gles = isGles();
+    if (scope == Scope::kSequence) {
+        saved_ = std::make_unique<Saved>(gles);
+        ++open.sequences;
+        return;
+    }
+    if (open.sequences == 0 || open.passes > 0) {
+        saved_ = std::make_unique<Saved>(gles);
+    }
+    ++open.passes;
+    for (GLuint i = 0; i < kUnits; ++i) {
+        glBindSampler(i, 0);
+    }
+    for (const Switch& one : kSwitches) {
+        if (supported(one, gles)) {
+            set(one.name, one.wanted);
+        }
+    }
+    for (const PixelStore& one : kPixelStores) {
+        glPixelStorei(one.name, one.wanted);
+    }
+    if (!gles) {
         glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
-        glGetIntegerv(GL_POINT_SPRITE_COORD_ORIGIN, &s.point_origin);
         glPointParameteri(GL_POINT_SPRITE_COORD_ORIGIN, GL_UPPER_LEFT);
     }
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
@@ -146,6 +176,10 @@ PassState::PassState() : saved_(std::make_unique<Saved>()) {
 }
 
 PassState::~PassState() {
+    --(scope_ == Scope::kSequence ? open.sequences : open.passes);
+    if (!saved_) {
+        return;
+    }
     const Saved& s = *saved_;
     const bool gles = isGles();
     const auto name = [](GLint value) { return static_cast<GLuint>(value); };

@@ -17,14 +17,22 @@ namespace relief {
 class PassState {
   public:
     static constexpr int kUnits = 11;
-    PassState();
+    enum class Scope {
+        kPass,
+        /// Saves and restores the state once for all passes of this thread until its end, because queries are slow: a
+        /// pass in a sequence sets the state that it requires, but does not restore anything. A pass within a pass
+        /// still restores the state of the outer pass.
+        kSequence,
+    };
+    explicit PassState(Scope scope = Scope::kPass);
     ~PassState();
     PassState(const PassState&) = delete;
     PassState& operator=(const PassState&) = delete;
 
   private:
     struct Saved;
-    std::unique_ptr<Saved> saved_;
+    Scope scope_;
+    std::unique_ptr<Saved> saved_;  // null if a sequence restores the state
 };
 
 }  // namespace relief

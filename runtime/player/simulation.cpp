@@ -14,6 +14,7 @@
 #include "formats/base/file_io.h"
 #include "formats/base/result.h"
 #include "runtime/gl/gl_fault.h"
+#include "runtime/gl/pass_state.h"
 #include "runtime/scene/scene_stream.h"
 #include "runtime/scene/scene_touch.h"
 
@@ -161,6 +162,7 @@ Result<void> Simulation::step(float dt) {
 Result<void> Simulation::stepAs(std::uint64_t tag, float dt) {
     RELIEF_TRY(takeEvents(kStepsUnderWay));
     RELIEF_TRY(emitBirths(dt));
+    const PassState state(PassState::Scope::kSequence);
     RELIEF_TRY(moveColliders(particles_->time() + static_cast<double>(dt)));
     RELIEF_TRY(stream());
     RELIEF_TRY(particles_->setSweep(sweep_.lengthFor(dt, *scene_, warnings_)));

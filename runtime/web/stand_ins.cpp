@@ -49,10 +49,10 @@ bool gpuWasReset() {
     return relief_js_is_lost() != 0;
 }
 
-// The page's textures and buffers have no GL names in this module, so pass_state.js saves the state.
+// The page's textures and buffers have no GL names in this module, so pass_state.js saves the state. A sequence is a pass.
 struct PassState::Saved {};
 
-PassState::PassState() {
+PassState::PassState(Scope scope) : scope_(scope) {
     relief_js_save_state(kUnits);
 }
 
