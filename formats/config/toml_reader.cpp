@@ -268,9 +268,9 @@ void readValue(const TomlValue& from, FieldRef value, const FieldInfo& info) {
             readValue(from, value.as<FieldMaybe>().value, info);
             value.as<FieldMaybe>().given = true;
             return;
-        case FieldForm::kFile:
-            value.as<FieldFile>().path = from.path();
-            value.as<FieldFile>().place = from.place();
+        case FieldForm::kPlaced:
+            readValue(from, value.as<FieldPlaced>().value, info);
+            value.as<FieldPlaced>().place = from.place();
             return;
         case FieldForm::kOptional:
             return readValue(from, value.add(), info);
@@ -286,6 +286,9 @@ void readValue(const TomlValue& from, FieldRef value, const FieldInfo& info) {
             return;
         case FieldForm::kString:
             value.as<std::string>() = from.text();
+            return;
+        case FieldForm::kPath:
+            value.as<std::filesystem::path>() = from.path();
             return;
         case FieldForm::kVector:
         case FieldForm::kArray:
