@@ -178,7 +178,8 @@ void readNumber(const TomlValue& from, FieldRef value, const FieldInfo& info) {
     value.setReal(value.type().size == sizeof(float) ? double{narrowed<float>(number, info.range)}
                                                      : narrowed<double>(number, info.range));
     if (info.rules.not_zero && value.number() == 0.0) {
-        from.fail(from.name() + " has no effect if it is 0; raise it or remove it");
+        from.fail(from.name() + " has no effect if it is 0; use another number, or remove " +
+                  (info.rules.required ? "the table" : "it"));
     }
 }
 

@@ -28,6 +28,13 @@ void fields(FieldVisitor& visit, Part& part) {
     visit("weight", part.weight, {"Weight", "kg", {0.0, 10.0, false}, {}, {.required = true}});
 }
 
+struct Pull {
+    float strength = 1.0F;
+};
+void fields(FieldVisitor& visit, Pull& pull) {
+    visit("strength", pull.strength, {"Strength", {}, {}, {}, {.required = true, .not_zero = true}});
+}
+
 struct Thing {
     Form form = Form::kBall;
     float radius = 1.0F;
@@ -45,6 +52,7 @@ struct Thing {
     std::string origin;
     std::string name;
     std::string name_origin;
+    std::optional<Pull> pull;
 };
 void fields(FieldVisitor& visit, Thing& t) {
     visit("form", t.form, {"Form", {}, {}, {}, {.selects = true}});
@@ -59,6 +67,7 @@ void fields(FieldVisitor& visit, Thing& t) {
     visit("heavy", t.heavy, {"The heaviest", {}, {}, {}, {.instead_of = "count", .index_of = "part"}});
     visit("file", FieldPlaced{t.file, t.origin}, {"File"});
     visit("name", FieldPlaced{t.name, t.name_origin}, {"Name"});
+    visit("pull", t.pull, {"Pull"});
 }
 std::optional<FieldFault> check(Thing& thing, const GivenFields& given) {
     if (given("part[1].weight") && thing.parts[1].weight > thing.parts[0].weight) {
@@ -115,7 +124,9 @@ TEST(TomlReader, Errors) {
     EXPECT_EQ(error("speed = 1\n"),
               "f.toml:1:9: speed has no effect without axis; add axis, or remove speed");
     EXPECT_EQ(error("axis = [1, 0, 0]\nspeed = 0\n"),
-              "f.toml:2:9: speed has no effect if it is 0; raise it or remove it");
+              "f.toml:2:9: speed has no effect if it is 0; use another number, or remove it");
+    EXPECT_EQ(error("pull = { strength = -1e-60 }\n"),
+              "f.toml:1:21: pull.strength has no effect if it is 0; use another number, or remove the table");
     EXPECT_EQ(error("axis = [0, 0, 0]\n"),
               "f.toml:1:8: axis has no direction; use a nonzero vector such as [0, 1, 0]");
     EXPECT_EQ(error("heavy = 0\ncount = 1\n"), "f.toml:1:9: heavy and count exclude each other; remove one");
