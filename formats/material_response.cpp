@@ -60,7 +60,7 @@ std::optional<std::string> MaterialResponses::faultOf(const std::string& name) c
 }
 
 void fields(FieldVisitor& visit, MaterialResponse& response) {
-    visit("name", response.name,
+    visit("name", FieldPlaced{response.name, response.origin.text},
           {.help = "Name of a material of the colliders, as in relief info", .rules = kRequired});
     visit("restitution", response.restitution,
           leftOut({.help = "Multiplies the restitution of particles and colliders",

@@ -20,7 +20,7 @@ struct MaterialResponse {
     std::optional<float> restitution;  ///< nullopt: unchanged; likewise the next two
     std::optional<float> friction;
     std::optional<float> lifetime_loss;
-    SourcePlace place{};  ///< set for scenes
+    SourcePlace origin{};  ///< of the name; set for scenes
 
     friend bool operator==(const MaterialResponse&, const MaterialResponse&) = default;
 };

@@ -14,8 +14,6 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t kLineMax = 80;  // maximum length of a line of options, in characters
-
 struct InfoCommand {
     CommonOptions common;
     std::vector<std::string> files;
@@ -31,20 +29,6 @@ std::string vectorText(const glm::vec3& v) {
     return "(" + shortest(v.x) + ", " + shortest(v.y) + ", " + shortest(v.z) + ")";
 }
 
-/// One line, or one per option if that line is too long.
-std::string bakedText(const Provenance& from) {
-    const std::string by = "baked    by " + from.tool_version + " with";
-    const std::string options = from.optionsText();
-    if (options.size() <= kLineMax) {
-        return by + " " + options + "\n";
-    }
-    std::string text = by;
-    for (const RecordedOption& option : from.options) {
-        text += "\n         " + option.text();
-    }
-    return text + "\n";
-}
-
 std::string humanReport(const Collider& collider, const ContainerInfo& info, const AnimatedMesh* animated) {
     const Provenance& from = collider.provenance;
     std::string text = "Relief container " + std::to_string(info.major) + "." + std::to_string(info.minor) +
@@ -53,7 +37,7 @@ std::string humanReport(const Collider& collider, const ContainerInfo& info, con
             unitText(collider.unit) + "\n";
     text += "mesh     " + cleanUtf8(from.mesh_name) + ", " + std::to_string(from.triangles) +
             " triangles, XXH3-128 " + (from.mesh_hash.empty() ? "unknown" : from.mesh_hash) + "\n";
-    text += bakedText(from);
+    text += originText(from);
     if (animated != nullptr) {
         text += "moves    " + animationText(*animated);
     }

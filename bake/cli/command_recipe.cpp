@@ -96,7 +96,7 @@ Result<void> checkAssets(const std::vector<RecipeAsset>& assets) {
                 }
             }
             return fail(error.code == ErrorCode::kUsage ? ErrorCode::kInvalidInput : error.code,
-                        place + ": " + error.message);
+                        place + ": " + nameKeys(error.message, recipeKeys()));
         }
     }
     return {};
@@ -118,6 +118,7 @@ Result<RecipeRun> runOf(const BakeCommand& command) {
     run.recipe = command.recipe.recipe;
     run.output_folder = command.output.empty() ? recipeFolder(run.recipe) : fs::path(command.output);
     run.dry_run = command.recipe.dry_run;
+    run.keys = recipeKeys();
     run.jobs = command.request.threads.value_or(std::max(1U, std::thread::hardware_concurrency()));
     if (command.output == "-") {
         return fail(ErrorCode::kUsage,

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "bake/verdict/report_text.h"
+#include "bake/report/collider_report.h"
 #include "formats/base/text.h"
 
 namespace relief {
@@ -28,7 +28,8 @@ Result<WorldInfo> readWorldInfo(const std::string& file, const ContainerLimits& 
         const std::uintmax_t bytes =
             fs::file_size(fs::path(file).parent_path() / world.colliders[i].file, error);
         const Collider& collider = loaded.colliders[i];
-        info.colliders.push_back({world.colliders[i], 0, collider.maps.size(), error ? 0 : bytes});
+        info.colliders.push_back(
+            {world.colliders[i], 0, collider.maps.size(), error ? 0 : bytes, collider.provenance});
         info.bytes += info.colliders.back().bytes;
         info.gpu_bytes += info.colliders.back().named.gpu_bytes;
     }
@@ -43,6 +44,7 @@ std::string worldInfoText(const WorldInfo& info) {
                        std::to_string(info.colliders.size()) + " colliders, " + bytesText(info.bytes) +
                        ", on the GPU " + bytesText(info.gpu_bytes) + "\n";
     text += "bounds   " + boxText(info.bounds) + " " + unitText(info.unit) + "\n";
+    std::vector<Provenance> origins;
     std::vector<std::vector<std::string>> rows = {
         {"collider", "mesh", "file", "bodies>", "maps>", "bytes>", "on the GPU>", "box"}};
     for (std::size_t i = 0; i < info.colliders.size(); ++i) {
@@ -51,8 +53,9 @@ std::string worldInfoText(const WorldInfo& info) {
                         std::to_string(collider.bodies), std::to_string(collider.maps),
                         bytesText(collider.bytes), bytesText(collider.named.gpu_bytes),
                         boxText(collider.named.box)});
+        origins.push_back(collider.provenance);
     }
-    return text + table(rows);
+    return text + commonOriginText(origins) + table(rows);
 }
 
 void fields(FieldVisitor& visit, const WorldColliderInfo& collider) {
@@ -60,6 +63,7 @@ void fields(FieldVisitor& visit, const WorldColliderInfo& collider) {
     visit("bodies", collider.bodies, {"Number of its bodies"});
     visit("maps", collider.maps, {"Number of its maps"});
     visit("bytes", collider.bytes, {"Size of its file", "bytes"});
+    visit("provenance", collider.provenance, {"Its origin"});
 }
 
 void fields(FieldVisitor& visit, const WorldInfo& info) {

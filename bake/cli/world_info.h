@@ -16,6 +16,7 @@ struct WorldColliderInfo {
     std::size_t bodies = 0;  ///< number of its bodies
     std::size_t maps = 0;
     std::uint64_t bytes = 0;  ///< size of its file
+    Provenance provenance{};
 };
 
 void fields(FieldVisitor& visit, const WorldColliderInfo& collider);
@@ -36,7 +37,7 @@ void fields(FieldVisitor& visit, const WorldInfo& info);
 /// Reads the world and all its colliders. Errors: those of loadWorld.
 [[nodiscard]] Result<WorldInfo> readWorldInfo(const std::string& file, const ContainerLimits& limits);
 
-/// A summary, the bounds, and a table of the colliders.
+/// A summary, the bounds, the common provenance, and a table of the colliders.
 [[nodiscard]] std::string worldInfoText(const WorldInfo& info);
 
 }  // namespace relief

@@ -132,6 +132,9 @@ class GroundBaker {
     }
 
     Result<GroundResult> run() {
+        if (options_.folder.empty() && heights().tile != HeightsSpec().tile) {
+            return fail(ErrorCode::kUsage, "tile= of --heights has no effect without --world; remove it");
+        }
         RELIEF_TRY(checkPlace());
         const Result<void> done = options_.folder.empty() ? bakeWhole() : bakeTiles();
         if (!done && done.error().code == ErrorCode::kLimit) {
@@ -185,8 +188,6 @@ class GroundBaker {
         if (ground.squares == 0) {
             return baked;
         }
-        HeightsSpec recorded = map_.spec();
-        recorded.tile = options_.folder.empty() ? HeightsSpec().tile : recorded.tile;
         Collider collider;
         collider.bounds = ground.bounds;
         collider.unit = "m";
@@ -195,7 +196,7 @@ class GroundBaker {
                                map_.hash(),
                                2 * ground.squares,
                                "relief " RELIEF_VERSION,
-                               {{"heights", toString(recorded)}}};
+                               {{"heights", toString(map_.spec())}}};
         collider.maps.push_back(std::move(ground.map));
         baked.bytes = RELIEF_TRY(containerOf(collider));
         baked.tile.hash = xxh3_128Hex(baked.bytes);
@@ -406,9 +407,6 @@ Result<GroundResult> bakeHeightMap(HeightMap& map, const GroundOptions& options)
 Result<GroundResult> bakeHeightMap(const BakeRequest& request, GroundOptions options) {
     static_cast<void>(RELIEF_TRY(settingsOf(request)));
     options.heights = RELIEF_TRY(parseHeightsSpec(request.heights));
-    if (options.folder.empty() && options.heights.tile != HeightsSpec().tile) {
-        return fail(ErrorCode::kUsage, "tile= of --heights has no effect without --world; remove it");
-    }
     std::optional<tbb::global_control> control;
     if (request.threads) {
         control.emplace(tbb::global_control::max_allowed_parallelism, *request.threads);

@@ -65,13 +65,13 @@ struct GroundOptions {
 /// Bakes a height map. Holds one row of tiles in memory, or the whole map for a single collider. The result does not
 /// depend on the number of threads.
 /// \param map  positioned before its first row.
-/// Errors, prefixed with the file: kInvalidInput (a damaged image; no square has ground), kLimit (the tree or world is
-/// too large); kIo.
+/// Errors: kUsage (a tile size without a folder); prefixed with the file: kInvalidInput (a damaged image; no square has
+/// ground), kLimit (the tree or world is too large), kIo.
 [[nodiscard]] Result<GroundResult> bakeHeightMap(HeightMap& map, const GroundOptions& options);
 
 /// Bakes the height map of a request, with the request's number of threads.
 /// \param options  `heights` comes from the request.
-/// Errors: also those of settingsOf and HeightMap::open, and kUsage (a tile size without a folder).
+/// Errors: also those of settingsOf and HeightMap::open.
 [[nodiscard]] Result<GroundResult> bakeHeightMap(const BakeRequest& request, GroundOptions options);
 
 }  // namespace relief

@@ -37,10 +37,10 @@ Result<ImportSource> ImportSource::open(const fs::path& path) {
     if (extension.empty() || meshFormat(extension.substr(1)) == nullptr) {
         constexpr std::array<std::string_view, 5> kHeightMaps = {".png", ".exr", ".raw", ".r16", ".hgt"};
         const bool image = std::ranges::find(kHeightMaps, extension) != kHeightMaps.end();
-        return fail(ErrorCode::kUnsupported,
-                    quotedPath(path) + ": no mesh format has the extension '" + cleanUtf8(extension) + "'; " +
-                        (image ? "if it is a height map, bake it with relief bake --heights"
-                               : "convert it to glTF, OBJ or PLY"));
+        return fail(
+            ErrorCode::kUnsupported,
+            quotedPath(path) + ": no mesh format has the extension '" + cleanUtf8(extension) + "'; " +
+                (image ? "if it is a height map, bake it with --heights" : "convert it to glTF, OBJ or PLY"));
     }
     if (bytes.empty()) {
         return fail(ErrorCode::kInvalidInput,

@@ -223,6 +223,18 @@ Result<std::vector<RecipeAsset>> loadRecipe(const fs::path& path, const std::vec
     return parseRecipe(textOf(bytes), keys, path);
 }
 
+std::string nameKeys(std::string message, const std::vector<RecipeKey>& keys) {
+    for (std::size_t at = message.find("--"); at != std::string::npos; at = message.find("--", at + 1)) {
+        const std::size_t end = message.find_first_not_of("abcdefghijklmnopqrstuvwxyz-", at);
+        const std::string name = message.substr(at + 2, std::min(end, message.size()) - at - 2);
+        const bool starts = at == 0 || message[at - 1] == ' ' || message[at - 1] == '(';
+        if (starts && std::ranges::find(keys, name, &RecipeKey::name) != keys.end()) {
+            message.erase(at, 2);
+        }
+    }
+    return message;
+}
+
 std::vector<std::string> recipeArguments(const RecipeOptions& options) {
     std::vector<std::string> arguments;
     for (const auto& [name, value] : options) {

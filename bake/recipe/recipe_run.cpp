@@ -249,9 +249,9 @@ class Runner {
         std::string message;
         for (const std::string_view line : split(end.err, '\n')) {
             if (line.starts_with(kErrorStart)) {
-                message = cleanUtf8(line.substr(kErrorStart.size()));
+                message = nameKeys(cleanUtf8(line.substr(kErrorStart.size())), run_.keys);
             } else if (line.starts_with(kWarningStart)) {
-                asset.warnings.push_back(cleanUtf8(line.substr(kWarningStart.size())));
+                asset.warnings.push_back(nameKeys(cleanUtf8(line.substr(kWarningStart.size())), run_.keys));
             }
         }
         if (end.signal != 0) {

@@ -1,7 +1,47 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bake/report/collider_report.h"
 
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "formats/base/text.h"
+
 namespace relief {
+namespace {
+
+constexpr std::size_t kLineMax = 80;  // maximum length of a line of options, in characters
+
+}  // namespace
+
+std::string originText(const Provenance& from) {
+    const std::string by = "baked    by " + from.tool_version;
+    const std::string options = from.optionsText();
+    if (options.size() <= kLineMax) {
+        return by + (options.empty() ? "" : " with " + options) + "\n";
+    }
+    std::string text = by + " with";
+    for (const RecordedOption& option : from.options) {
+        text += "\n         " + option.text();
+    }
+    return text + "\n";
+}
+
+std::string commonOriginText(const std::vector<Provenance>& colliders) {
+    Provenance common = colliders.front();
+    std::set<std::pair<std::string_view, std::string_view>> meshes;
+    std::set<std::string_view> tools;
+    for (const Provenance& from : colliders) {
+        meshes.emplace(from.mesh_name, from.mesh_hash);
+        tools.insert(from.tool_version);
+        std::erase_if(common.options, [&](const RecordedOption& option) {
+            return std::ranges::find(from.options, option) == from.options.end();
+        });
+    }
+    common.tool_version = listed(std::vector(tools.begin(), tools.end()));
+    return "meshes   " + std::to_string(meshes.size()) + "; --json lists the options of each\n" +
+           originText(common);
+}
 
 std::string materialsText(const Materials& materials) {
     std::vector<std::vector<std::string>> rows = {

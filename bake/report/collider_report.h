@@ -16,6 +16,7 @@ namespace relief {
 inline constexpr std::string_view kHashPattern = "^([0-9a-f]{32})?$";
 
 void fields(FieldVisitor& visit, const Bounds& bounds);
+void fields(FieldVisitor& visit, const Provenance& from);
 
 struct ColliderMapReport {
     std::size_t index = 0;
@@ -24,6 +25,11 @@ struct ColliderMapReport {
 };
 
 void fields(FieldVisitor& visit, const ColliderMapReport& report);
+
+/// Returns the tool and the options: one line, or one per option if that line is too long.
+[[nodiscard]] std::string originText(const Provenance& from);
+/// Returns the number of meshes, then the tools and the common options. \param colliders  at least one
+[[nodiscard]] std::string commonOriginText(const std::vector<Provenance>& colliders);
 
 /// Returns a line with the size of the materials in bytes, and a table.
 [[nodiscard]] std::string materialsText(const Materials& materials);

@@ -140,9 +140,9 @@ struct FieldMaybe {
     bool& given;
 };
 
-/// A path in a file, and the source position of that path for messages: "scene.toml:3:8".
-struct FieldFile {
-    std::filesystem::path& path;
+/// A path or name, and its source position for messages: "scene.toml:3:8".
+struct FieldPlaced {
+    FieldRef value;
     std::string& place;
 };
 
@@ -301,8 +301,8 @@ constexpr FieldType describe() {
         type.form = FieldForm::kPair;
     } else if constexpr (std::same_as<T, FieldMaybe>) {
         type.form = FieldForm::kMaybe;
-    } else if constexpr (std::same_as<T, FieldFile>) {
-        type.form = FieldForm::kFile;
+    } else if constexpr (std::same_as<T, FieldPlaced>) {
+        type.form = FieldForm::kPlaced;
     } else if constexpr (std::same_as<T, FieldGroup>) {
         type.form = FieldForm::kGroup;
     } else if constexpr (kIsForm<std::variant, T>) {

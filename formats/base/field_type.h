@@ -45,7 +45,7 @@ enum class FieldForm : std::uint8_t {
     kSpan,     ///< FieldSpan (formats/base/field.h)
     kPair,     ///< FieldPair
     kMaybe,    ///< FieldMaybe
-    kFile,     ///< FieldFile
+    kPlaced,   ///< FieldPlaced
     kGroup,    ///< FieldGroup
     kStruct,
     kCustom,  ///< FieldType::custom, or read_form and form_text

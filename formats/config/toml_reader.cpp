@@ -178,7 +178,8 @@ void readNumber(const TomlValue& from, FieldRef value, const FieldInfo& info) {
     value.setReal(value.type().size == sizeof(float) ? double{narrowed<float>(number, info.range)}
                                                      : narrowed<double>(number, info.range));
     if (info.rules.not_zero && value.number() == 0.0) {
-        from.fail(from.name() + " has no effect if it is 0; raise it or remove it");
+        from.fail(from.name() + " has no effect if it is 0; use another number, or remove " +
+                  (info.rules.required ? "the table" : "it"));
     }
 }
 
@@ -268,9 +269,9 @@ void readValue(const TomlValue& from, FieldRef value, const FieldInfo& info) {
             readValue(from, value.as<FieldMaybe>().value, info);
             value.as<FieldMaybe>().given = true;
             return;
-        case FieldForm::kFile:
-            value.as<FieldFile>().path = from.path();
-            value.as<FieldFile>().place = from.place();
+        case FieldForm::kPlaced:
+            readValue(from, value.as<FieldPlaced>().value, info);
+            value.as<FieldPlaced>().place = from.place();
             return;
         case FieldForm::kOptional:
             return readValue(from, value.add(), info);
@@ -286,6 +287,9 @@ void readValue(const TomlValue& from, FieldRef value, const FieldInfo& info) {
             return;
         case FieldForm::kString:
             value.as<std::string>() = from.text();
+            return;
+        case FieldForm::kPath:
+            value.as<std::filesystem::path>() = from.path();
             return;
         case FieldForm::kVector:
         case FieldForm::kArray:

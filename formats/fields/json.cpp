@@ -38,8 +38,8 @@ bool isNone(FieldRef value, const FieldInfo& info) {
             return isNone(value.as<FieldPair>().first, info) || isNone(value.as<FieldPair>().second, info);
         case FieldForm::kMaybe:
             return !value.as<FieldMaybe>().given;
-        case FieldForm::kFile:
-            return value.as<FieldFile>().path.empty();
+        case FieldForm::kPlaced:
+            return isNone(value.as<FieldPlaced>().value, info);
         case FieldForm::kGroup:
             return !value.as<FieldGroup>().present;
         case FieldForm::kBool:
@@ -124,8 +124,8 @@ Json jsonOf(FieldRef value) {
             return arrayOf(value.as<FieldPair>().first, value.as<FieldPair>().second);
         case FieldForm::kMaybe:
             return jsonOf(value.as<FieldMaybe>().value);
-        case FieldForm::kFile:
-            return jsonOf(value.as<FieldFile>().path);
+        case FieldForm::kPlaced:
+            return jsonOf(value.as<FieldPlaced>().value);
         case FieldForm::kGroup:
             if (!value.as<FieldGroup>().present) {
                 return nullptr;
@@ -302,6 +302,8 @@ Json schemaOf(FieldRef value, const FieldInfo& info) {
             return arraySchema(blankPart(value.as<FieldPair>().second), {2.0, 2.0});
         case FieldForm::kMaybe:
             return schemaOf(value.as<FieldMaybe>().value, inner);
+        case FieldForm::kPlaced:
+            return schemaOf(value.as<FieldPlaced>().value, info);
         case FieldForm::kBool:
             return info.words.empty() ? Json{{"type", "boolean"}} : numberSchema(false, false, info);
         case FieldForm::kUnsigned:
@@ -310,7 +312,6 @@ Json schemaOf(FieldRef value, const FieldInfo& info) {
             return realSchema(value, info);
         case FieldForm::kWord:
             return {{"enum", std::vector<std::string_view>(type.words.begin(), type.words.end())}};
-        case FieldForm::kFile:
         case FieldForm::kString:
         case FieldForm::kText:
         case FieldForm::kPath:

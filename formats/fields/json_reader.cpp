@@ -174,6 +174,9 @@ void readValue(const JsonValue& from, FieldRef value, const FieldInfo& info) {
         case FieldForm::kOptional:
             readValue(from, value.add(), info);
             return;
+        case FieldForm::kPlaced:
+            readValue(from, value.as<FieldPlaced>().value, info);
+            return;
         case FieldForm::kList:
             from.needArray(info.items);
             value.type().clear(value.value());

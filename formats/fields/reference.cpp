@@ -135,6 +135,8 @@ FieldSchema schemaInFile(FieldRef value, const FieldInfo& info, const CustomSche
     switch (value.form()) {
         case FieldForm::kMaybe:
             return schemaInFile(value.as<FieldMaybe>().value, info, custom);
+        case FieldForm::kPlaced:
+            return schemaInFile(value.as<FieldPlaced>().value, info, custom);
         case FieldForm::kOptional:
             return schemaInFile(FieldRef(type.held->blank(), *type.held), info, custom);
         case FieldForm::kSpan: {
@@ -143,7 +145,7 @@ FieldSchema schemaInFile(FieldRef value, const FieldInfo& info, const CustomSche
         }
         case FieldForm::kPair:
             return {numbersSchema(2, isWhole(value.as<FieldPair>().first), info), {}};
-        case FieldForm::kFile:
+        case FieldForm::kPath:
         case FieldForm::kString:
             return {{{"type", "string"}}, {}};
         case FieldForm::kBool:
@@ -199,7 +201,7 @@ class ReferenceMaker : public FieldVisitor {
                 break;
         }
         made.type = schemaInFile(value, made.info, custom_);
-        if (value.form() != FieldForm::kFile) {
+        if (value.form() != FieldForm::kPlaced) {
             made.fallback =
                 made.info.fallback.empty() && !made.info.rules.required ? jsonOf(value).dump() : "";
         }

@@ -136,14 +136,18 @@ Result<void> WorldTextures::exchange(std::size_t body, const Collider& collider,
                                      std::optional<std::size_t> first) {
     const TableBody& of = world_->bodies[body];
     const bool patches = collider.maps.size() == 1 && collider.maps[0].format == MapFormat::kPatches;
-    const PlacedMap map{patches ? collider.maps.data() : nullptr, false};
+    if (!patches || of.maps != 1) {
+        return fail(ErrorCode::kUnsupported,
+                    "only colliders with a single map of patches can be streamed; bake again without "
+                    "--holes keep, --map and --paper");
+    }
     MapPlace place = places_[of.first_map];
     place.first = first.value_or(place.first);
-    if (!patches || of.maps != 1 ||
-        !world_->bodies.setMap(of.first_map, blockMap(map, place), insideBox(collider))) {
+    if (!world_->bodies.setMap(of.first_map, blockMap({collider.maps.data(), false}, place),
+                               insideBox(collider))) {
         return fail(ErrorCode::kUnsupported,
-                    "only maps of patches can be streamed; bake again without --holes "
-                    "keep, --map and --paper");
+                    "its map differs in format, encloses or empty_is_outside from the map that it replaces; "
+                    "bake the world again");
     }
     ++revision_;
     updateWorld();

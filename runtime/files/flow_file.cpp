@@ -93,7 +93,7 @@ std::optional<FieldFault> check(FlowFile& flow, const GivenFields& /*given*/) {
 }
 
 void fields(FieldVisitor& visit, FlowFile& flow) {
-    const FieldFile path{flow.path, flow.origin};
+    const FieldPlaced path{flow.path, flow.origin};
     visit("raw", path, {"Little-endian 32-bit floats, x fastest, then y, then z", {}, {}, {}, kRequired});
     visit("size", flow.size,
           {.help = "Nodes along x, y and z, at most 2²⁴ in total",

@@ -33,9 +33,8 @@ const char* firstOf(std::initializer_list<std::pair<bool, const char*>> problems
     return nullptr;
 }
 
-static_assert(kPointsMax == 4194304);  // as in the message below
-
 const char* problemOf(const EmitterSettings& s) {
+    static const std::string kCounts = "points must contain 1 to " + std::to_string(kPointsMax) + " points";
     const bool box = s.shape == EmitterShape::kBox || s.shape == EmitterShape::kPoint;
     const bool points = s.shape == EmitterShape::kPoints;
     const bool surface = s.shape == EmitterShape::kSurface;
@@ -49,7 +48,7 @@ const char* problemOf(const EmitterSettings& s) {
     const EmitterAim aim = s.aim.value_or(EmitterAim{.direction = glm::vec3(1.0F)});
     return firstOf({
         {box && !ordered(s.box_min, s.box_max), "box_min must be finite and not above box_max"},
-        {points && (count == 0 || count > kPointsMax), "points must contain 1 to 4194304 points"},
+        {points && (count == 0 || count > kPointsMax), kCounts.c_str()},
         {points && !s.points.normals.empty() && s.points.normals.size() != count,
          "points must have as many normals as positions, or none"},
         {s.shape == EmitterShape::kDisc && unitVector(s.normal) == glm::vec3(0.0F), "normal must not be 0"},

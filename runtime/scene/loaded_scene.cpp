@@ -75,8 +75,8 @@ Result<PlayedMesh> openPlayed(const SceneCollider& from, const ContainerLimits& 
         file.extent = poseExtent(*file.mesh);
     }
     for (const SceneMaterialColor& material : from.materials) {
-        RELIEF_TRY(
-            withPrefix(from.origin + ": collider.material", materialTriangles(*file.mesh, material.name)));
+        RELIEF_TRY(withPrefix(material.origin + ": collider.material",
+                              materialTriangles(*file.mesh, material.name)));
     }
     return loadPlayedMesh(from, file.mesh, file.extent);
 }
@@ -142,18 +142,20 @@ Result<void> checkMaterials(const Scene& scene, const LoadedScene& of) {
     };
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         const MaterialResponse& one = scene.materials[i];
-        RELIEF_TRY(check(one.place.text, "material[" + std::to_string(i) + "].name", one.name));
+        RELIEF_TRY(check(one.origin.text, "material[" + std::to_string(i) + "].name", one.name));
     }
     for (std::size_t i = 0; i < scene.spawns.size(); ++i) {
         const SceneSpawn& one = scene.spawns[i];
         if (!one.on_material.empty()) {
-            RELIEF_TRY(check(one.place.text, "spawn[" + std::to_string(i) + "].material", one.on_material));
+            RELIEF_TRY(check(one.material_origin.text, "spawn[" + std::to_string(i) + "].material",
+                             one.on_material));
         }
     }
     for (std::size_t i = 0; i < scene.emitters.size(); ++i) {
-        const SceneEmitter& one = scene.emitters[i];
-        for (const std::string& name : one.touching.value_or(SceneTouching{}).materials) {
-            RELIEF_TRY(check(one.place, "emitter[" + std::to_string(i) + "].touching.material", name));
+        const SceneTouching touching = scene.emitters[i].touching.value_or(SceneTouching{});
+        for (std::size_t k = 0; k < touching.materials.size(); ++k) {
+            RELIEF_TRY(check(touching.material_origins[k],
+                             "emitter[" + std::to_string(i) + "].touching.material", touching.materials[k]));
         }
     }
     return {};

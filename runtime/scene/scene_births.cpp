@@ -16,21 +16,31 @@
 namespace relief {
 namespace {
 
-Result<EmitterSurface> surfaceOf(const AnimatedMesh& mesh, const MeshPose& pose,
-                                 const SceneEmitter& emitter) {
+/// Starts of messages: "scene.toml:3:9: 'a.obj': emitter.group".
+struct Places {
+    Places(const SceneEmitter& emitter, const std::filesystem::path& path)
+        : surface(emitter.place + ": " + quotedPath(path)),
+          group(emitter.group_origin + ": " + quotedPath(path) + ": emitter.group"),
+          material(emitter.material_origin + ": " + quotedPath(path) + ": emitter.material") {}
+    std::string surface, group, material;
+};
+
+Result<EmitterSurface> surfaceOf(const AnimatedMesh& mesh, const MeshPose& pose, const SceneEmitter& emitter,
+                                 const Places& at) {
     std::vector<float> weights;
     if (!emitter.group.empty()) {
-        weights = RELIEF_TRY(withPrefix("emitter.group", groupWeights(mesh, emitter.group)));
+        weights = RELIEF_TRY(withPrefix(at.group, groupWeights(mesh, emitter.group)));
     }
     std::vector<glm::uvec3> triangles = mesh.triangles;
     if (!emitter.material.empty()) {
-        triangles = RELIEF_TRY(withPrefix("emitter.material", materialTriangles(mesh, emitter.material)));
+        triangles = RELIEF_TRY(withPrefix(at.material, materialTriangles(mesh, emitter.material)));
     }
-    return EmitterSurface::create(triangles, std::move(weights), posed(mesh, pose));
+    return withPrefix(at.surface, EmitterSurface::create(triangles, std::move(weights), posed(mesh, pose)));
 }
 
 /// Returns the triangles of a group and a material of a file.
-Result<std::vector<glm::uvec3>> partOf(const NamedMesh& named, const SceneEmitter& emitter) {
+Result<std::vector<glm::uvec3>> partOf(const NamedMesh& named, const SceneEmitter& emitter,
+                                       const Places& at) {
     const std::vector<glm::uvec3> all = trianglesOf(named.mesh);
     std::vector<glm::uvec3> kept;
     std::vector<std::string> groups;
@@ -53,56 +63,58 @@ Result<std::vector<glm::uvec3>> partOf(const NamedMesh& named, const SceneEmitte
         }
     }
     if (!has_group) {
-        return invalidInput("emitter.group: " + partNotFound("group or object", emitter.group, groups));
+        return invalidInput(at.group + ": " + partNotFound("group or object", emitter.group, groups));
     }
     if (!has_material) {
-        return invalidInput("emitter.material: " + partNotFound("material", emitter.material, materials));
+        return invalidInput(at.material + ": " + partNotFound("material", emitter.material, materials));
     }
     return kept;
 }
 
-Result<EmitterSurface> surfaceOf(NamedMesh named, const SceneEmitter& emitter) {
-    const std::vector<glm::uvec3> triangles = RELIEF_TRY(partOf(named, emitter));
-    return EmitterSurface::create(triangles, {}, std::move(named.mesh.positions));
+Result<EmitterSurface> surfaceOf(NamedMesh named, const SceneEmitter& emitter, const Places& at) {
+    const std::vector<glm::uvec3> triangles = RELIEF_TRY(partOf(named, emitter, at));
+    return withPrefix(at.surface, EmitterSurface::create(triangles, {}, std::move(named.mesh.positions)));
 }
 
 /// Cache of the surfaces of containers.
 using Surfaces = std::map<const Collider*, ColliderSurface>;
 
-Result<EmitterSurface> surfaceOf(const Collider& container, const SceneEmitter& emitter, Surfaces& known) {
+Result<EmitterSurface> surfaceOf(const Collider& container, const SceneEmitter& emitter, const Places& at,
+                                 Surfaces& known) {
     if (!container.animation.empty()) {
-        const AnimatedMesh mesh = RELIEF_TRY(readAnimatedMesh(container.animation));
-        return surfaceOf(mesh, restPose(mesh), emitter);
+        const AnimatedMesh mesh = RELIEF_TRY(withPrefix(at.surface, readAnimatedMesh(container.animation)));
+        return surfaceOf(mesh, restPose(mesh), emitter, at);
     }
     const bool unknown_material = !emitter.material.empty() && container.materials.empty();
     if (!emitter.group.empty() || unknown_material) {
-        return invalidInput(std::string(emitter.group.empty() ? "emitter.material" : "emitter.group") +
+        return invalidInput((emitter.group.empty() ? at.material : at.group) +
                             " needs a mesh, which the container lacks; set emitter.mesh to its source mesh, "
                             "or bake it with --animated");
     }
     if (!known.contains(&container)) {
-        known[&container] = RELIEF_TRY(colliderSurface(container));
+        known[&container] = RELIEF_TRY(withPrefix(at.surface, colliderSurface(container)));
     }
     const ColliderSurface& surface = known[&container];
     std::vector<glm::uvec3> triangles = surface.triangles;
     if (!emitter.material.empty()) {
-        triangles = RELIEF_TRY(withPrefix("emitter.material",
-                                          materialTriangles(surface, container.materials, emitter.material)));
+        triangles = RELIEF_TRY(
+            withPrefix(at.material, materialTriangles(surface, container.materials, emitter.material)));
     }
-    return EmitterSurface::create(triangles, {}, surface.positions);
+    return withPrefix(at.surface, EmitterSurface::create(triangles, {}, surface.positions));
 }
 
 Result<EmitterSurface> surfaceOf(const SceneEmitter& emitter, const SceneMeshes& meshes, Surfaces& known) {
     if (!emitter.mesh_file.empty()) {
-        return withPrefix(quotedPath(emitter.mesh_file),
-                          surfaceOf(RELIEF_TRY(loadNamedMesh(emitter.mesh_file)), emitter));
+        const Places at(emitter, emitter.mesh_file);
+        return surfaceOf(RELIEF_TRY(withPrefix(emitter.place, loadNamedMesh(emitter.mesh_file))), emitter,
+                         at);
     }
     const std::size_t i = *emitter.attach;
     const std::optional<PlayedMesh>& played = meshes.played[i];
-    return withPrefix(quotedPath(meshes.colliders[i].path),
-                      played           ? surfaceOf(*played->mesh, played->poseAt(0.0), emitter)
-                      : meshes.live[i] ? surfaceOf(NamedMesh{meshes.live[i]->mesh, {}}, emitter)
-                                       : surfaceOf(*meshes.containers[i], emitter, known));
+    const Places at(emitter, meshes.colliders[i].path);
+    return played           ? surfaceOf(*played->mesh, played->poseAt(0.0), emitter, at)
+           : meshes.live[i] ? surfaceOf(NamedMesh{meshes.live[i]->mesh, {}}, emitter, at)
+                            : surfaceOf(*meshes.containers[i], emitter, at, known);
 }
 
 }  // namespace
@@ -122,7 +134,7 @@ Result<std::vector<Emitter>> makeEmitters(std::span<const SceneEmitter> emitters
             }
         }
         if (emitter.shape == EmitterShape::kSurface) {
-            auto surface = RELIEF_TRY(withPrefix(emitter.place, surfaceOf(emitter, meshes, known)));
+            auto surface = RELIEF_TRY(surfaceOf(emitter, meshes, known));
             settings.surface = BirthSurfaceValue(std::make_unique<EmitterSurface>(std::move(surface)));
         }
         RELIEF_TRY(Emitter::check(settings));

@@ -11,6 +11,7 @@
 #include "formats/animation/animated_mesh.h"
 #include "formats/base/field.h"
 #include "formats/base/scene_limits.h"
+#include "formats/base/source_place.h"
 #include "formats/collider.h"
 #include "runtime/bodies/pose_keys.h"
 #include "runtime/bodies/world_textures.h"
@@ -63,6 +64,7 @@ struct ScenePlay {
     bool loop = true;
     float bounds_scale = 1.0F;
     std::uint32_t resolution = 512;
+    SourcePlace clip_origin{};
     friend bool operator==(const ScenePlay&, const ScenePlay&) = default;
 };
 
@@ -72,14 +74,17 @@ void fields(FieldVisitor& visit, ScenePlay& play);
 struct SceneMaterialColor {
     std::string name;
     glm::vec3 color{0.0F};  ///< sRGB
+    std::string origin{};   ///< position of the name
 };
 
 void fields(FieldVisitor& visit, SceneMaterialColor& material);
 
 struct SceneCollider {
     std::filesystem::path path;  ///< resolved against the scene's folder
-    std::string origin;  ///< position of its key, "scene.toml:3:8", for messages; empty without a scene file
-    std::string node;    ///< node of the world's body that provides missing values; empty: none
+    /// Position of the path, or of the node until placeBodies(), for messages: "scene.toml:3:8". Empty without a scene
+    /// file.
+    std::string origin;
+    std::string node;  ///< node of the world's body that provides missing values; empty: none
     /// If this is a further tile of a node's mesh: the index of the collider that names the node. The tile moves and
     /// collides like that collider.
     std::optional<std::size_t> tile_of{};

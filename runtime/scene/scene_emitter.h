@@ -23,14 +23,16 @@ namespace relief {
 
 /// emitter.touching.
 struct SceneTouching {
-    std::vector<std::string> materials;  ///< by name; empty: any surface, even without a material
-    float within = 0.0F;                 ///< world units
-    float min_speed = 0.0F;              ///< world units/s
+    std::vector<std::string> materials;           ///< by name; empty: any surface, even without a material
+    float within = 0.0F;                          ///< world units
+    float min_speed = 0.0F;                       ///< world units/s
+    std::vector<std::string> material_origins{};  ///< position of each name
 };
 
 /// Reads one name or a list of names, and writes a list.
 struct NameList {
     std::vector<std::string>& names;
+    std::vector<std::string>& origins;
 };
 extern const FieldCustom kNameListField;
 template <>
@@ -53,8 +55,10 @@ struct SceneEmitter : EmitterSettings {
     /// Resolved; only for kSurface; empty: the surface of the collider that `attach` names.
     std::filesystem::path mesh_file;
     std::string mesh_origin;
-    std::string group;     ///< group of the mesh that emits; empty: all
+    std::string group;  ///< group of the mesh that emits; empty: all
+    std::string group_origin;
     std::string material;  ///< material of the mesh that emits; empty: all
+    std::string material_origin;
     std::optional<SceneTouching> touching;
     std::uint64_t seed = 1;
     std::string place;  ///< "file:line:column" of the table
@@ -91,7 +95,7 @@ inline constexpr std::size_t kSpawnsMax = 16;
 struct SceneSpawn : SpawnSettings {
     std::uint64_t seed = 1;
     std::string on_material;  ///< name of SpawnSettings::material; empty: any
-    SourcePlace place;        ///< of the table
+    SourcePlace material_origin;
     friend bool operator==(const SceneSpawn&, const SceneSpawn&) = default;
 };
 

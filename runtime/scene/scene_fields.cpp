@@ -128,7 +128,7 @@ void fields(FieldVisitor& visit, SceneLive& live) {
 }
 
 void fields(FieldVisitor& visit, ScenePlay& play) {
-    visit("clip", play.clip,
+    visit("clip", FieldPlaced{play.clip, play.clip_origin.text},
           leftOut({"Name of a clip in a container baked with --animated", {}, {}, "the first"}));
     visit("start", play.start, {"Offset into the clip at time 0", "s", within(kClipStartMax)});
     visit("speed", play.speed, {"Playback speed; negative plays backwards", "1", within(kClipSpeedMax)});
@@ -139,20 +139,20 @@ void fields(FieldVisitor& visit, ScenePlay& play) {
 }
 
 void fields(FieldVisitor& visit, SceneMaterialColor& material) {
-    visit("name", material.name,
+    visit("name", FieldPlaced{material.name, material.origin},
           {"Material of the animated mesh, as listed by relief info", {}, {}, {}, kRequired});
     visit("color", material.color, {"Colour in pictures", "[r, g, b]", kFractionRange, {}, kRequired});
 }
 
 void fields(FieldVisitor& visit, SceneCollider& c) {
-    const FieldFile path{c.path, c.origin};
+    const FieldPlaced path{c.path, c.origin};
     bool live = c.live.has_value();
     bool baked = !live;
     visit("file", FieldMaybe{path, baked},
           leftOut({"Container (.relief) to collide with", {}, {}, "required unless mesh is set"}));
     visit("mesh", FieldMaybe{path, live},
           leftOut({"OBJ or PLY file that deforms; it is not baked", {}, {}, "none", {.instead_of = "file"}}));
-    visit("node", c.node,
+    visit("node", FieldPlaced{c.node, c.origin},
           leftOut({.help = "Node of the scene's world to place or move; needs world",
                    .fallback = "none",
                    .rules = {.instead_of = "file mesh"}}));
@@ -183,7 +183,7 @@ void fields(FieldVisitor& visit, SceneCollider& c) {
 }
 
 void fields(FieldVisitor& visit, SceneTouching& touching) {
-    const NameList names{touching.materials};
+    const NameList names{touching.materials, touching.material_origins};
     bool named = !touching.materials.empty();
     visit("within", touching.within,
           {.help = "Largest distance to the nearest other surface that counts as touching",
@@ -232,19 +232,20 @@ void fields(FieldVisitor& visit, SceneEmitter& e) {
           {"Radius", {}, kLengthRange, {}, {.only = "sphere shell disc", .required = true}});
     visit("normal", e.normal,
           {"Normal of the disc", "[x, y, z]", kPointRange, {}, {.only = "disc", .not_zero = true}});
-    visit("points", FieldFile{e.points_file, e.points_origin},
+    visit("points", FieldPlaced{e.points_file, e.points_origin},
           {.help = "File of 1 to 2²² points (see below)",
            .rules = {.only = "points", .required = true, .chooses = true}});
-    visit("mesh", FieldFile{e.mesh_file, e.mesh_origin},
+    visit("mesh", FieldPlaced{e.mesh_file, e.mesh_origin},
           leftOut({.help = "OBJ or PLY file whose surface emits, in the emitter's space",
                    .fallback = "the surface of the attached collider, as it moves and deforms",
                    .rules = {.only = "surface"}}));
     visit(
-        "group", e.group,
+        "group", FieldPlaced{e.group, e.group_origin},
         leftOut({.help = "Joint or node whose weights set the density of births; for OBJ, a group or object",
                  .fallback = "all",
                  .rules = {.only = "surface"}}));
-    visit("material", e.material, leftOut({"Material that emits", {}, {}, "all", {.only = "surface"}}));
+    visit("material", FieldPlaced{e.material, e.material_origin},
+          leftOut({"Material that emits", {}, {}, "all", {.only = "surface"}}));
     visit("touching", e.touching,
           leftOut({.help = "Births only where the surface touches another surface",
                    .fallback = "everywhere",
@@ -304,7 +305,7 @@ void fields(FieldVisitor& visit, SceneEmitter& e) {
 
 void fields(FieldVisitor& visit, SceneSpawn& spawn) {
     fields(visit, static_cast<SpawnSettings&>(spawn));
-    visit("material", spawn.on_material,
+    visit("material", FieldPlaced{spawn.on_material, spawn.material_origin.text},
           leftOut({"Material that was hit", {}, {}, "any", {.only = "collision"}}));
     visit("seed", spawn.seed, {"Seed; each spawn has its own stream", {}, {0.0, kSeedMax}});
 }
@@ -413,18 +414,18 @@ void fields(FieldVisitor& visit, SceneRender& r) {
     visit("blend", r.blend, {"Blend mode of particles"});
     visit("soft_distance", r.soft_distance,
           {"Distance from collider and floor within which sprites fade", {}, kLengthRange});
-    visit("atlas", FieldFile{r.atlas, r.atlas_origin},
+    visit("atlas", FieldPlaced{r.atlas, r.atlas_origin},
           leftOut({"PNG with alpha, up to 8192 pixels a side; needs a type with cell", {}, {}, "none"}));
     visit("atlas_cells", FieldPair{r.atlas_columns, r.atlas_rows},
           leftOut({.help = "Cells of the atlas; must divide its sides",
                    .unit = "[columns, rows]",
                    .range = {1.0, 4096.0},
                    .rules = {.needs = "atlas"}}));
-    visit("mesh", FieldFile{r.mesh, r.mesh_origin},
+    visit("mesh", FieldPlaced{r.mesh, r.mesh_origin},
           leftOut({.help = "The collider's source mesh, OBJ or PLY, to draw instead of the maps; the maps "
                            "still cast the shadows",
                    .fallback = "none: the maps are drawn"}));
-    visit("meshes", FieldFile{r.meshes, r.meshes_origin},
+    visit("meshes", FieldPlaced{r.meshes, r.meshes_origin},
           leftOut({.help = "Folder of PLY and OBJ meshes to draw (see Meshes and weather)",
                    .fallback = "none: the maps are drawn",
                    .rules = {.instead_of = "mesh"}}));
@@ -460,7 +461,7 @@ void fields(FieldVisitor& visit, SceneType& type) {
 }
 
 void fields(FieldVisitor& visit, Scene& scene) {
-    visit("world", FieldFile{scene.world, scene.world_origin},
+    visit("world", FieldPlaced{scene.world, scene.world_origin},
           leftOut({.help = "World (world.json) whose bodies are added to the colliders",
                    .fallback = "none; a collider is then required"}));
     visit("collider", scene.colliders,

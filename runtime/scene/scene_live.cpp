@@ -74,8 +74,8 @@ Result<void> changeClip(PlayedMesh& played, const SceneCollider& from) {
     const std::optional<std::size_t> clip = findClip(mesh, from.play->clip);
     if (!clip && !from.play->clip.empty()) {
         return invalidInput(
-            from.origin + ": collider.play.clip = '" + cleanUtf8(from.play->clip) + "' is not a clip of " +
-            quotedPath(from.path) +
+            from.play->clip_origin.text + ": collider.play.clip = '" + cleanUtf8(from.play->clip) +
+            "' is not a clip of " + quotedPath(from.path) +
             (mesh.clips.empty() ? ", which has none; bake it with --clips" : "; it has " + namesOf(mesh)));
     }
     played.clip = clip;

@@ -79,8 +79,9 @@ void readSpeed(const TomlValue& from, void* value, const FieldInfo& info) {
 }
 
 void readNames(const TomlValue& from, void* value, const FieldInfo& /*info*/) {
-    std::vector<std::string>& names = static_cast<const NameList*>(value)->names;
+    const auto& [names, origins] = *static_cast<const NameList*>(value);
     names.clear();
+    origins.clear();
     const std::size_t count = from.array() == nullptr ? 1 : from.array()->size();
     for (std::size_t i = 0; i < count; ++i) {
         const TomlValue one = from.array() == nullptr ? from : from[i];
@@ -88,6 +89,7 @@ void readNames(const TomlValue& from, void* value, const FieldInfo& /*info*/) {
             one.wrongType("a name, or a list of names");
         }
         names.push_back(one.text());
+        origins.push_back(one.place());
     }
     if (std::count(names.begin(), names.end(), "") > 0 || count == 0) {
         from.fail(from.name() + " must list at least one name, and no empty name");

@@ -27,10 +27,10 @@ BodiesOfNodes bodiesOfNodes(const World& world) {
 /// \return the numbers of the bodies, at least one, all with the same pose.
 Result<std::vector<std::size_t>> bodiesNamed(const Scene& scene, const World& world,
                                              const BodiesOfNodes& nodes, std::size_t collider) {
-    const std::string& node = scene.colliders[collider].node;
+    const SceneCollider& from = scene.colliders[collider];
     const std::string named =
-        scene.world_origin + ": collider[" + std::to_string(collider) + "].node = '" + cleanUtf8(node) + "' ";
-    const auto found = nodes.find(node);
+        from.origin + ": collider[" + std::to_string(collider) + "].node = '" + cleanUtf8(from.node) + "' ";
+    const auto found = nodes.find(from.node);
     if (found == nodes.end()) {
         return invalidInput(named + "is not a node of a body in " + quotedPath(scene.world) +
                             "; use a \"node\" of its \"bodies\"");
@@ -76,7 +76,7 @@ Result<void> placeBodies(Scene& scene, const World& world) {
         }
         const std::vector<std::size_t> bodies = RELIEF_TRY(bodiesNamed(scene, world, nodes, i));
         if (placed[bodies.front()]) {
-            return invalidInput(scene.world_origin + ": collider[" + std::to_string(i) + "].node = '" +
+            return invalidInput(collider.origin + ": collider[" + std::to_string(i) + "].node = '" +
                                 cleanUtf8(collider.node) + "' is named by two colliders; remove one of them");
         }
         place(collider, world.bodies[bodies.front()], scene, world);

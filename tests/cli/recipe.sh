@@ -90,7 +90,7 @@ done
 printf '%s\n' 'version = 1' '[[asset]]' "mesh = \"bunny.obj\"" 'output = "late.relief"' 'budget = "16MB"' 'timeout = 0.2' >late.toml
 cp "$bunny" bunny.obj
 expect 6 "$relief" bake --recipe late.toml
-grep -q 'late.relief: .*--timeout' stderr || die "the limit is not named: $(cat stderr)"
+grep -q 'late.relief: .* raise timeout' stderr || die "the limit is not named: $(cat stderr)"
 
 # Errors in a recipe have a position, and nothing is baked. Also options that conflict with recipes or require one.
 printf '%s\n' 'version = 1' '[[asset]]' 'mesh = "hill.obj"' 'output = "h.relief"' 'budgte = 1' >in/wrong.toml

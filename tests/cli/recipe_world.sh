@@ -139,12 +139,12 @@ tetrahedron in/rock.obj 1
 rebakes rock.relief
 sed 's/^budget = "200kB"/&\ntimeout = 0.001/' in/r.toml >in/late.toml
 expect 6 "$relief" bake --recipe in/late.toml -o out
-grep -q 'levels/yard/world.json: .*--timeout' stderr || die "the limit is not named: $(cat stderr)"
+grep -q 'levels/yard/world.json: .* raise timeout' stderr || die "the limit is not named: $(cat stderr)"
 hashes out | diff first - || die "a level that timed out changes files"
 
 # An option without effect on a level has a position.
 printf '%s\n' 'version = 1' '[[asset]]' 'mesh = "levels/yard.gltf"' 'output = "w/world.json"' 'map = "cube:size=16"' >in/wrong.toml
-expect_error 3 'wrong\.toml:5:7: --map' "$relief" bake --recipe in/wrong.toml -o wrong
+expect_error 3 'wrong\.toml:5:7: map ' "$relief" bake --recipe in/wrong.toml -o wrong
 
 # A world can be in the output folder, or in the folder of its level.
 sed 's#w/world#world#' <(printf '%s\n' 'version = 1' '[[asset]]' 'mesh = "levels/yard.gltf"' 'output = "w/world.json"' \

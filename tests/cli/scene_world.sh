@@ -59,7 +59,7 @@ expect 0 "$relief_sim" w/world.json --check --json
 json stdout "[f['kind'] for f in d['files']] == ['world'] + ['collider'] * 3 and d['bodies'] == 5 and d['files'][0]['file'] == 'w/world.json'"
 expect_error 1 "w/world.json" "$relief_sim" only.toml --dump w/world.json
 printf 'world = "w/world.json"\n[[collider]]\nnode = "frist"\n' >bad.toml
-expect_error 3 "bad.toml:1:9: .*frist" "$relief_sim" bad.toml --check
+expect_error 3 "bad.toml:3:8: .*frist" "$relief_sim" bad.toml --check
 echo 'world = "w/none.json"' >bad.toml
 expect_error 2 "bad.toml:1:9: " "$relief_sim" bad.toml --check
 mv w/box-* .

@@ -18,8 +18,10 @@ container_hashes w >first
 expect 0 "$relief" info w/world.json --json
 json stdout "d['file'] == 'w/world.json' and d['unit'] == 'm' and [c['bodies'] for c in d['colliders']] == [1, 3, 1]"
 json stdout "d['bytes'] == sum(__import__('os').path.getsize('w/' + c['file']) for c in d['colliders'])"
+json stdout "all(c['provenance']['mesh_name'] == c['mesh'] and '--budget' in c['provenance']['options'] for c in d['colliders'])"
 expect 0 "$relief" info w/world.json
-grep -q '^Relief world of 5 bodies of 3 colliders' stdout && [ "$(wc -l <stdout)" -eq 6 ] || die "info: $(cat stdout)"
+grep -q '^Relief world of 5 bodies of 3 colliders' stdout && [ "$(wc -l <stdout)" -eq 8 ] || die "info: $(cat stdout)"
+grep -q '^meshes   3' stdout && grep -q '^baked    by relief [0-9.]*' stdout || die "info does not show the origin: $(cat stdout)"
 expect 0 "$relief" check w/world.json
 grep -q '^world.json: 5 bodies of 3 colliders' stdout || die "check: $(cat stdout)"
 expect 0 "$relief" check w/world.json --mesh level.gltf --max-error 1 --samples 5000 --json

@@ -164,6 +164,11 @@ TEST_F(GroundBakes, OutputIsDeterministicAndReplacesOldTiles) {
     EXPECT_EQ(worldFiles().size(), 5U);
 }
 
+TEST_F(GroundBakes, TilesNeedAFolder) {
+    writeHills(70, 70);
+    expectError(tryBake("hills.raw", spec("tile=64"), {}), ErrorCode::kUsage, "tile=");
+}
+
 TEST_F(GroundBakes, EmptyTilesAreOmitted) {
     write("hills.raw", 129, 129, [](double x, double) { return x > 40 ? double{kHole} : 0.0; });
     const WorldField field = bakeWorld("tile=64,hole=0");

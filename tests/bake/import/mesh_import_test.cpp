@@ -156,7 +156,7 @@ TEST(ImportFormat, FilesWithoutSignatureAreReadByName) {
                        ErrorCode::kUnsupported);
     }
     for (const char* name : {"w.png", "w.raw"}) {
-        expectRejected(importText(name, tetrahedronObj()), "relief bake --heights", ErrorCode::kUnsupported);
+        expectRejected(importText(name, tetrahedronObj()), "bake it with --heights", ErrorCode::kUnsupported);
     }
 }
 

@@ -53,6 +53,16 @@ TEST(Recipe, MergesDefaultsKeyByKey) {
     EXPECT_EQ(assets[1].exclude, std::vector<std::string>{"c/d.obj"});
 }
 
+TEST(Recipe, MessagesNameKeysInsteadOfOptions) {
+    for (const auto& [message, expected] : {std::pair("--max-error is 'x' (--map and --paper); see --help",
+                                                      "max-error is 'x' (map and paper); see --help"),
+                                            {"a--map.obj: '--map' has no effect; raise -j or --budget",
+                                             "a--map.obj: '--map' has no effect; raise -j or budget"},
+                                            {"--maps --", "--maps --"}}) {
+        EXPECT_EQ(nameKeys(message, keys()), expected);
+    }
+}
+
 /// Each recipe with its expected assets: whether the asset is a world, and its arguments.
 TEST(Recipe, DefaultsThatConflictWithAnAssetAreDropped) {
     const std::string defaults = "[defaults]\noutput = '{stem}.relief'\n";

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <filesystem>
 
+#include "bake/report/collider_report.h"
 #include "bake/report/points_csv.h"
 #include "bake/report/recipe_report.h"
 #include "bake/verdict/report_text.h"
@@ -44,6 +45,20 @@ TEST(PointsCsv, WritesExactValuesAndMarksUnknowns) {
     const std::vector<FieldSample> samples = {{-0.25F, {0, 1, 0}, 2}, {kFarOutside, glm::vec3(0), 0}, {}};
     EXPECT_EQ(formatSamples(points, samples),
               "x,y,z,f,nx,ny,nz,map\n0.1,-2,3,-0.25,0,1,0,2\n1e+20,0,0,inf,0,0,0,0\n7,8,9,,,,,\n");
+}
+
+TEST(ColliderReport, WorldsShowTheCommonOrigin) {
+    const Provenance chair{"chair", "aa", 12, "relief 1", {{"quality", "fast"}, {"budget", "4096"}}};
+    const std::string rest = "; --json lists the options of each\nbaked    by relief 1";
+    EXPECT_EQ(commonOriginText({chair, chair}), "meshes   1" + rest + " with --quality fast --budget 4096\n");
+    Provenance lamp = chair;
+    lamp.mesh_hash = "bb";
+    lamp.options[1].value = "8192";
+    lamp.options.push_back({"as", "shell"});
+    EXPECT_EQ(commonOriginText({chair, lamp}), "meshes   2" + rest + " with --quality fast\n");
+    lamp.tool_version = "relief 2";
+    lamp.options[0].value = "best";
+    EXPECT_EQ(commonOriginText({chair, lamp}), "meshes   2" + rest + ", relief 2\n");
 }
 
 AssetResult baked(const std::string& name, double seconds, std::vector<std::string> warnings = {}) {

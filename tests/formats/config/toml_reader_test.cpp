@@ -28,6 +28,13 @@ void fields(FieldVisitor& visit, Part& part) {
     visit("weight", part.weight, {"Weight", "kg", {0.0, 10.0, false}, {}, {.required = true}});
 }
 
+struct Pull {
+    float strength = 1.0F;
+};
+void fields(FieldVisitor& visit, Pull& pull) {
+    visit("strength", pull.strength, {"Strength", {}, {}, {}, {.required = true, .not_zero = true}});
+}
+
 struct Thing {
     Form form = Form::kBall;
     float radius = 1.0F;
@@ -43,6 +50,9 @@ struct Thing {
     std::uint32_t heavy = 0;
     std::filesystem::path file;
     std::string origin;
+    std::string name;
+    std::string name_origin;
+    std::optional<Pull> pull;
 };
 void fields(FieldVisitor& visit, Thing& t) {
     visit("form", t.form, {"Form", {}, {}, {}, {.selects = true}});
@@ -55,7 +65,9 @@ void fields(FieldVisitor& visit, Thing& t) {
     visit("axis", t.axis, {"Axis", {}, {}, {}, {.unit_length = true}});
     visit("part", t.parts, {"Parts", {}, {}, {}, {.most = 2}});
     visit("heavy", t.heavy, {"The heaviest", {}, {}, {}, {.instead_of = "count", .index_of = "part"}});
-    visit("file", FieldFile{t.file, t.origin}, {"File"});
+    visit("file", FieldPlaced{t.file, t.origin}, {"File"});
+    visit("name", FieldPlaced{t.name, t.name_origin}, {"Name"});
+    visit("pull", t.pull, {"Pull"});
 }
 std::optional<FieldFault> check(Thing& thing, const GivenFields& given) {
     if (given("part[1].weight") && thing.parts[1].weight > thing.parts[0].weight) {
@@ -80,7 +92,7 @@ TEST(TomlReader, ReadsEveryForm) {
     const auto thing = required(
         read("side = [1, 2, 3]\ncount = [2, 4]\nrange = [-1, 0.5]\nspeed = 3\naxis = [0, 0, -2]\nfile = "
              "\"a.obj\"\n"
-             "[[part]]\nweight = 2\n[[part]]\nweight = 1e-60\n"));
+             "name = \"a\"\n[[part]]\nweight = 2\n[[part]]\nweight = 1e-60\n"));
     EXPECT_EQ(thing.form, Form::kBox) << "read from its side length";
     EXPECT_EQ(*thing.side, glm::vec3(1.0F, 2.0F, 3.0F));
     EXPECT_EQ(thing.least, 2U);
@@ -91,6 +103,7 @@ TEST(TomlReader, ReadsEveryForm) {
     EXPECT_EQ(thing.axis, glm::vec3(0.0F, 0.0F, -1.0F));
     EXPECT_EQ(thing.file, std::filesystem::path("dir/a.obj"));
     EXPECT_EQ(thing.origin, "f.toml:6:8");
+    EXPECT_EQ(thing.name + " " + thing.name_origin, "a f.toml:7:8");
     ASSERT_EQ(thing.parts.size(), 2U);
     EXPECT_GT(thing.parts[1].weight, 0.0F) << "positive in the file, positive as a float";
     EXPECT_EQ(read("count = 3\n")->most, 3U);
@@ -111,7 +124,9 @@ TEST(TomlReader, Errors) {
     EXPECT_EQ(error("speed = 1\n"),
               "f.toml:1:9: speed has no effect without axis; add axis, or remove speed");
     EXPECT_EQ(error("axis = [1, 0, 0]\nspeed = 0\n"),
-              "f.toml:2:9: speed has no effect if it is 0; raise it or remove it");
+              "f.toml:2:9: speed has no effect if it is 0; use another number, or remove it");
+    EXPECT_EQ(error("pull = { strength = -1e-60 }\n"),
+              "f.toml:1:21: pull.strength has no effect if it is 0; use another number, or remove the table");
     EXPECT_EQ(error("axis = [0, 0, 0]\n"),
               "f.toml:1:8: axis has no direction; use a nonzero vector such as [0, 1, 0]");
     EXPECT_EQ(error("heavy = 0\ncount = 1\n"), "f.toml:1:9: heavy and count exclude each other; remove one");

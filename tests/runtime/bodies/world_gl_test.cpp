@@ -206,6 +206,20 @@ TEST_P(WorldGlTest, ParticlesMatchThoseOfTestingEveryBody) {
     }
 }
 
+TEST_P(WorldFieldGlTest, ExchangeNamesTheDifference) {
+    const Colliders colliders;
+    const std::vector<ColliderBody> bodies = {{&colliders[2], {}}};
+    WorldTextures textures = required(WorldTextures::create(bodies));
+    Collider other = colliders[2];
+    other.maps[0].empty_is_outside = !other.maps[0].empty_is_outside;
+    expectError(textures.exchange(0, other, std::nullopt), ErrorCode::kUnsupported, "empty_is_outside");
+    other = colliders[2];
+    other.maps.push_back(other.maps[0]);
+    expectError(textures.exchange(0, other, std::nullopt), ErrorCode::kUnsupported,
+                "a single map of patches");
+    EXPECT_TRUE(textures.exchange(0, colliders[2], std::nullopt));
+}
+
 TEST_P(WorldFieldGlTest, CollidersOfManyBodiesAreUploadedOnce) {
     const Collider box = boxCollider();
     const auto one = WorldTextures::create(std::vector<ColliderBody>(1, {&box, {}, 1.0F, 0.0F}));

@@ -335,12 +335,12 @@ TEST(Emitter, CheckNamesTheInvalidSetting) {
     EmitterSettings points = fountain();
     points.shape = EmitterShape::kPoints;
     points.points.positions.resize(2);
-    const std::pair<const char*, std::function<void(EmitterSettings&)>> wrong[] = {
+    const std::pair<std::string, std::function<void(EmitterSettings&)>> wrong[] = {
         {"radius", [](auto& s) { s.radius = -1.0F; }},
         {"center", [](auto& s) { s.center.x = kNan; }},
         {"normal", [](auto& s) { s.shape = EmitterShape::kDisc, s.normal = glm::vec3(0.0F); }},
         {"box_min", [](auto& s) { s.shape = EmitterShape::kBox, s.box_min.z = 1.0F; }},
-        {"points", [](auto& s) { s.shape = EmitterShape::kPoints; }},
+        {"1 to " + std::to_string(kPointsMax) + " points", [](auto& s) { s.shape = EmitterShape::kPoints; }},
         {"normals", [&](auto& s) { s = points, s.points.normals.resize(1); }},
         {"aim.direction", [&](auto& s) { s = points, s.aim->direction.reset(); }},
         {"aim.direction", [](auto& s) { s.shape = EmitterShape::kBox, s.aim->direction.reset(); }},

@@ -200,9 +200,10 @@ TEST(SceneMaterial, UnknownNamesAreErrors) {
     const test::TemporaryFolder folder;
     writeBox(folder);
     for (const auto& [more, what] :
-         {std::pair("[[material]]\nname = \"stave\"\n", "material[0].name = 'stave'"),
-          {"[[spawn]]\non = \"collision\"\nmaterial = \"ice\"\n", "spawn[0].material = 'ice'"}}) {
-        expectErrorOf(loadAll(folder.write("scene.toml", kHead + more), {}), "scene.toml:3:1: ", what);
+         {std::pair("[[material]]\nname = \"stave\"\n", "scene.toml:4:8: material[0].name = 'stave'"),
+          {"[[spawn]]\non = \"collision\"\nmaterial = \"ice\"\n",
+           "scene.toml:5:12: spawn[0].material = 'ice'"}}) {
+        expectErrorOf(loadAll(folder.write("scene.toml", kHead + more), {}), what, "");
         // Another scene that replaces this one during play.
         const auto plays = loadAll(folder.write("plays.toml", kHead), {});
         const auto changed = parseScene(kHead + more, "scene.toml");
@@ -256,11 +257,11 @@ TEST(ScenePlay, MissingClipsAndMeshesAreNamed) {
     const test::TemporaryFolder folder;
     Collider collider = animatedContainer(bendingTube(12, 8));
     ASSERT_TRUE(saveCollider(folder.path() / "tube.relief", collider));
-    const auto expectRefused = [&](const std::string& words) {
+    const auto expectRefused = [&](const std::string& words, const std::string& place = "2:8") {
         expectErrorOf(loadAll(folder.write("scene.toml", kTube + "play = { clip = \"run\" }\n"), {}),
-                      "scene.toml:2:8", words);
+                      "scene.toml:" + place + ": ", words);
     };
-    expectRefused("'bend', 'grow'");
+    expectRefused("'bend', 'grow'", "3:17");
     collider.animation.resize(100);
     ASSERT_TRUE(saveCollider(folder.path() / "tube.relief", collider));
     expectRefused("FlatBuffers");
@@ -299,7 +300,7 @@ TEST(ScenePlay, MaterialsHaveColours) {
     }
     EXPECT_TRUE(loadDrawnMeshes(*load(""))->meshes.front().colors.empty());
     expectErrorOf(load("[[collider.material]]\nname = \"hat\"\ncolor = [1, 1, 1]\n"),
-                  "scene.toml:2:8: collider.material: ", "hat");
+                  "scene.toml:5:8: collider.material: ", "hat");
 }
 
 Scene placed(const std::string& text) {
@@ -429,9 +430,13 @@ TEST(SceneWorld, NodesHaveOnePlaceInTheWorld) {
         Scene scene = goodScene("world = \"w.json\"\n[[collider]]\nnode = \"" + std::string(node) + "\"\n");
         const auto done = placeBodies(scene, world);
         ASSERT_FALSE(done) << node;
-        EXPECT_TRUE(done.error().message.starts_with("dir/scene.toml:1:9: collider[0].node = '"))
+        EXPECT_TRUE(done.error().message.starts_with("dir/scene.toml:3:8: collider[0].node = '"))
             << done.error().message;
     }
+    const std::string door = "[[collider]]\nnode = \"door\"\n";
+    Scene twice = goodScene("world = \"w.json\"\n" + door + door);
+    expectErrorOf(placeBodies(twice, test::threeBodies()), "dir/scene.toml:5:8: collider[1].node = 'door'",
+                  "");
 }
 
 }  // namespace

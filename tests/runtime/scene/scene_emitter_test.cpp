@@ -236,8 +236,8 @@ TEST_F(SceneSurface, MayBeAMeshFile) {
     EXPECT_NEAR(area(head + "material = \"iron\"\n"), 2.0, 1e-6);
     EXPECT_NEAR(area(head + "material = \"wood\"\ngroup = \"shell\"\n"), 1.0, 1e-6);
     EXPECT_NEAR(area(head + "attach = 0\n"), 4.0, 1e-6) << "in the collider's space";
-    expectRefused(head + "group = \"floor\"\n", "3:1", "'shell', 'lid top'");
-    expectRefused(head + "material = \"glass\"\n", "3:1", "'wood', 'iron'");
+    expectRefused(head + "group = \"floor\"\n", "6:9", "'shell', 'lid top'");
+    expectRefused(head + "material = \"glass\"\n", "6:12", "'wood', 'iron'");
     expectRefused(head + "material = \"wood\"\ngroup = \"lid top\"\n", "3:1", "no area");
     const auto loaded = load(head);
     ASSERT_TRUE(loaded);
@@ -258,17 +258,17 @@ TEST_F(SceneSurface, CollidersWithoutAMeshGiveASurface) {
     const std::string wobbles =
         "[[collider]]\nmesh = \"ball.obj\"\ndeform = { amplitude = 0.1, frequency = 1 }\n";
     EXPECT_NEAR(area(wobbles + kSurface + "attach = 0\n"), 1.5 + 0.5 * std::sqrt(3.0), 1e-6);
-    expectRefused(wobbles + kSurface + "attach = 0\ngroup = \"a\"\n", "4:1", "emitter.group");
+    expectRefused(wobbles + kSurface + "attach = 0\ngroup = \"a\"\n", "7:9", "emitter.group");
 }
 
 TEST_F(SceneSurface, MissingPartsAreErrors) {
     const std::string head = kPlayed + kSurface + "attach = 0\n";
-    expectRefused(head + "group = \"Head\"\n", "4:1", "emitter.group");
-    expectRefused(head + "material = \"hair\"\n", "4:1", "emitter.material");
+    expectRefused(head + "group = \"Head\"\n", "7:9", "emitter.group");
+    expectRefused(head + "material = \"hair\"\n", "7:12", "emitter.material");
     Collider bare = animatedContainer(mesh_);
     bare.animation.clear();
     ASSERT_TRUE(saveCollider(folder_.path() / "tube.relief", bare));
-    expectRefused(kCollider + kSurface + "attach = 0\ngroup = \"Head\"\n", "3:1", "emitter.group");
+    expectRefused(kCollider + kSurface + "attach = 0\ngroup = \"Head\"\n", "6:9", "emitter.group");
     expectRefused(kCollider + kSurface + "attach = 0\n", "3:1", (folder_.path() / "tube.relief").string());
     folder_.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
     expectRefused(kCollider + kSurface + "mesh = \"flat.obj\"\n", "3:1", "no area");

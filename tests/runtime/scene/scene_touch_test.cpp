@@ -254,8 +254,9 @@ TEST_F(SceneTouch, DroppedBirthsUseNoCapacity) {
 }
 
 TEST_F(SceneTouch, UnknownMaterialsAreErrors) {
-    expectErrorOf(load(kBoxCollider + kFoot + "touching = { within = 1, material = [\"oak\", \"erth\"] }\n"),
-                  "scene.toml:3:1: emitter[0].touching.material = 'erth'", "");
+    expectErrorOf(
+        load(kBoxCollider + kFoot + "[emitter.touching]\nwithin = 1\nmaterial = [\"oak\",\n  \"erth\"]\n"),
+        "scene.toml:11:3: emitter[0].touching.material = 'erth'", "");
 }
 
 }  // namespace
