@@ -152,9 +152,11 @@ Result<void> checkMaterials(const Scene& scene, const LoadedScene& of) {
         }
     }
     for (std::size_t i = 0; i < scene.emitters.size(); ++i) {
-        const SceneTouching touching = scene.emitters[i].touching.value_or(SceneTouching{});
+        const SceneEmitter& one = scene.emitters[i];
+        const SceneTouching touching = one.touching.value_or(SceneTouching{});
         for (std::size_t k = 0; k < touching.materials.size(); ++k) {
-            RELIEF_TRY(check(touching.material_origins[k],
+            const bool placed = k < touching.material_origins.size();  // read from a file
+            RELIEF_TRY(check(placed ? touching.material_origins[k] : one.place,
                              "emitter[" + std::to_string(i) + "].touching.material", touching.materials[k]));
         }
     }
