@@ -114,7 +114,7 @@ class Search {
           p_(p),
           side_(collider.bounds.longestSide()),
           sign_(sample.distance < 0.0F ? -1.0F : 1.0F),
-          best_{.distance = within} {
+          best_{.distance = std::min(NearestSearch::kLimitFactor * within, kFarOutside)} {
         if (sample.distance < kFarOutside) {
             follow({sign_ * sample.normal, sign_ * sample.distance}, nullptr, NearestSearch::kSteps);
         }
@@ -281,24 +281,22 @@ class Search {
     }
 
     /// If the vote at P led to no surface, probes rings around P, or around the nearest point of the bounds, until a
-    /// surface is found. A search with a limit needs no rings: probeAround() starts at the limit.
+    /// surface is found.
     void findAny() {
         const glm::vec3 center = clamped(p_);
         if (center != p_) {
             probe(center, true);
         }
-        if (best_.distance < kFarOutside) {
-            return;
-        }
-        for (int k = NearestSearch::kFinestRing; k >= 0 && !found(); --k) {
-            const float radius = std::ldexp(side_, -k);
+        const auto radius = [&](int k) { return std::ldexp(side_, -k); };
+        const auto needs = [&](int k) { return k >= 0 && !found() && radius(k) < best_.distance; };
+        for (int k = NearestSearch::kFinestRing; needs(k); --k) {
             for (int i = 0; i < 14; ++i) {
-                probe(clamped(center + radius * (i < 8 ? diagonal(i) : axis(i - 8))), false);
+                probe(clamped(center + radius(k) * (i < 8 ? diagonal(i) : axis(i - 8))), false);
             }
         }
-        for (int k = NearestSearch::kFinestWholeRing; k >= 0 && !found(); --k) {
+        for (int k = NearestSearch::kFinestWholeRing; needs(k); --k) {
             for (int i = 0; i < 6; ++i) {
-                probe(clamped(center + std::ldexp(side_, -k) * axis(i)), true);
+                probe(clamped(center + radius(k) * axis(i)), true);
             }
         }
     }
@@ -385,8 +383,8 @@ SurfaceSample nearestSurface(const Collider& collider, const glm::vec3& p, float
     bool near = std::abs(nearest.distance) < within;
     if (canSearch(collider, p)) {
         const Search search(collider, p, sample, within);
-        near = search.found();
-        if (near) {
+        near = search.found() && search.best().distance < within;
+        if (search.found()) {
             nearest = search.best();
             // A distance of 0 has no sign.
             nearest.distance = search.sign() * std::max(nearest.distance, NearestSearch::kDistanceMin);
