@@ -101,6 +101,9 @@ struct InsideSample {
 /// Returns the same side as evaluate(), and the same normal and map if inside, but stops at the first map that
 /// classifies `p` as outside. The first element of Collider::maps should be the map that decides most often.
 [[nodiscard]] InsideSample evaluateInside(const Collider& collider, const glm::vec3& p);
+/// Returns false only if all points of a box are outside. Conservative, and fast for patches; true for other formats.
+/// \param box  object space.
+[[nodiscard]] bool mayBeInside(const Collider& collider, const Bounds& box);
 
 /// Returns a box that contains the solid: the intersection of the volumes of maps with `encloses` and
 /// `empty_is_outside`; nullopt if none.

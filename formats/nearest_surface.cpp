@@ -109,12 +109,11 @@ class Corner {
 
 class Search {
   public:
-    Search(const Collider& collider, const glm::vec3& p, const FieldSample& sample, float within)
+    Search(const Collider& collider, const glm::vec3& p, const FieldSample& sample)
         : collider_(collider),
           p_(p),
           side_(collider.bounds.longestSide()),
-          sign_(sample.distance < 0.0F ? -1.0F : 1.0F),
-          best_{.distance = std::min(NearestSearch::kLimitFactor * within, kFarOutside)} {
+          sign_(sample.distance < 0.0F ? -1.0F : 1.0F) {
         if (sample.distance < kFarOutside) {
             follow({sign_ * sample.normal, sign_ * sample.distance}, nullptr, NearestSearch::kSteps);
         }
@@ -123,7 +122,7 @@ class Search {
         tilt();
     }
 
-    [[nodiscard]] bool found() const { return best_.map >= 0; }
+    [[nodiscard]] bool found() const { return best_.distance < kFarOutside; }
     [[nodiscard]] float sign() const { return sign_; }
     [[nodiscard]] const SurfaceSample& best() const { return best_; }  ///< its distance is unsigned
 
@@ -287,16 +286,15 @@ class Search {
         if (center != p_) {
             probe(center, true);
         }
-        const auto radius = [&](int k) { return std::ldexp(side_, -k); };
-        const auto needs = [&](int k) { return k >= 0 && !found() && radius(k) < best_.distance; };
-        for (int k = NearestSearch::kFinestRing; needs(k); --k) {
+        for (int k = NearestSearch::kFinestRing; k >= 0 && !found(); --k) {
+            const float radius = std::ldexp(side_, -k);
             for (int i = 0; i < 14; ++i) {
-                probe(clamped(center + radius(k) * (i < 8 ? diagonal(i) : axis(i - 8))), false);
+                probe(clamped(center + radius * (i < 8 ? diagonal(i) : axis(i - 8))), false);
             }
         }
-        for (int k = NearestSearch::kFinestWholeRing; needs(k); --k) {
+        for (int k = NearestSearch::kFinestWholeRing; k >= 0 && !found(); --k) {
             for (int i = 0; i < 6; ++i) {
-                probe(clamped(center + radius(k) * axis(i)), true);
+                probe(clamped(center + std::ldexp(side_, -k) * axis(i)), true);
             }
         }
     }
@@ -342,7 +340,7 @@ class Search {
     float side_;
     float sign_;
     int left_ = NearestSearch::kEvaluationsMax - 1;
-    SurfaceSample best_;    // before the first surface, its distance is the limit
+    SurfaceSample best_;
     bool settled_ = false;  // a plane confirmed that no point of its surface is nearer
 };
 
@@ -374,24 +372,19 @@ bool canSearch(const Collider& collider, const glm::vec3& p) {
 
 }  // namespace
 
-SurfaceSample nearestSurface(const Collider& collider, const glm::vec3& p, float within) {
+SurfaceSample nearestSurface(const Collider& collider, const glm::vec3& p) {
     const FieldSample sample = evaluate(collider, p);
     if (sample.map < 0) {
         return {.point = p};
     }
     SurfaceSample nearest = fromVote(p, sample);
-    bool near = std::abs(nearest.distance) < within;
     if (canSearch(collider, p)) {
-        const Search search(collider, p, sample, within);
-        near = search.found() && search.best().distance < within;
+        const Search search(collider, p, sample);
         if (search.found()) {
             nearest = search.best();
             // A distance of 0 has no sign.
             nearest.distance = search.sign() * std::max(nearest.distance, NearestSearch::kDistanceMin);
         }
-    }
-    if (!near && within < kFarOutside) {
-        return {.point = p};
     }
     nearest.normal = unit(nearest.normal);
     return nearest;

@@ -51,9 +51,6 @@ struct NearestSearch {
     static constexpr int kFinestRing = 5;  // radius 2⁻⁵ of the longest side
     static constexpr int kFinestWholeRing = 3;
     static constexpr int kHalvings = 4;
-    // A search within a distance starts at this multiple of it, so that probes at kShareNear of that radius pass every
-    // plane within the distance: between a direction and the nearest diagonal, the cosine is at least 0.57.
-    static constexpr float kLimitFactor = 4.0F;
     static constexpr int kRounds = 2;
     static constexpr float kShareNear = 0.5F;  // fraction of the distance found
     static constexpr float kShareFar = 0.9F;
@@ -75,10 +72,7 @@ struct NearestSearch {
 ///
 /// \param p  object space; any finite point. The result is that of evaluate() if a coordinate of P or of the bounds
 /// exceeds 10¹⁵ in magnitude, or if the bounds' longest side is below 10⁻¹².
-/// \param within  object units, above 0. Ignores surfaces at this distance or beyond; a small value makes the search
-/// faster. If no nearer surface is found, `distance` is kFarOutside and `map` is −1, even if P is inside.
 /// \return finite for all map contents.
-[[nodiscard]] SurfaceSample nearestSurface(const Collider& collider, const glm::vec3& p,
-                                           float within = kFarOutside);
+[[nodiscard]] SurfaceSample nearestSurface(const Collider& collider, const glm::vec3& p);
 
 }  // namespace relief

@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <glm/common.hpp>
+#include <limits>
 #include <string>
 
 #include "formats/normal_index.h"
@@ -64,6 +66,9 @@ float onSide(bool inside, float distance, float nearest) {
 
 /// Minimum distance between the surface and cells without a patch, in cells, after rounding.
 constexpr float kNearest = 1.0F / 1024.0F;
+
+/// Margin of tests of boxes for rounding, in cells and in heights along a side.
+constexpr float kBoxMargin = 1e-4F;
 
 /// Returns the encoded range of a patch's heights, without their codes.
 PatchHeights heightRange(const PatchRecord& patch) {
@@ -155,6 +160,76 @@ PatchVote votePair(PatchTexels texels, const PatchRecord& pair, const glm::vec3&
 bool meetsRoots(PatchTexels texels, const glm::vec3& p) {
     const glm::vec3 size(patchTreeSize(texels).roots);
     return p.x >= 0.0F && p.y >= 0.0F && p.z >= 0.0F && p.x < size.x && p.y < size.y && p.z < size.z;
+}
+
+/// Whether a box in the unit cube of a cell may contain points behind a patch.
+bool mayBeBehind(PatchTexels texels, const PatchRecord& patch, const glm::vec3& low, const glm::vec3& high) {
+    glm::vec3 least(std::numeric_limits<float>::infinity());
+    glm::vec3 most = -least;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        const glm::vec3 in_cell((corner & 1U) != 0 ? high.x : low.x, (corner & 2U) != 0 ? high.y : low.y,
+                                (corner & 4U) != 0 ? high.z : low.z);
+        const glm::vec3 at = patch.frame().across(in_cell);
+        least = glm::min(least, at);
+        most = glm::max(most, at);
+    }
+    const std::uint32_t side = patch.side();
+    const auto last = static_cast<float>(side - 1);
+    const auto first = [&](float at) {
+        return static_cast<std::uint32_t>(std::clamp(std::floor(at * last - kBoxMargin), 0.0F, last));
+    };
+    const auto end = [&](float at) {
+        return static_cast<std::uint32_t>(std::clamp(std::ceil(at * last + kBoxMargin), 0.0F, last));
+    };
+    std::uint8_t lowest = 255;
+    std::uint8_t highest = 0;
+    for (std::uint32_t row = first(least.y); row <= end(most.y); ++row) {
+        for (std::uint32_t column = first(least.x); column <= end(most.x); ++column) {
+            const std::uint8_t code = heightCode(texels, patch, row * side + column);
+            lowest = std::min(lowest, code);
+            highest = std::max(highest, code);
+        }
+    }
+    const PatchHeights heights = heightRange(patch);
+    const auto height = [&](std::uint8_t code) {
+        return heights.low() + heights.step() * static_cast<float>(code);
+    };
+    return signOf(patch) > 0.0F ? least.z < height(highest) + kBoxMargin
+                                : most.z > height(lowest) - kBoxMargin;
+}
+
+/// \param low, high  a box that meets the unit cube of the record's cell.
+bool mayBeInside(PatchTexels texels, const PatchRecord& record, const glm::vec3& low, const glm::vec3& high) {
+    if (record.kind() == PatchRecord::Kind::kPatch) {
+        const auto behind = [&](const PatchRecord& patch) { return mayBeBehind(texels, patch, low, high); };
+        if (!record.isPair()) {
+            return behind(record);
+        }
+        const bool first = behind(patchTexel(texels, record.first()));
+        return first != isIntersection(record) ? first : behind(patchTexel(texels, record.first() + 1));
+    }
+    if (record.kind() != PatchRecord::Kind::kSplit) {
+        return record.kind() == PatchRecord::Kind::kInside;
+    }
+    std::uint32_t child = record.first();
+    for (std::uint32_t octant = 0; octant < 8; ++octant) {
+        const glm::vec3 at(octant & 1U, octant >> 1U & 1U, octant >> 2U);
+        const glm::vec3 octant_low = glm::max(2.0F * low - at, glm::vec3(0.0F));
+        const glm::vec3 octant_high = glm::min(2.0F * high - at, glm::vec3(1.0F));
+        const bool meets =
+            octant_low.x <= octant_high.x && octant_low.y <= octant_high.y && octant_low.z <= octant_high.z;
+        if ((record.children() >> octant & 1U) == 0) {
+            if (meets && (record.low >> (10U + octant) & 1U) != 0) {
+                return true;
+            }
+            continue;
+        }
+        if (meets && mayBeInside(texels, patchTexel(texels, child), octant_low, octant_high)) {
+            return true;
+        }
+        ++child;
+    }
+    return false;
 }
 
 template <class Vec, class Real = typename Vec::value_type>
@@ -410,6 +485,27 @@ bool isOutsidePatches(PatchTexels texels, const glm::vec3& p) {
     }
     const bool first = ahead(patchTexel(texels, record.first()));
     return first == isIntersection(record) ? first : ahead(patchTexel(texels, record.first() + 1));
+}
+
+bool mayBeInsidePatches(PatchTexels texels, const glm::vec3& low, const glm::vec3& high) {
+    const glm::uvec3 roots = patchTreeSize(texels).roots;
+    const glm::vec3 first = glm::max(glm::floor(low), glm::vec3(0.0F));
+    const glm::vec3 last = glm::min(glm::floor(high), glm::vec3(roots) - 1.0F);
+    for (float z = first.z; z <= last.z; ++z) {
+        for (float y = first.y; y <= last.y; ++y) {
+            for (float x = first.x; x <= last.x; ++x) {
+                const glm::vec3 at(x, y, z);
+                const glm::uvec3 root(at);
+                const PatchRecord record =
+                    patchTexel(texels, 1 + (root.z * roots.y + root.y) * roots.x + root.x);
+                if (mayBeInside(texels, record, glm::max(low - at, glm::vec3(0.0F)),
+                                glm::min(high - at, glm::vec3(1.0F)))) {
+                    return true;
+                }
+            }
+        }
+    }
+    return false;
 }
 
 Result<void> validatePatches(PatchTexels texels) {

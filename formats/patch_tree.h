@@ -167,10 +167,13 @@ struct PatchVote {
 /// \param p  map space.
 /// \return nullopt outside the roots.
 [[nodiscard]] std::optional<PatchVote> votePatches(PatchTexels texels, const glm::vec3& p);
-/// Whether the vote at a point is outside. Faster than votePatches(), except in a leaf with a patch.
+/// Returns whether the vote at a point is outside. Much faster than votePatches() in leaves without a patch.
 /// \param p  map space.
 /// \return false outside the roots.
 [[nodiscard]] bool isOutsidePatches(PatchTexels texels, const glm::vec3& p);
+/// Returns whether a box may contain points whose vote is inside. Conservative: bounds heights by those around the box.
+/// \param low, high  map space; the part of the box outside the roots is ignored.
+[[nodiscard]] bool mayBeInsidePatches(PatchTexels texels, const glm::vec3& low, const glm::vec3& high);
 
 /// Checks that every record refers to texels of the map: split cells to the next free texels, level by level; patches
 /// and pairs to texels after the records of cells. Errors: kInvalidInput.

@@ -3,10 +3,8 @@
 #include "runtime/births/emitter_motion.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/glm.hpp>
-#include <map>
 
 #include "formats/nearest_surface.h"
 
@@ -15,6 +13,8 @@ namespace {
 
 /// Margin for the error of worldBounds(), 1/1000 of the body's radius, and for rounding.
 constexpr float kRoom = 0.002F;
+/// A surface found within a distance may be this much farther: nearestSurface() estimates it from the planes of votes.
+constexpr float kReach = 1.5F;
 
 Bounds grown(const Bounds& box, float room) {
     return {box.min - room, box.max + room};
@@ -35,7 +35,7 @@ TouchFilter::TouchFilter(const LoadedScene& loaded, const SceneEmitter& emitter)
         const bool own = emitter.attach && wholeOf(scene, *emitter.attach) == wholeOf(scene, i);
         if (!own && !body.deforms()) {
             const Bounds box = worldBounds(body, loaded.colliders[i]->bounds);
-            bodies_.push_back({i, grown(box, kRoom * box.longestSide())});
+            bodies_.push_back({i, grown(box, touching_.within + kRoom * box.longestSide())});
         }
     }
 }
@@ -48,35 +48,22 @@ std::vector<bool> TouchFilter::operator()(std::span<const Birth> births,
     }
     std::vector<Body> near;
     std::copy_if(bodies_.begin(), bodies_.end(), std::back_inserter(near),
-                 [&](const Body& body) { return grown(body.box, touching_.within).meets(all); });
+                 [&](const Body& body) { return body.box.meets(all); });
     const bool all_rest = std::all_of(near.begin(), near.end(), [&](const Body& body) {
         return loaded_->scene.colliders[body.index].keys.empty();
     });
-    // Most births are far from everything. Among bodies at rest, one search finds this for a whole cell of a grid.
-    const float cell = 2.0F * touching_.within;
-    const float reach = touching_.within + std::sqrt(0.75F) * cell;
-    std::map<std::array<float, 3>, bool> cells;
-    const auto mayTouch = [&](const glm::vec3& p) {
-        const glm::vec3 low = glm::floor(p / cell);
-        const auto [at, is_new] = cells.try_emplace({low.x, low.y, low.z});
-        if (is_new) {
-            at->second = nearest(cell * (low + 0.5F), time, near, reach).has_value();
-        }
-        return at->second;
-    };
     std::vector<bool> touching;
     for (std::size_t i = 0; i < births.size(); ++i) {
-        const glm::vec3& p = births[i].position;
         const double moment = time - static_cast<double>(births[i].age);
-        const bool hopeless = all_rest && (glm::length(velocities[i]) < touching_.min_speed || !mayTouch(p));
-        touching.push_back(!hopeless && touches(p, velocities[i], moment, near));
+        const bool too_slow = all_rest && glm::length(velocities[i]) < touching_.min_speed;
+        touching.push_back(!too_slow && touches(births[i].position, velocities[i], moment, near));
     }
     return touching;
 }
 
 std::optional<TouchFilter::Touched> TouchFilter::touchedOf(const Body& body, const glm::vec3& p,
                                                            double moment, float within) const {
-    if (!grown(body.box, within).contains(p)) {
+    if (!body.box.contains(p)) {
         return std::nullopt;
     }
     const SceneCollider& placed = loaded_->scene.colliders[body.index];
@@ -84,10 +71,11 @@ std::optional<TouchFilter::Touched> TouchFilter::touchedOf(const Body& body, con
     const Pose pose = poseAt(placed, moment);
     const glm::vec3 q = toObject(pose, p);
     const float reach = within / pose.scale;
-    if (!grown(shape.bounds, reach).contains(q)) {
+    if (!grown(shape.bounds, reach).contains(q) ||
+        !mayBeInside(shape, {q - kReach * reach, q + kReach * reach})) {
         return std::nullopt;
     }
-    const SurfaceSample at = nearestSurface(shape, q, reach);
+    const SurfaceSample at = nearestSurface(shape, q);
     const float distance = pose.scale * std::abs(at.distance);
     if (at.map < 0 || !(distance < within)) {
         return std::nullopt;
@@ -100,9 +88,10 @@ std::optional<TouchFilter::Touched> TouchFilter::touchedOf(const Body& body, con
         motion.velocity + glm::cross(motion.turn, p - pose.position)};
 }
 
-std::optional<TouchFilter::Touched> TouchFilter::nearest(const glm::vec3& p, double moment,
-                                                         std::span<const Body> near, float within) const {
+bool TouchFilter::touches(const glm::vec3& p, const glm::vec3& velocity, double moment,
+                          std::span<const Body> near) const {
     std::optional<Touched> nearest;
+    float within = touching_.within;
     const auto offer = [&](const std::optional<Touched>& one) {
         if (one && one->distance < within) {
             within = one->distance;
@@ -116,16 +105,10 @@ std::optional<TouchFilter::Touched> TouchFilter::nearest(const glm::vec3& p, dou
     if (ground.enabled && ground.height) {
         offer(Touched{std::abs(p.y - *ground.height), {}, glm::vec3(0.0F)});
     }
-    return nearest;
-}
-
-bool TouchFilter::touches(const glm::vec3& p, const glm::vec3& velocity, double moment,
-                          std::span<const Body> near) const {
-    const std::optional<Touched> touched = nearest(p, moment, near, touching_.within);
     const std::vector<std::string>& names = touching_.materials;
-    return touched &&
-           (names.empty() || std::find(names.begin(), names.end(), touched->material) != names.end()) &&
-           glm::length(velocity - touched->velocity) >= touching_.min_speed;
+    return nearest &&
+           (names.empty() || std::find(names.begin(), names.end(), nearest->material) != names.end()) &&
+           glm::length(velocity - nearest->velocity) >= touching_.min_speed;
 }
 
 std::vector<EmitterMotion> emitterMotions(const LoadedScene& loaded) {

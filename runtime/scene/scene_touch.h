@@ -32,7 +32,7 @@ class TouchFilter {
   private:
     struct Body {
         std::size_t index = 0;  // in the scene
-        Bounds box;             // world bounds over all times
+        Bounds box;             // world bounds over all times, enlarged by `within`
     };
     struct Touched {
         float distance = 0.0F;  // world units
@@ -42,9 +42,6 @@ class TouchFilter {
     /// Returns the surface of a body at a place, if it is nearer than `within`.
     [[nodiscard]] std::optional<Touched> touchedOf(const Body& body, const glm::vec3& p, double moment,
                                                    float within) const;
-    /// Returns the nearest surface at a place, if it is nearer than `within`.
-    [[nodiscard]] std::optional<Touched> nearest(const glm::vec3& p, double moment,
-                                                 std::span<const Body> near, float within) const;
     [[nodiscard]] bool touches(const glm::vec3& p, const glm::vec3& velocity, double moment,
                                std::span<const Body> near) const;
 

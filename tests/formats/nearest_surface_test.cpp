@@ -273,43 +273,6 @@ TEST(NearestSurface, IsFiniteAndOnTheVotedSideForAnyTexels) {
     EXPECT_GT(inside, 1000);
 }
 
-/// A limit hides farther surfaces, and leaves nearer ones as accurate as without it.
-TEST(NearestSurface, IgnoresSurfacesBeyondALimit) {
-    const glm::dvec3 half(0.5, 0.35, 0.6);
-    const Scene scene = sceneOf(*makeBox({0, 0, 0}, half), 0.8, 64);
-    const auto limit = static_cast<float>(4.0 * scene.texel);
-    std::mt19937 random(13);
-    std::uniform_real_distribution<double> within(-0.9, 0.9);
-    int near = 0;
-    int far = 0;
-    int missed = 0;
-    for (int i = 0; i < 20'000; ++i) {
-        const double z = within(random);
-        const double y = within(random);
-        const glm::vec3 p(glm::dvec3(within(random), y, z));
-        const double truth = boxDistance(glm::dvec3(p), half);
-        const SurfaceSample nearest = nearestSurface(scene.collider, p, limit);
-        if (nearest.map < 0) {
-            EXPECT_EQ(nearest.distance, kFarOutside);
-            EXPECT_EQ(nearest.point, p);
-            EXPECT_EQ(nearest.normal, glm::vec3(0.0F));
-            far += std::abs(truth) > double{limit} ? 1 : 0;
-            missed += std::abs(truth) < 0.9 * double{limit} ? 1 : 0;
-            continue;
-        }
-        ++near;
-        EXPECT_EQ(nearest.inside(), evaluate(scene.collider, p).inside());
-        EXPECT_LT(std::abs(nearest.distance), limit);
-        EXPECT_NEAR(nearest.distance, truth, 1.5 * scene.texel) << p.x << ", " << p.y << ", " << p.z;
-        EXPECT_NEAR(glm::length(nearest.point - p), std::abs(nearest.distance), 1e-5);
-    }
-    EXPECT_GT(near, 3000);
-    EXPECT_GT(far, 3000);
-    EXPECT_EQ(missed, 0);
-    // Outside the range of the search, the vote's distance counts.
-    EXPECT_EQ(nearestSurface(scene.collider, glm::vec3(2e15F, 0, 0), limit).map, -1);
-}
-
 TEST(NearestSurface, NoDataIsReported) {
     Scene scene = sceneOf(*makeSphere({0, 0, 0}, 0.5), 0.5, 16);
     for (DepthMap& map : scene.collider.maps) {

@@ -8,6 +8,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
+#include "formats/collider.h"
 #include "formats/container.h"
 #include "formats/depth_map.h"
 #include "formats/inspect.h"
@@ -100,6 +101,44 @@ TEST(PatchTree, OutsideIsTheSignOfTheVote) {
     }
     EXPECT_GT(outside, 1000);
     EXPECT_GT(inside, 1000);
+}
+
+/// A box without inside points must be found to be one, unless a surface passes close by.
+TEST(PatchTree, BoxesWithInsidePointsAreFound) {
+    std::mt19937 random(9);
+    std::uniform_real_distribution<float> unit(0.0F, 1.0F);
+    int with_inside = 0;
+    int outside = 0;
+    int undecided = 0;
+    for (int tree = 0; tree < 200; ++tree) {
+        Collider collider;
+        collider.maps = {randomPatches(random)};
+        DepthMap& map = collider.maps[0];
+        map.encloses = tree % 4 != 0;
+        // Turned about z, twice as large, and shifted.
+        map.object_to_map = {
+            {{0.3F, 0.4F, 0.0F, 0.5F}, {-0.4F, 0.3F, 0.0F, 2.0F}, {0.0F, 0.0F, 0.5F, -1.0F}}};
+        map.object_per_map = glm::vec3(2.0F);
+        for (int i = 0; i < 50; ++i) {
+            const glm::vec3 low(12.0F * unit(random) - 6.0F, 12.0F * unit(random) - 4.0F,
+                                10.0F * unit(random) + 1.0F);
+            const Bounds box{low, low + unit(random) * unit(random) * glm::vec3(1.0F, unit(random), 0.5F)};
+            bool inside = false;
+            for (int k = 0; k < 100; ++k) {
+                const glm::vec3 p =
+                    box.min + glm::vec3(unit(random), unit(random), unit(random)) * box.size();
+                inside = inside || evaluateInside(collider, p).inside;
+            }
+            const bool may = mayBeInside(collider, box);
+            ASSERT_TRUE(may || !inside);
+            with_inside += inside ? 1 : 0;
+            outside += may ? 0 : 1;
+            undecided += may && !inside && map.encloses ? 1 : 0;
+        }
+    }
+    EXPECT_GT(with_inside, 500);
+    EXPECT_GT(outside, 1000);
+    EXPECT_LT(undecided, with_inside / 4);
 }
 
 TEST(PatchTree, PlanesAreExactUpToTheirCodes) {
