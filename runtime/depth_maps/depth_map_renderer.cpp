@@ -21,10 +21,10 @@ constexpr GLint kPreviousUnit = 3;
 /// provoking vertex and depth clamping.
 class DrawState {
   public:
-    DrawState() {
+    explicit DrawState(bool gles) : gles_(gles) {
         glGetFloatv(GL_DEPTH_RANGE, range_);
         glDepthRangef(0.0F, 1.0F);
-        if (!isGles()) {
+        if (!gles_) {
             glGetIntegerv(GL_PROVOKING_VERTEX, &provoking_);
             glProvokingVertex(GL_LAST_VERTEX_CONVENTION);
             clamp_ = glIsEnabled(GL_DEPTH_CLAMP);
@@ -33,7 +33,7 @@ class DrawState {
     }
     ~DrawState() {
         glDepthRangef(range_[0], range_[1]);
-        if (!isGles()) {
+        if (!gles_) {
             glProvokingVertex(static_cast<GLenum>(provoking_));
             if (clamp_ == GL_TRUE) {
                 glEnable(GL_DEPTH_CLAMP);
@@ -44,6 +44,7 @@ class DrawState {
     DrawState& operator=(const DrawState&) = delete;
 
   private:
+    bool gles_;
     GLfloat range_[2] = {0.0F, 1.0F};
     GLint provoking_ = 0;
     GLboolean clamp_ = GL_FALSE;
@@ -57,6 +58,7 @@ Result<DepthMapRenderer> DepthMapRenderer::create(std::uint32_t width, std::uint
     RELIEF_TRY(checkTextureSize(width, height, "depth maps", kFix));
     const PassState state;
     DepthMapRenderer renderer;
+    renderer.gles_ = isGles();
     renderer.width_ = width;
     renderer.height_ = height;
     const auto w = static_cast<GLsizei>(width);
@@ -116,7 +118,7 @@ void DepthMapRenderer::render(GpuMesh& mesh, const DepthMap& map) const {
 }
 
 void DepthMapRenderer::renderInPass(GpuMesh& mesh, const DepthMap& map) const {
-    const DrawState draw_state;
+    const DrawState draw_state(gles_);
     const GLuint planes = mesh.planes();
     useTexture(kPositionUnit, mesh.positions());
     useTexture(kPlaneUnit, planes);

@@ -54,10 +54,11 @@ struct Unit {
     GLint texture_2d, texture_3d, sampler;
 };
 
-/// The PassStates of this thread.
+/// Counts the PassStates of this thread.
 struct Open {
     int sequences = 0;
     int passes = 0;
+    bool gles = false;  // of their context; isGles() takes microseconds
 };
 thread_local Open open;
 
@@ -95,10 +96,10 @@ struct PassState::Saved {
     std::array<GLfloat, 4> clear_color;
     GLint polygon_mode, point_origin;
 
-    explicit Saved(bool gles);
+    void read(bool gles);
 };
 
-PassState::Saved::Saved(bool gles) {
+void PassState::Saved::read(bool gles) {
     glGetIntegerv(GL_CURRENT_PROGRAM, &program);
     glGetIntegerv(GL_VERTEX_ARRAY_BINDING, &vertex_array);
     glGetIntegerv(GL_ARRAY_BUFFER_BINDING, &array_buffer);
@@ -144,16 +145,18 @@ PassState::Saved::Saved(bool gles) {
 }
 
 PassState::PassState(Scope scope) : scope_(scope) {
-    const bool gles = isGles();
+    if (open.sequences + open.passes == 0) {
+        open.gles = isGles();
+    }
+    const bool gles = open.gles;
+    if (scope == Scope::kSequence || open.sequences == 0 || open.passes > 0) {
+        saved_ = std::make_unique<Saved>();
+        saved_->read(gles);
+    }
+    ++(scope == Scope::kSequence ? open.sequences : open.passes);
     if (scope == Scope::kSequence) {
-        saved_ = std::make_unique<Saved>(gles);
-        ++open.sequences;
         return;
     }
-    if (open.sequences == 0 || open.passes > 0) {
-        saved_ = std::make_unique<Saved>(gles);
-    }
-    ++open.passes;
     for (GLuint i = 0; i < kUnits; ++i) {
         glBindSampler(i, 0);
     }
@@ -181,7 +184,7 @@ PassState::~PassState() {
         return;
     }
     const Saved& s = *saved_;
-    const bool gles = isGles();
+    const bool gles = open.gles;
     const auto name = [](GLint value) { return static_cast<GLuint>(value); };
     const auto word = [](GLint value) { return static_cast<GLenum>(value); };
     glUseProgram(name(s.program));

@@ -19,9 +19,9 @@ class PassState {
     static constexpr int kUnits = 11;
     enum class Scope {
         kPass,
-        /// Saves and restores the state once for all passes of this thread until its end, because queries are slow: a
-        /// pass in a sequence sets the state that it requires, but does not restore anything. A pass within a pass
-        /// still restores the state of the outer pass.
+        /// Saves the state once and restores it at the end of the sequence, because queries are slow. Passes of this
+        /// thread in a sequence set the state that they require, and restore nothing. A pass within a pass still
+        /// restores the state of the outer pass.
         kSequence,
     };
     explicit PassState(Scope scope = Scope::kPass);

@@ -49,15 +49,20 @@ bool gpuWasReset() {
     return relief_js_is_lost() != 0;
 }
 
-// The page's textures and buffers have no GL names in this module, so pass_state.js saves the state. A sequence is a pass.
+// The page's textures and buffers have no GL names in this module, so pass_state.js saves the state. Steps already run in
+// a pass (api.cpp), so a sequence saves nothing.
 struct PassState::Saved {};
 
 PassState::PassState(Scope scope) : scope_(scope) {
-    relief_js_save_state(kUnits);
+    if (scope_ == Scope::kPass) {
+        relief_js_save_state(kUnits);
+    }
 }
 
 PassState::~PassState() {
-    relief_js_restore_state();
+    if (scope_ == Scope::kPass) {
+        relief_js_restore_state();
+    }
 }
 
 // WebGL2 cannot map buffers or wait for fences; getBufferSubData() replaces both.

@@ -252,6 +252,12 @@ TEST_P(WobblePassGlTest, MatchesItsFormulaAndKeepsCallerState) {
     for (const double time : {0.0, 0.3, 777.7}) {
         pass.run(time);
         caller.expectKept("run");
+        {
+            const PassState sequence(PassState::Scope::kSequence);
+            pass.run(0.1);
+            pass.run(time);
+        }
+        caller.expectKept("a sequence of passes");
         const std::vector<glm::vec3> gpu = read(pass);
         const std::vector<glm::vec3> all = relief::wobbled(kSome, points.positions, points.normals, time);
         ASSERT_EQ(gpu.size(), points.positions.size());
