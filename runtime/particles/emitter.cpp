@@ -192,9 +192,7 @@ glm::vec3 Emitter::place(Birth& birth) {
     switch (s.shape) {
         case EmitterShape::kBox:
         case EmitterShape::kPoint:
-            for (int axis = 0; axis < 3; ++axis) {
-                birth.position[axis] = random_.between(s.box_min[axis], s.box_max[axis]);
-            }
+            birth.position = random_.between(s.box_min, s.box_max);
             break;
         case EmitterShape::kSphere: {
             const glm::vec3 p = inUnitBall(random_);
@@ -230,10 +228,7 @@ glm::vec3 Emitter::place(Birth& birth) {
 void Emitter::sample(Birth& birth) {
     const EmitterSettings& s = settings_;
     const glm::vec3 normal = place(birth);
-    for (int axis = 0; axis < 3; ++axis) {
-        const float spread = s.velocity_spread[axis];
-        birth.velocity[axis] = s.velocity[axis] + random_.between(-spread, spread);
-    }
+    birth.velocity = s.velocity + random_.between(-s.velocity_spread, s.velocity_spread);
     if (s.aim) {
         birth.velocity += aimed(normal);
     }

@@ -37,6 +37,10 @@ class Pcg32 {
         // Unlike high − low, this form cannot overflow. The clamp absorbs rounding.
         return std::clamp((1.0F - t) * low + t * high, low, high);
     }
+    /// Returns a uniform point between two corners; draws x, y and z in this order.
+    glm::vec3 between(const glm::vec3& low, const glm::vec3& high) {
+        return {between(low.x, high.x), between(low.y, high.y), between(low.z, high.z)};
+    }
     /// Returns a uniform integer in 0 … count − 1, without bias (Lemire 2019).
     /// \param count  at least 1.
     std::uint32_t below(std::uint32_t count);
