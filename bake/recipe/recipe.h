@@ -63,7 +63,7 @@ struct RecipeAsset {
 [[nodiscard]] Result<std::vector<RecipeAsset>> loadRecipe(const std::filesystem::path& path,
                                                           const std::vector<RecipeKey>& keys);
 
-/// Replaces options of `relief bake` in a message by keys of a recipe: "raise --timeout" becomes "raise timeout".
+/// Replaces options of `relief bake` in a message with keys of a recipe: "raise --timeout" becomes "raise timeout".
 [[nodiscard]] std::string nameKeys(std::string message, const std::vector<RecipeKey>& keys);
 
 /// Returns the options as sorted arguments of `relief bake`: --map=cube --prefer=inside.

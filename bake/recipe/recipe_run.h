@@ -47,7 +47,7 @@ struct AssetResult {
 struct RecipeRun {
     std::filesystem::path recipe;
     std::filesystem::path output_folder;  ///< exists, unless dry_run
-    std::vector<RecipeKey> keys;          ///< replace options in messages of bakes
+    std::vector<RecipeKey> keys;          ///< of recipes, for nameKeys()
     unsigned jobs = 1;                    ///< at least 1
     unsigned threads = 1;                 ///< per bake; results do not depend on `jobs` or `threads`
     bool dry_run = false;                 ///< only determines what is stale

@@ -39,7 +39,7 @@ std::string commonOriginText(const std::vector<Provenance>& colliders) {
         });
     }
     common.tool_version = listed(std::vector(tools.begin(), tools.end()));
-    return "meshes   " + std::to_string(meshes.size()) + "; --json lists the options of each\n" +
+    return "meshes   " + std::to_string(meshes.size()) + " (--json lists the options of each collider)\n" +
            originText(common);
 }
 

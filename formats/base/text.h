@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parses and formats the numbers and words of command lines and text files: strict, exact, independent of the locale.
+// Parses and formats the numbers and words of command lines and text files: strict, exact, and independent of the
+// locale, except formatted().
 #pragma once
 
 #include <cstddef>

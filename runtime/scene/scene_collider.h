@@ -81,8 +81,8 @@ void fields(FieldVisitor& visit, SceneMaterialColor& material);
 
 struct SceneCollider {
     std::filesystem::path path;  ///< resolved against the scene's folder
-    /// Position of the path, or of the node until placeBodies(), for messages: "scene.toml:3:8". Empty without a scene
-    /// file.
+    /// Position of the path, for messages: "scene.toml:3:8"; before placeBodies(), that of the node. Empty without a
+    /// scene file.
     std::string origin;
     std::string node;  ///< node of the world's body that provides missing values; empty: none
     /// If this is a further tile of a node's mesh: the index of the collider that names the node. The tile moves and

@@ -49,7 +49,7 @@ TEST(PointsCsv, WritesExactValuesAndMarksUnknowns) {
 
 TEST(ColliderReport, WorldsShowTheCommonOrigin) {
     const Provenance chair{"chair", "aa", 12, "relief 1", {{"quality", "fast"}, {"budget", "4096"}}};
-    const std::string rest = "; --json lists the options of each\nbaked    by relief 1";
+    const std::string rest = " (--json lists the options of each collider)\nbaked    by relief 1";
     EXPECT_EQ(commonOriginText({chair, chair}), "meshes   1" + rest + " with --quality fast --budget 4096\n");
     Provenance lamp = chair;
     lamp.mesh_hash = "bb";
