@@ -186,12 +186,13 @@ void DepthMap::setPatches(std::span<const PatchRecord> records) {
     const PatchMapSize size = patchMapSize(records.size());
     width = size.width;
     height = size.height;
+    const auto bytes = static_cast<std::size_t>(texelBytes());
     texels.clear();
-    texels.reserve(texelBytes());
+    texels.reserve(bytes);
     for (const PatchRecord& record : records) {
         appendPatchTexel(texels, record);
     }
-    texels.resize(texelBytes());
+    texels.resize(bytes);
 }
 
 std::optional<Vote> vote(const DepthMap& map, const glm::vec3& p) {
