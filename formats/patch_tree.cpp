@@ -150,6 +150,16 @@ bool isIntersection(const PatchRecord& pair) {
     return (pair.low & 16U) != 0;
 }
 
+/// Returns whether a leaf with a surface is inside. \param behind  returns whether the point or box is behind a patch
+template <class Behind>
+bool isInside(PatchTexels texels, const PatchRecord& leaf, const Behind& behind) {
+    if (!leaf.isPair()) {
+        return behind(leaf);
+    }
+    const bool first = behind(patchTexel(texels, leaf.first()));
+    return first != isIntersection(leaf) ? first : behind(patchTexel(texels, leaf.first() + 1));
+}
+
 PatchVote votePair(PatchTexels texels, const PatchRecord& pair, const glm::vec3& in_cell) {
     const PatchVote a = votePatch(texels, patchTexel(texels, pair.first()), in_cell);
     const PatchVote b = votePatch(texels, patchTexel(texels, pair.first() + 1), in_cell);
@@ -201,12 +211,8 @@ bool mayBeBehind(PatchTexels texels, const PatchRecord& patch, const glm::vec3& 
 /// \param low, high  a box that meets the unit cube of the record's cell.
 bool mayBeInside(PatchTexels texels, const PatchRecord& record, const glm::vec3& low, const glm::vec3& high) {
     if (record.kind() == PatchRecord::Kind::kPatch) {
-        const auto behind = [&](const PatchRecord& patch) { return mayBeBehind(texels, patch, low, high); };
-        if (!record.isPair()) {
-            return behind(record);
-        }
-        const bool first = behind(patchTexel(texels, record.first()));
-        return first != isIntersection(record) ? first : behind(patchTexel(texels, record.first() + 1));
+        return isInside(texels, record,
+                        [&](const PatchRecord& patch) { return mayBeBehind(texels, patch, low, high); });
     }
     if (record.kind() != PatchRecord::Kind::kSplit) {
         return record.kind() == PatchRecord::Kind::kInside;
@@ -473,18 +479,12 @@ bool isOutsidePatches(PatchTexels texels, const glm::vec3& p) {
         return false;
     }
     const PatchLeaf leaf = patchLeafAt(texels, p);
-    const PatchRecord& record = leaf.record;
-    if (record.kind() != PatchRecord::Kind::kPatch) {
+    if (leaf.record.kind() != PatchRecord::Kind::kPatch) {
         return !leaf.inside;
     }
-    const auto ahead = [&](const PatchRecord& patch) {
-        return heightAt(texels, patch, leaf.in_cell).ahead >= 0.0F;
-    };
-    if (!record.isPair()) {
-        return ahead(record);
-    }
-    const bool first = ahead(patchTexel(texels, record.first()));
-    return first == isIntersection(record) ? first : ahead(patchTexel(texels, record.first() + 1));
+    return !isInside(texels, leaf.record, [&](const PatchRecord& patch) {
+        return heightAt(texels, patch, leaf.in_cell).ahead < 0.0F;
+    });
 }
 
 bool mayBeInsidePatches(PatchTexels texels, const glm::vec3& low, const glm::vec3& high) {
