@@ -7,19 +7,12 @@
 namespace relief::test {
 
 DepthMap patchesOf(const PatchTreeSize& size, const std::vector<PatchRecord>& records) {
-    std::vector<std::byte> texels;
-    appendPatchTexel(texels, {size.roots.x | size.roots.y << 16U, size.roots.z | size.levels << 16U});
-    for (const PatchRecord& record : records) {
-        appendPatchTexel(texels, record);
-    }
+    std::vector<PatchRecord> texels{{size.roots.x | size.roots.y << 16U, size.roots.z | size.levels << 16U}};
+    texels.insert(texels.end(), records.begin(), records.end());
     DepthMap map;
     map.format = MapFormat::kPatches;
     map.decode = Decode::kPlane;
-    const PatchMapSize rows = patchMapSize(texels.size() / sizeof(PatchRecord));
-    map.width = rows.width;
-    map.height = rows.height;
-    texels.resize(map.texelBytes());
-    map.texels = std::move(texels);
+    map.setPatches(texels);
     return map;
 }
 
