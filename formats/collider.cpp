@@ -12,9 +12,6 @@
 namespace relief {
 namespace {
 
-/// Room for the rounding of coordinates in a map, relative to the largest.
-constexpr float kRoundingRoom = 1e-6F;
-
 /// Returns the bounding box of a map's volume in object space.
 Bounds volumeBox(const DepthMap& map) {
     const float low = map.projection() == Projection::kCube ? -1.0F : 0.0F;
@@ -120,12 +117,12 @@ bool mayBeInside(const Collider& collider, const Bounds& box) {
         if (map.format != MapFormat::kPatches || !map.encloses) {
             return false;
         }
-        Bounds in_map;
+        Bounds
+            in_map;  // apply() is monotone in each coordinate, also after rounding: the corners bound all points
         for (unsigned i = 0; i < 8; ++i) {
             in_map.add(map.object_to_map.apply(box.corner(i)));
         }
-        const glm::vec3 room(kRoundingRoom * in_map.farthest());
-        return !mayBeInsidePatches(map.texels, in_map.min - room, in_map.max + room);
+        return !mayBeInsidePatches(map.texels, in_map.min, in_map.max);
     };
     return std::none_of(collider.maps.begin(), collider.maps.end(), isOutside);
 }

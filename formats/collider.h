@@ -101,8 +101,8 @@ struct InsideSample {
 /// Returns the same side as evaluate(), and the same normal and map if inside, but stops at the first map that
 /// classifies `p` as outside. The first element of Collider::maps should be the map that decides most often.
 [[nodiscard]] InsideSample evaluateInside(const Collider& collider, const glm::vec3& p);
-/// Returns false only if all points of a box are outside. Conservative, and fast for patches; true for other formats.
-/// \param box  object space.
+/// Returns false only if all points of a box are outside. Tests only maps of patches with `encloses`; returns true if
+/// there are none. \param box  object space, finite
 [[nodiscard]] bool mayBeInside(const Collider& collider, const Bounds& box);
 
 /// Returns a box that contains the solid: the intersection of the volumes of maps with `encloses` and

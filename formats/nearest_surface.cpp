@@ -372,6 +372,12 @@ bool canSearch(const Collider& collider, const glm::vec3& p) {
 
 }  // namespace
 
+Bounds boxToSearch(const Collider& collider, const glm::vec3& p, float distance) {
+    const float room = (1.0F + NearestSearch::kBeyond) * distance +
+                       2.0F * NearestSearch::kBeyondMin * collider.bounds.longestSide();
+    return {p - room, p + room};
+}
+
 SurfaceSample nearestSurface(const Collider& collider, const glm::vec3& p) {
     const FieldSample sample = evaluate(collider, p);
     if (sample.map < 0) {

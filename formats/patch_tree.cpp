@@ -67,8 +67,10 @@ float onSide(bool inside, float distance, float nearest) {
 /// Minimum distance between the surface and cells without a patch, in cells, after rounding.
 constexpr float kNearest = 1.0F / 1024.0F;
 
-/// Margin of tests of boxes for rounding, in cells and in heights along a side.
+/// Rounding margin of box tests: in cells along w, in height samples along u and v.
 constexpr float kBoxMargin = 1e-4F;
+/// A box that meets more roots is not tested.
+constexpr float kBoxRootsMax = 512.0F;
 
 /// Returns the encoded range of a patch's heights, without their codes.
 PatchHeights heightRange(const PatchRecord& patch) {
@@ -145,7 +147,7 @@ const std::array<float, 256>& stepsOfScales() {
     return kSteps;
 }
 
-/// Whether a point must be behind both surfaces of a pair to be inside; otherwise behind one of them.
+/// Returns whether inside is behind both surfaces of a pair, not behind either.
 bool isIntersection(const PatchRecord& pair) {
     return (pair.low & 16U) != 0;
 }
@@ -166,8 +168,8 @@ PatchVote votePair(PatchTexels texels, const PatchRecord& pair, const glm::vec3&
     return (isIntersection(pair) ? b.distance > a.distance : b.distance < a.distance) ? b : a;
 }
 
-/// \param p  map space; NaN is outside.
-bool meetsRoots(PatchTexels texels, const glm::vec3& p) {
+/// Returns whether the roots contain a point; false for NaN. \param p  map space
+bool isInRoots(PatchTexels texels, const glm::vec3& p) {
     const glm::vec3 size(patchTreeSize(texels).roots);
     return p.x >= 0.0F && p.y >= 0.0F && p.z >= 0.0F && p.x < size.x && p.y < size.y && p.z < size.z;
 }
@@ -208,7 +210,7 @@ bool mayBeBehind(PatchTexels texels, const PatchRecord& patch, const glm::vec3& 
                                 : most.z > height(lowest) - kBoxMargin;
 }
 
-/// \param low, high  a box that meets the unit cube of the record's cell.
+/// \param low, high  a box within the unit cube of the record's cell.
 bool mayBeInside(PatchTexels texels, const PatchRecord& record, const glm::vec3& low, const glm::vec3& high) {
     if (record.kind() == PatchRecord::Kind::kPatch) {
         return isInside(texels, record,
@@ -450,7 +452,7 @@ PatchLeaf patchLeafAt(PatchTexels texels, const glm::vec3& p) {
 }
 
 std::optional<PatchVote> votePatches(PatchTexels texels, const glm::vec3& p) {
-    if (!meetsRoots(texels, p)) {
+    if (!isInRoots(texels, p)) {
         return std::nullopt;
     }
     const PatchLeaf leaf = patchLeafAt(texels, p);
@@ -475,7 +477,7 @@ std::optional<PatchVote> votePatches(PatchTexels texels, const glm::vec3& p) {
 }
 
 bool isOutsidePatches(PatchTexels texels, const glm::vec3& p) {
-    if (!meetsRoots(texels, p)) {
+    if (!isInRoots(texels, p)) {
         return false;
     }
     const PatchLeaf leaf = patchLeafAt(texels, p);
@@ -491,6 +493,10 @@ bool mayBeInsidePatches(PatchTexels texels, const glm::vec3& low, const glm::vec
     const glm::uvec3 roots = patchTreeSize(texels).roots;
     const glm::vec3 first = glm::max(glm::floor(low), glm::vec3(0.0F));
     const glm::vec3 last = glm::min(glm::floor(high), glm::vec3(roots) - 1.0F);
+    const glm::vec3 count = glm::max(last - first + 1.0F, glm::vec3(0.0F));
+    if (!(count.x * count.y * count.z <= kBoxRootsMax)) {
+        return true;
+    }
     for (float z = first.z; z <= last.z; ++z) {
         for (float y = first.y; y <= last.y; ++y) {
             for (float x = first.x; x <= last.x; ++x) {

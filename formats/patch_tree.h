@@ -167,11 +167,11 @@ struct PatchVote {
 /// \param p  map space.
 /// \return nullopt outside the roots.
 [[nodiscard]] std::optional<PatchVote> votePatches(PatchTexels texels, const glm::vec3& p);
-/// Returns whether the vote at a point is outside. Much faster than votePatches() in leaves without a patch.
+/// Returns whether the vote classifies a point as outside. Much faster than votePatches() in leaves without a patch.
 /// \param p  map space.
 /// \return false outside the roots.
 [[nodiscard]] bool isOutsidePatches(PatchTexels texels, const glm::vec3& p);
-/// Returns whether a box may contain points whose vote is inside. Conservative: bounds heights by those around the box.
+/// Returns false only if no point of the box has an inside vote. Bounds the heights by the codes around the box.
 /// \param low, high  map space; the part of the box outside the roots is ignored.
 [[nodiscard]] bool mayBeInsidePatches(PatchTexels texels, const glm::vec3& low, const glm::vec3& high);
 

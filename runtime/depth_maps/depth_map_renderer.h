@@ -49,7 +49,7 @@ class DepthMapRenderer {
   private:
     void setUniforms(const GpuMesh& mesh, const DepthMap& map) const;
 
-    bool gles_ = false;  // isGles(), which takes microseconds
+    bool gles_ = false;  // cached isGles(), which takes microseconds
     std::uint32_t width_ = 0;
     std::uint32_t height_ = 0;
     GlProgram program_;

@@ -54,13 +54,13 @@ struct Unit {
     GLint texture_2d, texture_3d, sampler;
 };
 
-/// Counts the PassStates of this thread.
+/// The PassStates of this thread. The context must stay current until the outermost one ends.
 struct Open {
     int sequences = 0;
     int passes = 0;
-    bool gles = false;  // of their context; isGles() takes microseconds
+    bool gles = false;  // cached isGles() of their context
 };
-thread_local Open open;
+thread_local Open open_states;
 
 void set(GLenum name, bool on) {
     if (on) {
@@ -145,15 +145,15 @@ void PassState::Saved::read(bool gles) {
 }
 
 PassState::PassState(Scope scope) : scope_(scope) {
-    if (open.sequences + open.passes == 0) {
-        open.gles = isGles();
+    if (open_states.sequences + open_states.passes == 0) {
+        open_states.gles = isGles();
     }
-    const bool gles = open.gles;
-    if (scope == Scope::kSequence || open.sequences == 0 || open.passes > 0) {
+    const bool gles = open_states.gles;
+    if (scope == Scope::kSequence || open_states.sequences == 0 || open_states.passes > 0) {
         saved_ = std::make_unique<Saved>();
         saved_->read(gles);
     }
-    ++(scope == Scope::kSequence ? open.sequences : open.passes);
+    ++(scope == Scope::kSequence ? open_states.sequences : open_states.passes);
     if (scope == Scope::kSequence) {
         return;
     }
@@ -179,12 +179,12 @@ PassState::PassState(Scope scope) : scope_(scope) {
 }
 
 PassState::~PassState() {
-    --(scope_ == Scope::kSequence ? open.sequences : open.passes);
+    --(scope_ == Scope::kSequence ? open_states.sequences : open_states.passes);
     if (!saved_) {
         return;
     }
     const Saved& s = *saved_;
-    const bool gles = open.gles;
+    const bool gles = open_states.gles;
     const auto name = [](GLint value) { return static_cast<GLuint>(value); };
     const auto word = [](GLint value) { return static_cast<GLenum>(value); };
     glUseProgram(name(s.program));

@@ -19,9 +19,9 @@ class PassState {
     static constexpr int kUnits = 11;
     enum class Scope {
         kPass,
-        /// Saves the state once and restores it at the end of the sequence, because queries are slow. Passes of this
-        /// thread in a sequence set the state that they require, and restore nothing. A pass within a pass still
-        /// restores the state of the outer pass.
+        /// Saves the state once and restores it at the end of the sequence, because queries are slow. Sets no state.
+        /// Passes of this thread in a sequence set the state that they require, and restore nothing. A pass within a
+        /// pass still restores the state of the outer pass.
         kSequence,
     };
     explicit PassState(Scope scope = Scope::kPass);

@@ -13,8 +13,6 @@ namespace {
 
 /// Margin for the error of worldBounds(), 1/1000 of the body's radius, and for rounding.
 constexpr float kRoom = 0.002F;
-/// A surface found within a distance may be this much farther: nearestSurface() estimates it from the planes of votes.
-constexpr float kReach = 1.5F;
 
 Bounds grown(const Bounds& box, float room) {
     return {box.min - room, box.max + room};
@@ -71,8 +69,7 @@ std::optional<TouchFilter::Touched> TouchFilter::touchedOf(const Body& body, con
     const Pose pose = poseAt(placed, moment);
     const glm::vec3 q = toObject(pose, p);
     const float reach = within / pose.scale;
-    if (!grown(shape.bounds, reach).contains(q) ||
-        !mayBeInside(shape, {q - kReach * reach, q + kReach * reach})) {
+    if (!grown(shape.bounds, reach).contains(q) || !mayBeInside(shape, boxToSearch(shape, q, reach))) {
         return std::nullopt;
     }
     const SurfaceSample at = nearestSurface(shape, q);

@@ -12,7 +12,8 @@
 
 namespace relief {
 
-/// Provides the requested colliders in any order. All calls come from one thread.
+/// Provides the requested colliders in any order. All calls come from one thread. A step calls it within a PassState, so
+/// changes of GL state do not last.
 class ColliderSource {
   public:
     struct Arrival {

@@ -49,8 +49,8 @@ bool gpuWasReset() {
     return relief_js_is_lost() != 0;
 }
 
-// The page's textures and buffers have no GL names in this module, so pass_state.js saves the state. Steps already run in
-// a pass (api.cpp), so a sequence saves nothing.
+// The page's textures and buffers have no GL names in this module, so pass_state.js saves the state. Steps already run
+// in a pass (api.cpp), so a sequence does nothing.
 struct PassState::Saved {};
 
 PassState::PassState(Scope scope) : scope_(scope) {

@@ -9,6 +9,8 @@
 #include <glm/glm.hpp>
 
 #include "formats/container.h"
+#include "formats/patch_tree.h"
+#include "tests/formats/random_patches.h"
 #include "tests/runtime/collider/analytic_collider.h"
 #include "tests/runtime/scene/scene_text.h"
 #include "tests/temporary_folder.h"
@@ -131,6 +133,22 @@ TEST_F(SceneTouch, FeetRaiseDustOnlyWhileDown) {
     EXPECT_NEAR(static_cast<double>(dust(", material = \"earth\"", true)), 2000.0, 200.0);
     EXPECT_NEAR(static_cast<double>(dust(", material = [\"earth\", \"oak\"]", false)), 4000.0, 240.0);
     EXPECT_NEAR(static_cast<double>(dust("", false)), 4000.0, 240.0);
+}
+
+/// Births far from patches are rejected by the box around them, without a search.
+TEST_F(SceneTouch, FeetRaiseDustFromPatches) {
+    Collider flat;
+    flat.bounds = {{-1.0F, -1.5F, -1.0F}, {1.0F, 0.0F, 1.0F}};
+    // One root, solid up to three quarters of its height: y = 0.
+    const PatchHeights heights = PatchHeights::of(std::vector<double>(4, 0.75), 2);
+    flat.maps = {test::patchesOf({{1, 1, 1}, 0}, {PatchRecord::patch({.first = 1}, false, heights, 2)})};
+    flat.maps[0].object_to_map = {{{0.5F, 0, 0, 0.5F}, {0, 0.5F, 0, 0.75F}, {0, 0, 0.5F, 0.5F}}};
+    flat.maps[0].object_per_map = glm::vec3(2.0F);
+    ASSERT_TRUE(saveCollider(folder_.path() / "flat.relief", flat));
+    const std::size_t dust = expectTruth(
+        kNoGround + "[[collider]]\nfile = \"flat.relief\"\n" + kFoot, "within = 0.05", 3.0,
+        [&](const glm::dvec3&, double time) { return below(footHeight(time), 0.05, 0.002); }, kStep);
+    EXPECT_NEAR(static_cast<double>(dust), 4000.0, 240.0);
 }
 
 TEST_F(SceneTouch, MovingBodiesTouchTheSurface) {
