@@ -33,6 +33,12 @@ bool contains(const DepthMap& map, const glm::vec3& p) {
            glm::all(glm::lessThanEqual(q, 1.0F - rim + kTexelRounding));
 }
 
+/// Attaches a texture to a framebuffer. Leaves it bound for drawing.
+void attach(const GlFramebuffer& target, const GlTexture& texture) {
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.name());
+    glFramebufferTexture2D(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture.name(), 0);
+}
+
 /// Returns whether a map has the form that liveMaps() makes.
 bool isLiveMap(const DepthMap& map) {
     return map.format == MapFormat::kFrontBackFixed && map.compare == Compare::kBoth &&
@@ -176,6 +182,10 @@ Result<void> LiveCollider::update(WorldTextures& textures, std::size_t body) {
         mesh_.settle();
     }
     const PassState state;
+    // Once for all maps: they have the same format, so their texels share a texture. Drivers check a framebuffer again
+    // after each change of an attachment.
+    attach(texel_target_, *slots.front().texels);
+    attach(motion_target_, *slots.front().motion);
     for (std::size_t m = 0; m < slots.size(); ++m) {
         renderer_.renderInPass(mesh_, frames_.maps[m]);
         copyTexels(slots[m], frames_.maps[m]);
@@ -192,7 +202,6 @@ void LiveCollider::copyTexels(const LiveSlot& slot, const DepthMap& map) const {
     glBindFramebuffer(GL_READ_FRAMEBUFFER, renderer_.framebuffer());
     glReadBuffer(GL_COLOR_ATTACHMENT0);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, texel_target_.name());
-    glFramebufferTexture2D(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, slot.texels->name(), 0);
     // glBlitFramebuffer instead of glCopyTexSubImage2D: an H200's driver copied integer formats on the CPU, 13 ms per
     // map.
     const auto width = static_cast<GLint>(map.width);
@@ -202,23 +211,19 @@ void LiveCollider::copyTexels(const LiveSlot& slot, const DepthMap& map) const {
 }
 
 void LiveCollider::copyMotion(const LiveSlot& slot, const DepthMap& map) const {
-    glBindFramebuffer(GL_FRAMEBUFFER, motion_target_.name());
-    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, slot.motion->name(), 0);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, motion_target_.name());
     useTexture(kMotionXyUnit, renderer_.motion(0));
     useTexture(kMotionZUnit, renderer_.motion(1));
     useTexture(kTexelUnit, renderer_.texels());
     motion_program_.use();
     const auto width = static_cast<GLsizei>(map.width);
     const auto height = static_cast<GLsizei>(map.height);
+    motion_program_.set("u_origin", glm::ivec2(slot.motion_x, slot.motion_y));
+    motion_program_.set("u_height", height);
+    glViewport(slot.motion_x, slot.motion_y, width, 2 * height);
+    glScissor(slot.motion_x, slot.motion_y, width, 2 * height);
     glEnable(GL_SCISSOR_TEST);
-    for (int end = 0; end < 2; ++end) {
-        const GLint y = slot.motion_y + end * height;
-        motion_program_.set("u_end", end);
-        motion_program_.set("u_origin", glm::ivec2(slot.motion_x, y));
-        glViewport(slot.motion_x, y, width, height);
-        glScissor(slot.motion_x, y, width, height);
-        motion_program_.drawScreen();
-    }
+    motion_program_.drawScreen();
     glDisable(GL_SCISSOR_TEST);
 }
 
