@@ -172,7 +172,15 @@ bool EventList::request(const Step& step) {
         glClearBufferfv(GL_COLOR, 0, zero.data());
         return true;
     }
-    bindPackBuffer(request.buffer, static_cast<GLsizeiptr>(request.floats * sizeof(float)));
+    if (!request.buffer) {
+        request.buffer = makeBuffer();
+    }
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, request.buffer.name());
+    if (request.room < request.floats) {  // collect() has read the previous lists, so their memory is free
+        request.room = request.floats;
+        glBufferData(GL_PIXEL_PACK_BUFFER, static_cast<GLsizeiptr>(request.room * sizeof(float)), nullptr,
+                     GL_STREAM_READ);
+    }
     count(step);
     makeLists(step, request, rows);
     read(rows);
