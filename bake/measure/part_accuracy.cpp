@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <functional>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <map>
 #include <numeric>
@@ -114,9 +113,7 @@ class PartMeter {
 
     /// Returns the sigma below which points count as on the surface.
     [[nodiscard]] double leastSigma(std::uint32_t part) const {
-        const Bounds& bounds = parts_.parts[part].bounds;
-        const glm::vec3 far = glm::max(glm::abs(bounds.min), glm::abs(bounds.max));
-        return kFloatStep * double{std::max({far.x, far.y, far.z})};
+        return kFloatStep * double{parts_.parts[part].bounds.farthest()};
     }
 
     [[nodiscard]] Judged judgeAt(std::uint32_t part, std::uint32_t points, double sigma) const {

@@ -70,7 +70,7 @@ class Cells {
         while (!waiting.empty()) {
             const glm::ivec3 cell = waiting.back();
             waiting.pop_back();
-            forNeighbours(cell, [&](const glm::ivec3& other) {
+            const auto visit = [&](const glm::ivec3& other) {
                 std::vector<std::uint32_t>& points = points_[indexOf(other)];
                 const glm::ivec3 offset = glm::abs(other - middle);
                 if (points.empty() || std::max({offset.x, offset.y, offset.z}) > kReach) {
@@ -82,7 +82,8 @@ class Cells {
                 }
                 place.push_back(std::move(points));
                 points.clear();
-            });
+            };
+            forEachPoint(glm::max(cell - 1, glm::ivec3(0)), glm::min(cell + 2, count_), visit);
         }
         return place;
     }
@@ -98,18 +99,6 @@ class Cells {
     [[nodiscard]] glm::ivec3 cellAt(std::size_t index) const {
         const int i = static_cast<int>(index);
         return {i % count_.x, i / count_.x % count_.y, i / count_.x / count_.y};
-    }
-    template <class Visit>
-    void forNeighbours(const glm::ivec3& cell, const Visit& visit) const {
-        const glm::ivec3 low = glm::max(cell - 1, glm::ivec3(0));
-        const glm::ivec3 high = glm::min(cell + 1, count_ - 1);
-        for (int z = low.z; z <= high.z; ++z) {
-            for (int y = low.y; y <= high.y; ++y) {
-                for (int x = low.x; x <= high.x; ++x) {
-                    visit({x, y, z});
-                }
-            }
-        }
     }
 
     double side_;

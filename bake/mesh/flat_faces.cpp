@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 
@@ -29,10 +28,9 @@ double longestEdge(const TriangleMesh& mesh, std::uint32_t triangle) {
 
 std::vector<FlatFace> flatFacesOf(const TriangleMesh& mesh) {
     const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
-    const glm::vec3 farthest = glm::max(glm::abs(mesh.bounds.min), glm::abs(mesh.bounds.max));
-    const double rounding = std::max(kRounding * double{mesh.bounds.longestSide()},
-                                     double{std::numeric_limits<float>::epsilon()} *
-                                         double{std::max({farthest.x, farthest.y, farthest.z})});
+    const double rounding =
+        std::max(kRounding * double{mesh.bounds.longestSide()},
+                 double{std::numeric_limits<float>::epsilon()} * double{mesh.bounds.farthest()});
     // Maximum rotation of a triangle's normal by rounding; the normal's length is twice the area.
     const auto turnOf = [&](std::uint32_t triangle, const glm::dvec3& normal) {
         return 2.0 * rounding * longestEdge(mesh, triangle) / length(normal);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Provides a parallel loop and a counting sort.
+// Provides a parallel loop, a loop over a grid, and a counting sort.
 #pragma once
 
 #include <tbb/blocked_range.h>
@@ -21,6 +21,19 @@ void forEachIndex(std::size_t begin, std::size_t end, std::size_t grain, const V
             visit(i);
         }
     });
+}
+
+/// Calls visit(at) for each integer point with begin ≤ at < end along every axis, x fastest.
+/// \tparam Vector  glm::ivec3 or glm::uvec3.
+template <class Vector, class Visit>
+void forEachPoint(const Vector& begin, const Vector& end, const Visit& visit) {
+    for (Vector at = begin; at.z < end.z; ++at.z) {
+        for (at.y = begin.y; at.y < end.y; ++at.y) {
+            for (at.x = begin.x; at.x < end.x; ++at.x) {
+                visit(at);
+            }
+        }
+    }
 }
 
 /// Groups values by bucket, keeping their order in each bucket: a counting sort.

@@ -152,9 +152,7 @@ double boxesOnLine(const TriangleMesh& mesh) {
     // areas.
     double sum = 0.0;
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-        Bounds box;
-        addTriangle(box, mesh, i);
-        sum += halfArea(box);
+        sum += halfArea(boundsOf(cornersOf(mesh, i)));
     }
     const double whole = halfArea(mesh.bounds);
     return whole > 0.0 ? sum / whole : static_cast<double>(mesh.triangles.size());

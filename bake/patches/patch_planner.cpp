@@ -168,27 +168,18 @@ class Planner {
         }
         const TriangleMesh& mesh = query_.mesh();
         for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-            Bounds box;
-            addTriangle(box, mesh, t);
+            const Bounds box = boundsOf(cornersOf(mesh, t));
             const auto cellAt = [&](const glm::vec3& p) {
-                return glm::ivec3(glm::clamp(glm::floor((glm::dvec3(p) - roots_.origin) / roots_.size),
+                return glm::uvec3(glm::clamp(glm::floor((glm::dvec3(p) - roots_.origin) / roots_.size),
                                              glm::dvec3(0.0), glm::dvec3(roots_.count) - 1.0));
             };
-            const glm::ivec3 low = cellAt(box.min);
-            const glm::ivec3 high = cellAt(box.max);
-            for (int z = low.z; z <= high.z; ++z) {
-                for (int y = low.y; y <= high.y; ++y) {
-                    for (int x = low.x; x <= high.x; ++x) {
-                        MeshCell& cell =
-                            nodes_[(std::size_t(z) * roots_.count.y + std::size_t(y)) * roots_.count.x +
-                                   std::size_t(x)]
-                                .cell;
-                        if (meetsUnitCube(cell.inUnit(mesh, t))) {
-                            cell.triangles.push_back(t);
-                        }
-                    }
+            forEachPoint(cellAt(box.min), cellAt(box.max) + 1U, [&](const glm::uvec3& at) {
+                MeshCell& cell =
+                    nodes_[(std::size_t{at.z} * roots_.count.y + at.y) * roots_.count.x + at.x].cell;
+                if (meetsUnitCube(cell.inUnit(mesh, t))) {
+                    cell.triangles.push_back(t);
                 }
-            }
+            });
         }
         forEachIndex(0, nodes_.size(), 16, [&](std::size_t i) {
             MeshCell& cell = nodes_[i].cell;
@@ -505,7 +496,7 @@ class Planner {
     /// Plans with the given texel. If it takes too many bytes, finds the finest texel that fits, within an eighth of an
     /// octave.
     Result<void> searchTexel() {
-        const double finest = farthest() / kDistanceInTexelsMax;
+        const double finest = double{query_.mesh().bounds.farthest()} / kDistanceInTexelsMax;
         if (options_.texel < finest) {
             return fail(ErrorCode::kUsage,
                         query_.mesh().name + ": --texel is " + shortest(static_cast<float>(options_.texel)) +
@@ -535,13 +526,6 @@ class Planner {
             planTexel(coarse);
         }
         return {};
-    }
-
-    /// The largest distance of the mesh from the origin along an axis.
-    [[nodiscard]] double farthest() const {
-        const Bounds& bounds = query_.mesh().bounds;
-        const glm::vec3 far = glm::max(glm::abs(bounds.min), glm::abs(bounds.max));
-        return double{std::max({far.x, far.y, far.z})};
     }
 
     const MeshQuery& query_;

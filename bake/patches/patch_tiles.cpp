@@ -5,6 +5,7 @@
 #include <bit>
 #include <glm/common.hpp>
 
+#include "bake/mesh/loops.h"
 #include "formats/patch_tree.h"
 
 namespace relief {
@@ -65,13 +66,9 @@ class Copier {
     /// Collects the records level by level.
     void gather(const glm::uvec3& first, const glm::uvec3& count) {
         const glm::uvec3 roots = patchTreeSize(from_).roots;
-        for (std::uint32_t z = first.z; z < first.z + count.z; ++z) {
-            for (std::uint32_t y = first.y; y < first.y + count.y; ++y) {
-                for (std::uint32_t x = first.x; x < first.x + count.x; ++x) {
-                    records_.push_back(patchTexel(from_, 1 + (z * roots.y + y) * roots.x + x));
-                }
-            }
-        }
+        forEachPoint(first, first + count, [&](const glm::uvec3& at) {
+            records_.push_back(patchTexel(from_, 1 + (at.z * roots.y + at.y) * roots.x + at.x));
+        });
         for (std::size_t at = 0, end = records_.size(); at < records_.size(); end = records_.size()) {
             bool any = false;
             for (; at < end; ++at) {
@@ -167,15 +164,8 @@ class Cutter {
         return glm::min(tile.own + 1U, roots_ - tile.first);
     }
 
-    template <class Visitor>
-    void forEachRoot(const glm::uvec3& first, const glm::uvec3& count, const Visitor& visit) const {
-        for (std::uint32_t z = first.z; z < first.z + count.z; ++z) {
-            for (std::uint32_t y = first.y; y < first.y + count.y; ++y) {
-                for (std::uint32_t x = first.x; x < first.x + count.x; ++x) {
-                    visit((std::size_t{z} * roots_.y + y) * roots_.x + x);
-                }
-            }
-        }
+    [[nodiscard]] std::size_t indexOf(const glm::uvec3& root) const {
+        return (std::size_t{root.z} * roots_.y + root.y) * roots_.x + root.x;
     }
 
     [[nodiscard]] std::vector<PatchTile> tilesOf(const glm::uvec3& grid) const {
@@ -186,8 +176,8 @@ class Cutter {
             tile.first = tile.place * roots_ / grid;
             tile.own = (tile.place + 1U) * roots_ / grid - tile.first;
             bool outside = true;
-            forEachRoot(tile.first, tile.own,
-                        [&](std::size_t root) { outside = outside && outside_[root] != 0; });
+            forEachPoint(tile.first, tile.first + tile.own,
+                         [&](const glm::uvec3& root) { outside = outside && outside_[indexOf(root)] != 0; });
             if (!outside) {
                 tiles.push_back(std::move(tile));
             }
@@ -203,7 +193,8 @@ class Cutter {
         Sizes sizes;
         for (const PatchTile& tile : tiles) {
             std::size_t texels = 1;
-            forEachRoot(tile.first, withRim(tile), [&](std::size_t root) { texels += 1 + below_[root]; });
+            forEachPoint(tile.first, tile.first + withRim(tile),
+                         [&](const glm::uvec3& root) { texels += 1 + below_[indexOf(root)]; });
             const PatchMapSize size = patchMapSize(texels);
             const std::uint64_t bytes = std::uint64_t{size.width} * size.height * texelSize(whole_.format);
             sizes.largest = std::max(sizes.largest, bytes);
