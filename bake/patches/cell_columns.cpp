@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
 #include <limits>
@@ -112,28 +111,6 @@ class Path {
     const MeshQuery& query_;
     const MeshCell& cell_;
     std::span<const UnitTriangle> triangles_;
-};
-
-/// The inverse of PatchFrame::across: the point of the cube at (u, v, w), and its derivatives.
-struct CubeAxes {
-    glm::dvec3 origin;
-    glm::dvec3 u;
-    glm::dvec3 v;
-    glm::dvec3 w;
-
-    explicit CubeAxes(const PatchFrame& frame) {
-        // across() is affine; four points define it.
-        const glm::dvec3 zero = frame.across(glm::dvec3(0.0));
-        const glm::dmat3 across(frame.across(glm::dvec3(1, 0, 0)) - zero,
-                                frame.across(glm::dvec3(0, 1, 0)) - zero,
-                                frame.across(glm::dvec3(0, 0, 1)) - zero);
-        const glm::dmat3 back = glm::inverse(across);
-        u = back[0];
-        v = back[1];
-        w = back[2];
-        origin = -(back * zero);
-    }
-    [[nodiscard]] glm::dvec3 at(double a, double b, double c) const { return origin + a * u + b * v + c * w; }
 };
 
 /// An intersection of a line with a triangle.
@@ -386,11 +363,20 @@ std::array<MeshCell, 8> childrenOf(const MeshQuery& query, const MeshCell& cell,
     return children;
 }
 
+CubeAxes::CubeAxes(const PatchFrame& frame) {
+    // across() is affine; four points define it.
+    const glm::dvec3 zero = frame.across(glm::dvec3(0.0));
+    by = glm::inverse(glm::dmat3(frame.across(glm::dvec3(1, 0, 0)) - zero,
+                                 frame.across(glm::dvec3(0, 1, 0)) - zero,
+                                 frame.across(glm::dvec3(0, 0, 1)) - zero));
+    origin = -(by * zero);
+}
+
 LineGrid::LineGrid(const PatchFrame& frame, unsigned across)
     : frame_(frame), across_(across), lines_(std::size_t{across} * across) {
     const CubeAxes axes(frame);
-    along_ = axes.w;
-    const double volume = dot(cross(axes.u, axes.v), axes.w);
+    along_ = axes.by[2];
+    const double volume = dot(cross(axes.by[0], axes.by[1]), along_);
     volume_per_length_ = std::abs(volume) / (static_cast<double>(across) * across);
     handedness_ = volume < 0.0 ? -1 : 1;
     for (unsigned column = 0; column < across; ++column) {
@@ -401,14 +387,14 @@ LineGrid::LineGrid(const PatchFrame& frame, unsigned across)
     const auto span = [&](const glm::dvec3& start) {
         Line line{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
         for (int axis = 0; axis < 3; ++axis) {
-            if (std::abs(axes.w[axis]) < 1e-9) {
+            if (std::abs(along_[axis]) < 1e-9) {
                 if (start[axis] <= 0.0 || start[axis] >= 1.0) {
                     return Line();
                 }
                 continue;
             }
-            const double a = -start[axis] / axes.w[axis];
-            const double b = (1.0 - start[axis]) / axes.w[axis];
+            const double a = -start[axis] / along_[axis];
+            const double b = (1.0 - start[axis]) / along_[axis];
             line.enters = std::max(line.enters, std::min(a, b));
             line.leaves = std::min(line.leaves, std::max(a, b));
         }

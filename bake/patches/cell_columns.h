@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <span>
 #include <vector>
@@ -66,6 +67,17 @@ struct CellPlane {
 /// \param triangles  from unitTriangles().
 [[nodiscard]] std::array<MeshCell, 8> childrenOf(const MeshQuery& query, const MeshCell& cell,
                                                  std::span<const UnitTriangle> triangles);
+
+/// The inverse of PatchFrame::across: the point of the cube at (u, v, w) = 0, and its derivatives by u, v and w.
+struct CubeAxes {
+    glm::dvec3 origin;
+    glm::dmat3 by;
+
+    explicit CubeAxes(const PatchFrame& frame);
+    [[nodiscard]] glm::dvec3 at(double u, double v, double w) const {
+        return origin + u * by[0] + v * by[1] + w * by[2];
+    }
+};
 
 /// `across` × `across` lines through the unit cube along w of a PatchFrame, and the data of these lines shared by all
 /// cells. Rows are ordered by v. A row interleaves its four quarters: the first line of each quarter, then the second

@@ -64,11 +64,6 @@ glm::dvec3 cornerOfCube(unsigned corner) {
     return {corner & 1U, corner >> 1U & 1U, corner >> 2U & 1U};
 }
 
-/// The center of an octant, x fastest, in the unit cube of its parent.
-glm::dvec3 octantMiddle(unsigned octant) {
-    return 0.5 * cornerOfCube(octant) + 0.25;
-}
-
 /// A point inside and the nearest surface.
 struct Sample {
     glm::dvec3 at{0.0};      // unit cube
@@ -555,7 +550,8 @@ CellPlane planeOfSplit(const MeshQuery& query, const PatchNode& node) {
     for (unsigned i = 0; i < 8; ++i) {
         const PatchNode& child = (*node.children)[i];
         if (!child.split && !child.surface()) {
-            agree += (plane.at(octantMiddle(i)) < 0.0) == child.inside() ? 1 : -1;
+            const glm::dvec3 middle = 0.5 * cornerOfCube(i) + 0.25;
+            agree += (plane.at(middle) < 0.0) == child.inside() ? 1 : -1;
         }
     }
     if (agree < 0) {  // the mesh is not wound outwards

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/mat3x3.hpp>
-#include <glm/matrix.hpp>
 
 #include "bake/patches/lanes.h"
 
@@ -174,20 +172,12 @@ struct RowSums {
 template <std::size_t kSide>
 std::array<double, kSide * kSide> heightsOf(const PatchFrame& frame, const CellPlane& plane) {
     std::array<double, kSide * kSide> heights{};
-    // w along each axis of (u, v, w), by the inverse of across().
-    const glm::dvec3 origin = frame.across(glm::dvec3(0.0));
-    glm::dmat3 by_cell;
-    for (int axis = 0; axis < 3; ++axis) {
-        glm::dvec3 one(0.0);
-        one[axis] = 1.0;
-        by_cell[axis] = frame.across(one) - origin;
-    }
-    const glm::dmat3 to_cell = glm::inverse(by_cell);
-    const glm::dvec3 rises = plane.normal * to_cell;
-    if (std::abs(rises.z) < kSteep * length(to_cell[2])) {
+    const CubeAxes axes(frame);
+    const glm::dvec3 rises = plane.normal * axes.by;
+    if (std::abs(rises.z) < kSteep * length(axes.by[2])) {
         return heights;
     }
-    const double at_origin = plane.at(-(to_cell * origin));
+    const double at_origin = plane.at(axes.origin);
     for (std::size_t i = 0; i < heights.size(); ++i) {
         const double u = static_cast<double>(i % kSide) / (kSide - 1);
         const double v = static_cast<double>(i / kSide) / (kSide - 1);
