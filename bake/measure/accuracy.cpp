@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <numeric>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "bake/measure/percent.h"
@@ -22,34 +25,29 @@ constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 constexpr double kFarFace = 1.25;
 constexpr double kFarFaceShare = 1e-3;
 
-struct Spread {
-    double mean = 0.0;
-    double p99 = 0.0;
-};
-/// Sums in sample order, so that the result does not depend on the number of threads.
-Spread spreadOf(std::vector<double> values) {
+using FieldValues = std::vector<std::optional<FieldValue>>;
+
+/// Returns the mean and the 99th percentile. Sums in sample order, so that the result does not depend on the number of
+/// threads.
+std::pair<double, double> spreadOf(std::vector<double> values) {
     if (values.empty()) {
         return {};
     }
-    Spread spread;
-    for (const double value : values) {
-        spread.mean += value;
-    }
-    spread.mean /= static_cast<double>(values.size());
-    const auto rank = static_cast<std::ptrdiff_t>((99 * values.size() + 99) / 100 - 1);
-    std::nth_element(values.begin(), values.begin() + rank, values.end());
-    spread.p99 = values[static_cast<std::size_t>(rank)];
-    return spread;
+    const double mean =
+        std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+    const auto nth = values.begin() + static_cast<std::ptrdiff_t>((99 * values.size() + 99) / 100 - 1);
+    std::nth_element(values.begin(), nth, values.end());
+    return {mean, *nth};
 }
 
-std::vector<std::optional<FieldValue>> evaluateAt(const std::vector<TruthPoint>& points, const Field& field) {
-    std::vector<std::optional<FieldValue>> values(points.size());
+template <class Point>
+FieldValues evaluateAt(const std::vector<Point>& points, const Field& field) {
+    FieldValues values(points.size());
     forEachIndex(0, points.size(), 512, [&](std::size_t i) { values[i] = field(points[i].position); });
     return values;
 }
 
-WrongPercent wrongPercent(const std::vector<TruthPoint>& points,
-                          const std::vector<std::optional<FieldValue>>& values) {
+WrongPercent wrongPercent(const std::vector<TruthPoint>& points, const FieldValues& values) {
     std::uint64_t false_inside = 0;
     std::uint64_t false_outside = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -60,8 +58,8 @@ WrongPercent wrongPercent(const std::vector<TruthPoint>& points,
     return {percent(false_inside, points.size()), percent(false_outside, points.size())};
 }
 
-void compareDistances(const std::vector<TruthPoint>& points,
-                      const std::vector<std::optional<FieldValue>>& values, FieldAccuracy& accuracy) {
+void compareDistances(const std::vector<TruthPoint>& points, const FieldValues& values,
+                      FieldAccuracy& accuracy) {
     std::vector<double> errors;
     errors.reserve(points.size());
     std::uint64_t far = 0;
@@ -75,9 +73,7 @@ void compareDistances(const std::vector<TruthPoint>& points,
             errors.push_back(std::abs(double{values[i]->distance} - double{points[i].distance}));
         }
     }
-    const Spread spread = spreadOf(std::move(errors));
-    accuracy.distance_mean = spread.mean;
-    accuracy.distance_p99 = spread.p99;
+    std::tie(accuracy.distance_mean, accuracy.distance_p99) = spreadOf(std::move(errors));
     accuracy.far_percent = percent(far, points.size());
     accuracy.unknown_percent = percent(unknown, points.size());
 }
@@ -99,15 +95,12 @@ void measureNormals(const std::vector<SurfacePoint>& points, const Field& field,
     const std::size_t counted = points.size() - buriedPoints(points);
     std::erase(angles, kNone);
     accuracy.no_normal_percent = percent(counted - angles.size(), counted);
-    const Spread spread = spreadOf(std::move(angles));
-    accuracy.normal_mean = spread.mean;
-    accuracy.normal_p99 = spread.p99;
+    std::tie(accuracy.normal_mean, accuracy.normal_p99) = spreadOf(std::move(angles));
 }
 
 InsideAccuracy measureInside(const TruthSamples& samples, const Field& field) {
     const std::vector<InsidePoint>& points = samples.inside;
-    std::vector<std::optional<FieldValue>> values(points.size());
-    forEachIndex(0, points.size(), 512, [&](std::size_t i) { values[i] = field(points[i].position); });
+    const FieldValues values = evaluateAt(points, field);
     std::vector<double> depths;
     std::vector<double> angles;
     std::uint64_t far_face = 0;
@@ -128,12 +121,8 @@ InsideAccuracy measureInside(const TruthSamples& samples, const Field& field) {
     InsideAccuracy accuracy;
     accuracy.points = points.size();
     accuracy.far_face_percent = percent(far_face, points.size());
-    const Spread depth = spreadOf(std::move(depths));
-    const Spread angle = spreadOf(std::move(angles));
-    accuracy.depth_mean = depth.mean;
-    accuracy.depth_p99 = depth.p99;
-    accuracy.normal_mean = angle.mean;
-    accuracy.normal_p99 = angle.p99;
+    std::tie(accuracy.depth_mean, accuracy.depth_p99) = spreadOf(std::move(depths));
+    std::tie(accuracy.normal_mean, accuracy.normal_p99) = spreadOf(std::move(angles));
     return accuracy;
 }
 
@@ -161,7 +150,7 @@ FieldAccuracy measureField(const TruthSamples& samples, const Field& field) {
     const Stopwatch watch;
     FieldAccuracy accuracy;
     {
-        const std::vector<std::optional<FieldValue>> values = evaluateAt(samples.near, field);
+        const FieldValues values = evaluateAt(samples.near, field);
         accuracy.near = wrongPercent(samples.near, values);
         compareDistances(samples.near, values, accuracy);
     }

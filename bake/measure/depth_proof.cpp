@@ -8,7 +8,6 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -59,13 +58,9 @@ std::optional<std::vector<Cell>> cellsOf(PatchTexels texels) {
         return std::nullopt;
     }
     std::vector<Node> nodes;
-    for (std::uint32_t z = 0; z < roots.z; ++z) {
-        for (std::uint32_t y = 0; y < roots.y; ++y) {
-            for (std::uint32_t x = 0; x < roots.x; ++x) {
-                nodes.push_back({{x, y, z}, 1.0, 1 + static_cast<std::uint32_t>(nodes.size())});
-            }
-        }
-    }
+    forEachPoint(glm::uvec3(0), roots, [&](const glm::uvec3& at) {
+        nodes.push_back({glm::dvec3(at), 1.0, 1 + static_cast<std::uint32_t>(nodes.size())});
+    });
     std::vector<Cell> cells;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         if (std::max(nodes.size(), cells.size()) > kCellsMax) {
@@ -371,37 +366,29 @@ class Prover {
     double rounding_ = 0.0;     // object units, of the transform to map space
 };
 
-std::string reasonAgainst(const MeshQuery& query, const Collider& collider) {
-    if (collider.maps.size() != 1 || collider.maps.front().format != MapFormat::kPatches) {
-        return "the collider is not one map of patches";
-    }
-    if (!query.watertight()) {
-        return "the mesh is not closed";
-    }
-    return query.hasVoids() ? "the boundary of a filled cavity is approximate" : "";
-}
-
 }  // namespace
 
 DepthProof proveDepth(const MeshQuery& query, const Collider& collider, const DepthProofOptions& options) {
-    DepthProof proof;
-    proof.unproven = reasonAgainst(query, collider);
-    if (!proof.unproven.empty()) {
-        return proof;
+    const auto unproven = [](const char* why) { return DepthProof{.unproven = why}; };
+    if (collider.maps.size() != 1 || collider.maps.front().format != MapFormat::kPatches) {
+        return unproven("the collider is not one map of patches");
+    }
+    if (!query.watertight()) {
+        return unproven("the mesh is not closed");
+    }
+    if (query.hasVoids()) {
+        return unproven("the boundary of a filled cavity is approximate");
     }
     std::optional<std::vector<Cell>> cells = cellsOf(collider.maps.front().texels);
     if (!cells) {
-        proof.unproven = "the map has too many cells";
-        return proof;
+        return unproven("the map has too many cells");
     }
     const Prover prover(query, collider, std::move(*cells));
     if (!prover.isInRange()) {
-        proof.unproven = "the map has coordinates or distances out of range";
-        return proof;
+        return unproven("the map has coordinates or distances out of range");
     }
     if (!prover.rootsContainMesh()) {
-        proof.unproven = "the mesh reaches outside the cells of the map";
-        return proof;
+        return unproven("the mesh reaches outside the cells of the map");
     }
     return prover.prove(options);
 }

@@ -8,13 +8,8 @@
 #include "formats/patch_tree.h"
 
 namespace relief {
-namespace {
-
-using Kind = PatchRecord::Kind;
-
-}  // namespace
-
 std::uint32_t patchCount(const DepthMap& map) {
+    using Kind = PatchRecord::Kind;
     const auto [roots, levels] = patchTreeSize(map.texels);
     std::uint32_t patches = 0;
     std::uint32_t end = 1 + roots.x * roots.y * roots.z;
@@ -35,7 +30,7 @@ double patchSpacingAt(const DepthMap& map, const glm::vec3& p) {
     const PatchLeaf leaf =
         patchLeafAt(map.texels, glm::clamp(map.object_to_map.apply(p), glm::vec3(0.0F), last));
     const double cell = double{map.object_per_map.x} * double{leaf.cell};
-    if (leaf.record.kind() != Kind::kPatch) {
+    if (leaf.record.kind() != PatchRecord::Kind::kPatch) {
         return leaf.beside ? 0.5 * cell : cell;
     }
     const PatchRecord patch =

@@ -11,17 +11,15 @@
 namespace relief {
 
 Sight::Sight(const DepthMap& map, const MeshQuery& query)
-    : map_(map), query_(query), side_(query.mesh().bounds.longestSide()) {
-    const Affine& t = map.object_to_map;
-    for (int i = 0; i < 3; ++i) {
-        rows_[i] = {t.row[i].x, t.row[i].y, t.row[i].z};
-        offset_[i] = t.row[i].w;
-    }
-    to_object_ = t.inverse();
-}
+    : map_(map),
+      query_(query),
+      to_map_(map.object_to_map.linear()),
+      to_object_(map.object_to_map.inverse()),
+      offset_(map.object_to_map.row[0].w, map.object_to_map.row[1].w, map.object_to_map.row[2].w),
+      side_(query.mesh().bounds.longestSide()) {}
 
 glm::dvec3 Sight::inMap(const glm::dvec3& p) const {
-    return glm::dvec3(glm::dot(rows_[0], p), glm::dot(rows_[1], p), glm::dot(rows_[2], p)) + offset_;
+    return to_map_ * p + offset_;
 }
 
 bool Sight::isInVolume(const glm::dvec3& in_map) const {

@@ -41,10 +41,10 @@ class Sight {
 
     const DepthMap& map_;
     const MeshQuery& query_;
-    glm::dvec3 rows_[3];
-    glm::dvec3 offset_{0.0};
-    glm::dmat3 to_object_{1.0};
-    double side_ = 0.0;
+    glm::dmat3 to_map_;
+    glm::dmat3 to_object_;
+    glm::dvec3 offset_;
+    double side_;
 };
 
 /// The lines of sight of all maps of a collider.

@@ -117,11 +117,11 @@ class Sampler {
         const ClosestPoint closest = query_.closest(p);
         const glm::dvec3 way = closest.point - glm::dvec3(p);
         const double depth = length(way);
-        if (!(depth > kSurfaceStep * longest_side_)) {
+        if (!(depth > step)) {
             return std::nullopt;
         }
         const glm::dvec3 out = way / depth;
-        if (query_.inside(closest.point + kSurfaceStep * longest_side_ * out)) {
+        if (query_.inside(closest.point + step * out)) {
             return std::nullopt;
         }
         return InsidePoint{p, depth, out};
