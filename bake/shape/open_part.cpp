@@ -205,18 +205,13 @@ Result<void> classifyOpenParts(std::span<OpenPart> open, const PreparedMesh& mes
 Result<ClosedPart> closePart(const TriangleMesh& open, bool is_body, bool z_is_up) {
     const std::size_t probes = std::clamp(open.triangles.size() / 8, kPartProbesMin, kEnclosureProbes);
     const PreparedMesh closed = RELIEF_TRY(closeHoles(open, probes));
-    if (!closed.closed()) {
-        return ClosedPart{};
-    }
     const std::optional<double> volume =
-        enclosedVolume(closed->positions, closed->triangles, closed->bounds.center());
+        closed.closed() ? enclosedVolume(closed->positions, closed->triangles, closed->bounds.center())
+                        : std::nullopt;
     if (!volume) {
         return ClosedPart{};
     }
-    bool balanced = true;
-    for (const Part& part : partsOf(*closed, closed.edges())) {
-        balanced = balanced && part.balanced;
-    }
+    const bool balanced = std::ranges::all_of(partsOf(*closed, closed.edges()), &Part::balanced);
     closed.freeEdges();
     const std::vector<bool> turn(closed->triangles.size(), *volume < 0.0);
     const PreparedMesh wound = PreparedMesh(closed).woundOutwards(turn);

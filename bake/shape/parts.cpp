@@ -9,7 +9,6 @@
 #include <glm/geometric.hpp>
 #include <iterator>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -94,34 +93,26 @@ class Corners {
     }
 
   private:
-    using Cell = std::array<std::int64_t, 3>;
+    using Cell = glm::vec<3, std::int64_t>;
 
     /// Offset so that the lowest neighbour of a cell with corners is 0.
     [[nodiscard]] Cell cellOf(const glm::dvec3& p) const {
-        const glm::dvec3 cell = glm::floor((p - low_) / reach_) + 2.0;
-        return {static_cast<std::int64_t>(cell.x), static_cast<std::int64_t>(cell.y),
-                static_cast<std::int64_t>(cell.z)};
+        return Cell(glm::floor((p - low_) / reach_) + 2.0);
     }
     [[nodiscard]] static std::uint64_t key(const Cell& cell) {
         constexpr unsigned kBits = 21;  // 1 / kCopyReach is far below 2²¹
-        return static_cast<std::uint64_t>(cell[0]) << (2 * kBits) |
-               static_cast<std::uint64_t>(cell[1]) << kBits | static_cast<std::uint64_t>(cell[2]);
+        return static_cast<std::uint64_t>(cell.x) << (2 * kBits) |
+               static_cast<std::uint64_t>(cell.y) << kBits | static_cast<std::uint64_t>(cell.z);
     }
 
     [[nodiscard]] std::optional<double> nearestTo(const glm::dvec3& p) const {
         double nearest = std::numeric_limits<double>::infinity();
         const Cell cell = cellOf(p);
-        for (std::int64_t z = -1; z <= 1; ++z) {
-            for (std::int64_t y = -1; y <= 1; ++y) {
-                for (std::int64_t x = -1; x <= 1; ++x) {
-                    const std::uint64_t wanted = key({cell[0] + x, cell[1] + y, cell[2] + z});
-                    auto at =
-                        std::lower_bound(places_.begin(), places_.end(), std::pair(wanted, std::uint32_t{0}));
-                    for (; at != places_.end() && at->first == wanted; ++at) {
-                        nearest =
-                            std::min(nearest, glm::distance(p, glm::dvec3(mesh_.positions[at->second])));
-                    }
-                }
+        for (int i = 0; i < 27; ++i) {
+            const std::uint64_t wanted = key(cell + Cell(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
+            auto at = std::lower_bound(places_.begin(), places_.end(), std::pair(wanted, std::uint32_t{0}));
+            for (; at != places_.end() && at->first == wanted; ++at) {
+                nearest = std::min(nearest, glm::distance(p, glm::dvec3(mesh_.positions[at->second])));
             }
         }
         return nearest <= reach_ ? std::optional(nearest) : std::nullopt;
@@ -281,12 +272,9 @@ NearCopies nearCopies(const TriangleMesh& mesh, std::span<const Part* const> sol
     for (const Part* part : solids) {
         measures.push_back(measured(mesh, *part));
     }
-    std::vector<std::size_t> order(measures.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t i) { return measures[i].volume; });
+    std::ranges::stable_sort(measures, std::greater<>(), &Solid::volume);
     Places kept;
-    for (const std::size_t i : order) {
-        const Solid& solid = measures[i];
+    for (const Solid& solid : measures) {
         const bool is_copy = kept.anyNear(solid, [&](const Solid* other) {
             const std::optional<double> distance = distanceBetween(mesh, *other, solid);
             copies.farthest = std::max(copies.farthest, distance.value_or(0.0));

@@ -45,12 +45,9 @@ class Grid {
         // Offset from the planes of the model's own grid.
         voids_.origin = 0.5 * (low + high) - 0.5 * step * glm::dvec3(voids_.nodes) +
                         step * glm::dvec3(0.5013, 0.4987, 0.5007);
-        const auto nodes = static_cast<std::size_t>(voids_.nodes.x) *
-                           static_cast<std::size_t>(voids_.nodes.y) *
-                           static_cast<std::size_t>(voids_.nodes.z);
         stride_ = {1, static_cast<std::size_t>(voids_.nodes.x),
                    static_cast<std::size_t>(voids_.nodes.x) * static_cast<std::size_t>(voids_.nodes.y)};
-        flags_.resize(nodes);
+        flags_.resize(stride_[2] * static_cast<std::size_t>(voids_.nodes.z));
         for (int axis = 0; axis < 3; ++axis) {
             scan(axis);
         }

@@ -56,10 +56,8 @@ class Shaper {
         prepared_.freeEdges();
         if (const std::vector<std::uint32_t> copies = copiesInSolids(mesh_, welded_, parts_);
             !copies.empty()) {
-            Result<ShapedMesh> shaped = runWithout(copies, "");
-            if (shaped) {
-                shaped->report.coincident_triangles += copies.size();
-            }
+            ShapedMesh shaped = RELIEF_TRY(runWithout(copies, ""));
+            shaped.report.coincident_triangles += copies.size();
             return shaped;
         }
         std::vector<const Part*> solids;
@@ -70,10 +68,8 @@ class Shaper {
             (solid ? solids : others).push_back(&part);
         }
         if (const NearCopies copies = nearCopies(mesh_, solids); copies.parts > 0) {
-            Result<ShapedMesh> shaped = runWithout(copies.triangles, copies.text());
-            if (shaped) {
-                shaped->report.near_copies += copies.parts;
-            }
+            ShapedMesh shaped = RELIEF_TRY(runWithout(copies.triangles, copies.text()));
+            shaped.report.near_copies += copies.parts;
             return shaped;
         }
         if (others.empty()) {
@@ -91,7 +87,7 @@ class Shaper {
         RELIEF_TRY(addSheets());
         PreparedMesh mesh = RELIEF_TRY(union_.finish(report_.thickness));
         std::vector<std::uint32_t> part_of = union_.takePartOf();
-        if (options_.voids == VoidMode::kFill && hasSealingSheet()) {
+        if (options_.voids == VoidMode::kFill && std::ranges::any_of(open_, seals)) {
             mesh = RELIEF_TRY(fillVoids(std::move(mesh), part_of));
         }
         return ShapedMesh{std::move(mesh), report_, {std::move(collected_.parts), std::move(part_of)}};
@@ -262,19 +258,16 @@ class Shaper {
         return {};
     }
 
-    static bool mayBeHoled(const OpenPart& part) {
-        return (part.role.kind == OpenKind::kHoled || part.role.kind == OpenKind::kPossiblyHoled) &&
-               part.as == ShapeAs::kAuto;
-    }
-
     /// Adds the walls of joined shells; the space within stays free. \return per part, whether it was joined to another
     /// one.
     Result<std::vector<bool>> addWalls() {
         std::vector<WallCandidate> candidates;
         for (const OpenPart& part : open_) {
-            candidates.push_back({&part.sheet,
-                                  part.as == ShapeAs::kAuto && part.role.kind != OpenKind::kTerrain,
-                                  mayBeHoled(part)});
+            const bool automatic = part.as == ShapeAs::kAuto;
+            const OpenKind kind = part.role.kind;
+            candidates.push_back(
+                {&part.sheet, automatic && kind != OpenKind::kTerrain,
+                 automatic && (kind == OpenKind::kHoled || kind == OpenKind::kPossiblyHoled)});
         }
         ShellWalls walls = findWalls(candidates, mesh_.name);
         unjoined_ = std::move(walls.unjoined);
@@ -364,7 +357,11 @@ class Shaper {
                     report_.sheets == 0 ? thickness : std::min(report_.thickness_min, thickness);
                 ++report_.sheets;
             } else if (part.role.kind == OpenKind::kTerrain) {
-                addTerrain(part.sheet, part.role.axis);
+                const int axis = part.role.axis;
+                const float low = boundsOf(part.sheet.positions).min[axis];
+                const float depth = static_cast<float>(kGround) * mesh_.bounds.longestSide();
+                add(part.sheet, extruded(part.sheet, axis, low - depth), PartKind::kTerrain);
+                ++report_.terrains;
             }
         }
         report_.default_thickness =
@@ -376,7 +373,6 @@ class Shaper {
     static bool seals(const OpenPart& part) {
         return part.role.kind == OpenKind::kSheet && part.as != ShapeAs::kShell;
     }
-    [[nodiscard]] bool hasSealingSheet() const { return std::ranges::any_of(open_, seals); }
 
     Result<PreparedMesh> fillVoids(PreparedMesh mesh, std::vector<std::uint32_t>& part_of) {
         std::vector<Wall> of_part(collected_.parts.size(), Wall::kSolid);
@@ -397,13 +393,6 @@ class Shaper {
         Voids voids = sealedVoids(query, walls);
         report_.voids = voids.count;
         return voids.count > 0 ? withVoids(query, std::move(voids), part_of) : mesh;
-    }
-
-    void addTerrain(const Sheet& sheet, int axis) {
-        const float low = boundsOf(sheet.positions).min[axis];
-        add(sheet, extruded(sheet, axis, low - static_cast<float>(kGround) * mesh_.bounds.longestSide()),
-            PartKind::kTerrain);
-        ++report_.terrains;
     }
 
     void add(const Sheet& sheet, const SolidPart& solid, PartKind kind) {

@@ -14,10 +14,6 @@ constexpr const auto& kAsNames = kWordsOf<ShapeAs>;
 /// Prefix of a default thickness that each part adapts.
 constexpr std::string_view kByPart = "auto=";
 
-bool isNamed(const ShapeOptions& options, std::string_view name) {
-    return std::ranges::any_of(options.named, [&](const NamedShape& named) { return named.name == name; });
-}
-
 constexpr double kShellMin = 0.004;
 constexpr double kShellMax = 0.25;
 constexpr double kShellRight = 0.1;
@@ -82,7 +78,7 @@ Result<ShapeOptions> parseShapeOptions(const std::vector<std::string>& words) {
             return wrong("a name has at most " + std::to_string(kSelectedNameBytesMax) +
                          " bytes; shorten it");
         }
-        if (isNamed(options, name)) {
+        if (std::ranges::find(options.named, name, &NamedShape::name) != options.named.end()) {
             return wrong("another --as has the same name; leave one out");
         }
         if (options.named.size() == kSelectedNamesMax) {

@@ -55,66 +55,6 @@ struct Fan {
     std::uint32_t source = 0;
 };
 
-/// Marks the triangles of thin regions whose offset is omitted. Fans close the remaining surface within the shell's own
-/// reach.
-/// \param endOf   returns the offset of a triangle's corner.
-/// \param turned  the offset's triangles have the opposite winding.
-/// \param fans    receives the fans.
-template <class EndOf>
-std::vector<bool> filledRegions(const Sheet& sheet, const std::vector<std::uint8_t>& thin, const EndOf& endOf,
-                                bool turned, const PartBuilder& builder, const MeshQuery& query, double reach,
-                                std::vector<Fan>& fans) {
-    std::vector<bool> full(sheet.triangles.size(), false);
-    std::vector<bool> seen(sheet.triangles.size(), false);
-    std::vector<std::uint32_t> region;
-    for (std::uint32_t first = 0; first < sheet.triangles.size(); ++first) {
-        if (seen[first] || thin[first] == 0) {
-            continue;
-        }
-        seen[first] = true;
-        region.assign(1, first);
-        std::vector<OddEdge> border;  // with the remaining triangles
-        for (std::size_t k = 0; k < region.size(); ++k) {
-            for (std::uint32_t side = 0; side < 3; ++side) {
-                const std::uint32_t next = sheet.neighbours[region[k]][static_cast<int>(side)];
-                if (next == Sheet::kNoTriangle || thin[next] == 0) {
-                    const std::uint32_t from = endOf(region[k], side);
-                    const std::uint32_t to = endOf(region[k], (side + 1) % 3);
-                    border.push_back(turned ? OddEdge{from, to} : OddEdge{to, from});
-                } else if (!seen[next]) {
-                    seen[next] = true;
-                    region.push_back(next);
-                }
-            }
-        }
-        bool closes = true;
-        const std::size_t before = fans.size();
-        for (BorderLoop& loop : borderLoops(border)) {
-            if (loop.size() < 3) {
-                continue;  // back and forth
-            }
-            glm::dvec3 sum(0.0);
-            for (const BorderStep& step : loop) {
-                sum += builder.at(step.from);
-            }
-            const glm::vec3 apex(sum / static_cast<double>(loop.size()));
-            closes = closes && query.closest(apex).distance <= reach &&
-                     std::ranges::all_of(loop, [&](const BorderStep& step) {
-                         return hasArea(planeOf(builder.at(step.from), builder.at(step.to), apex));
-                     });
-            fans.push_back({std::move(loop), apex, first});
-        }
-        if (!closes) {
-            fans.resize(before);
-            continue;
-        }
-        for (const std::uint32_t triangle : region) {
-            full[triangle] = true;
-        }
-    }
-    return full;
-}
-
 class Thickener {
   public:
     /// Cuts the sheet at sharp corners.
@@ -257,16 +197,70 @@ class Thickener {
         }
     }
 
+    /// Marks the triangles of thin regions whose offset is omitted. Fans close the remaining surface within the shell's
+    /// own reach.
     /// \param face  0: above, 1: below.
-    /// \param fans  receives the fans of its filled regions.
+    /// \param fans  receives the fans.
+    [[nodiscard]] std::vector<bool> filledRegions(std::size_t face, std::vector<Fan>& fans) const {
+        const std::vector<std::uint8_t>& thin = thin_[face];
+        std::vector<bool> full(sheet_.triangles.size(), false);
+        std::vector<bool> seen(sheet_.triangles.size(), false);
+        std::vector<std::uint32_t> region;
+        for (std::uint32_t first = 0; first < sheet_.triangles.size(); ++first) {
+            if (seen[first] || thin[first] == 0) {
+                continue;
+            }
+            seen[first] = true;
+            region.assign(1, first);
+            std::vector<OddEdge> border;  // with the remaining triangles
+            for (std::size_t k = 0; k < region.size(); ++k) {
+                for (std::uint32_t side = 0; side < 3; ++side) {
+                    const std::uint32_t next = sheet_.neighbours[region[k]][static_cast<int>(side)];
+                    if (next == Sheet::kNoTriangle || thin[next] == 0) {
+                        const std::uint32_t from = endsOf(region[k], side)[face];
+                        const std::uint32_t to = endsOf(region[k], (side + 1) % 3)[face];
+                        border.push_back(face == 1 ? OddEdge{from, to} : OddEdge{to, from});
+                    } else if (!seen[next]) {
+                        seen[next] = true;
+                        region.push_back(next);
+                    }
+                }
+            }
+            bool closes = true;
+            const std::size_t before = fans.size();
+            for (BorderLoop& loop : borderLoops(border)) {
+                if (loop.size() < 3) {
+                    continue;  // back and forth
+                }
+                glm::dvec3 sum(0.0);
+                for (const BorderStep& step : loop) {
+                    sum += builder_.at(step.from);
+                }
+                const glm::vec3 apex(sum / static_cast<double>(loop.size()));
+                closes = closes && query_.closest(apex).distance <= thickness_ &&
+                         std::ranges::all_of(loop, [&](const BorderStep& step) {
+                             return hasArea(planeOf(builder_.at(step.from), builder_.at(step.to), apex));
+                         });
+                fans.push_back({std::move(loop), apex, first});
+            }
+            if (!closes) {
+                fans.resize(before);
+                continue;
+            }
+            for (const std::uint32_t triangle : region) {
+                full[triangle] = true;
+            }
+        }
+        return full;
+    }
+
+    /// \param face, fans  as in filledRegions().
     void addFace(std::size_t face, std::vector<Fan>& fans) {
-        const auto endOf = [&](std::uint32_t i, std::uint32_t corner) { return endsOf(i, corner)[face]; };
-        const std::vector<bool> full =
-            filledRegions(sheet_, thin_[face], endOf, face == 1, builder_, query_, thickness_, fans);
+        const std::vector<bool> full = filledRegions(face, fans);
         for (std::uint32_t i = 0; i < sheet_.triangles.size(); ++i) {
             if (!full[i]) {
-                builder_.addTriangle(i, endOf(i, 0), endOf(i, face == 0 ? 1 : 2),
-                                     endOf(i, face == 0 ? 2 : 1));
+                builder_.addTriangle(i, endsOf(i, 0)[face], endsOf(i, face == 0 ? 1 : 2)[face],
+                                     endsOf(i, face == 0 ? 2 : 1)[face]);
             }
         }
     }
