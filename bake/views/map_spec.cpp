@@ -245,9 +245,7 @@ Result<void> MapSpecBuilder::setBox(std::string_view value) {
     if (n.empty()) {
         return badValue("box", value, "tight or two corners x0/y0/z0/x1/y1/z1");
     }
-    Bounds box;
-    box.min = {n[0], n[1], n[2]};
-    box.max = {n[3], n[4], n[5]};
+    const Bounds box{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
     if (!(box.min.x < box.max.x && box.min.y < box.max.y && box.min.z < box.max.z)) {
         return badValue("box", value, "two corners x0/y0/z0/x1/y1/z1 with x0 < x1, y0 < y1 and z0 < z1");
     }
@@ -291,11 +289,7 @@ Result<MapSpec> parseMapSpec(std::string_view text, const MapSpecDefaults& defau
         }
         return builder.finish();
     };
-    const Result<MapSpec> spec = read();
-    if (!spec) {
-        return fail(spec.error().code, "--map '" + cleanUtf8(text) + "': " + spec.error().message);
-    }
-    return spec;
+    return withPrefix("--map '" + cleanUtf8(text) + "'", read());
 }
 
 std::string toString(const MapSpec& spec) {

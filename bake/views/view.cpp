@@ -245,9 +245,7 @@ Result<MapSpec> completeSpec(MapSpec spec, const PreparedMesh& mesh, std::uint32
 }
 
 Result<View> makeView(const MapSpec& spec, const TriangleMesh& mesh) {
-    if (const Result<void> up = checkUp(spec); !up) {
-        return fail(up.error().code, "--map '" + toString(spec) + "': " + up.error().message);
-    }
+    RELIEF_TRY(withPrefix("--map '" + toString(spec) + "'", checkUp(spec)));
     View view;
     view.format = spec.format;
     if (spec.format == MapFormat::kPatches) {
