@@ -38,31 +38,18 @@ constexpr std::uint64_t kBlockTexels = std::uint64_t{1} << 13;
 /// Limit on triangles times maps in progress at the same time.
 constexpr std::size_t kTrianglesAtOnce = std::size_t{1} << 21;
 
-/// In units of the longest side.
+/// Floats cannot tell the sides of a surface apart at a centre this near to it, in units of the longest side.
 constexpr double kOnSurface = 1e-5;
 
 struct Job {
     MapSpec spec;  // complete
     View view;
-    bool compare_was_given;
-    bool centre_inside = false;  // for a given compare
+    bool centre_inside = false;  // of a cube with a given compare=less
 
     [[nodiscard]] std::uint64_t texels() const {
         return std::uint64_t{view.faceCount()} * view.width * view.height;
     }
 };
-
-/// Determines whether the centre of a cube that keeps the nearest surface is inside, or too near to the surface for
-/// floats to tell its sides apart.
-Result<void> examineCentre(const PreparedMesh& mesh, Job& job) {
-    if (job.view.projection() == Projection::kCube && job.view.compare == Compare::kLess) {
-        const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
-        job.view.centre_on_surface =
-            query.closest(job.view.origin).distance <= kOnSurface * mesh->bounds.longestSide();
-        job.centre_inside = job.compare_was_given && query.inside(job.view.origin);
-    }
-    return {};
-}
 
 Result<std::vector<Job>> planJobs(const PreparedMesh& mesh, const BakeOptions& options) {
     const std::vector<MapSpec> specs = options.maps.empty() ? paperMapSpecs() : options.maps;
@@ -76,9 +63,14 @@ Result<std::vector<Job>> planJobs(const PreparedMesh& mesh, const BakeOptions& o
     for (const MapSpec& spec : specs) {
         const MapSpec complete = RELIEF_TRY(completeSpec(spec, mesh, options.resolution));
         const View view = RELIEF_TRY(makeView(complete, *mesh));
-        jobs.push_back({complete, view, spec.compare.has_value()});
-        RELIEF_TRY(examineCentre(mesh, jobs.back()));
-        bytes += jobs.back().texels() * texelSize(view.format);
+        Job& job = jobs.emplace_back(Job{complete, view});
+        if (view.projection() == Projection::kCube && view.compare == Compare::kLess) {
+            const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
+            job.view.centre_on_surface =
+                query.closest(view.origin).distance <= kOnSurface * mesh->bounds.longestSide();
+            job.centre_inside = spec.compare.has_value() && query.inside(view.origin);
+        }
+        bytes += job.texels() * texelSize(view.format);
     }
     if (bytes > limits.texel_bytes) {
         return fail(ErrorCode::kLimit, "the texels of the maps take " + std::to_string(bytes) +
@@ -255,7 +247,7 @@ class Bake {
             scene = RELIEF_TRY(RayScene::build(mesh_));
         }
         std::optional<NormalTable> packed_normals;
-        std::optional<TriangleNormals> unit_normals;
+        std::vector<glm::dvec3> unit_normals;
         for (auto job = jobs_.begin(); job != jobs_.end();) {
             const Kind kind = kindOf(*job);
             if (kind == Kind::kPatches) {
@@ -275,10 +267,10 @@ class Bake {
                 continue;
             }
             const TimeAdder watch(baked_.report.fit_ms);
-            if (!unit_normals) {
-                unit_normals.emplace(*mesh_);
+            if (unit_normals.empty()) {
+                unit_normals = unitNormals(*mesh_);
             }
-            fitMaps(*scene, *unit_normals, jobs);
+            fitMaps(*scene, unit_normals, jobs);
         }
         return {};
     }
@@ -315,7 +307,7 @@ class Bake {
     }
 
     /// Fits the maps in parallel, so that idle threads start on the next map.
-    void fitMaps(const RayScene& scene, const TriangleNormals& normals, std::span<const Job> jobs) {
+    void fitMaps(const RayScene& scene, const std::vector<glm::dvec3>& normals, std::span<const Job> jobs) {
         struct Fitted {
             DepthMap map;
             MapReport report;

@@ -93,9 +93,7 @@ class Search {
     }
 
     [[nodiscard]] tl::unexpected<Error> notReached() const {
-        const auto best = std::min_element(
-            tries_.begin(), tries_.end(),
-            [](const BudgetTrial& a, const BudgetTrial& b) { return a.wrong_percent < b.wrong_percent; });
+        const auto best = std::ranges::min_element(tries_, {}, &BudgetTrial::wrong_percent);
         return fail(ErrorCode::kDifference,
                     query_.mesh().name + ": --max-error " + percentText(options_.max_error_percent) +
                         " is not reached within " + megabytes(options_.budget_max) + "; the best is " +

@@ -74,30 +74,25 @@ void DeepSolid::narrow() {
     spans_.swap(both_);
 }
 
-DeepSolid::Reach DeepSolid::reachOf(const glm::dvec3& normal, double offset) {
+bool DeepSolid::cutBy(const glm::dvec3& normal, double offset) {
     if (!known_) {
         place();
     }
-    Reach reach{kAllDepths.begin, kAllDepths.end};
+    // The half-space contains points of the corner rays only at depths up to `up_to`, or from `from` on.
+    double up_to = kAllDepths.begin;
+    double from = kAllDepths.end;
     for (const TexelRay& line : corners_) {
         const double along = dot(normal, line.direction);
         const double at = (offset - dot(normal, line.origin - centre_.origin)) / along;
         if (along < 0.0) {
-            reach.up_to = std::max(reach.up_to, at);
+            up_to = std::max(up_to, at);
         } else if (along > 0.0) {
-            reach.from = std::min(reach.from, at);
+            from = std::min(from, at);
         } else if (offset <= dot(normal, line.origin - centre_.origin)) {
-            reach.up_to = kAllDepths.end;
+            up_to = kAllDepths.end;
         }
     }
-    return reach;
-}
-
-bool DeepSolid::cutBy(const glm::dvec3& normal, double offset) {
-    const Reach reach = reachOf(normal, offset);
-    const auto isCut = [&](const LineSpan& span) {
-        return span.begin < reach.up_to || span.end > reach.from;
-    };
+    const auto isCut = [&](const LineSpan& span) { return span.begin < up_to || span.end > from; };
     while (std::ranges::any_of(spans_, isCut)) {
         if (traced_ == kLines) {
             return any_known_ || query_.watertight();

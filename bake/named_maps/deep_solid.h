@@ -47,12 +47,6 @@ class DeepSolid {
 
     /// Sets up the lines of texel_.
     void place();
-    /// The half-space contains points of the corner rays only at depths up to `up_to`, or from `from` on.
-    struct Reach {
-        double up_to;
-        double from;
-    };
-    [[nodiscard]] Reach reachOf(const glm::dvec3& normal, double offset);
     /// Intersects spans_ with the deep spans of the next line.
     void narrow();
 

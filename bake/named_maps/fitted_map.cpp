@@ -57,8 +57,9 @@ class RayGrid {
 /// Fits the texels of one end, from the hits of a view with `samples` times as many texels along each side.
 class EndFitter {
   public:
-    EndFitter(const RayScene& scene, const DepthMap& map, const TriangleNormals& normals, const View& view,
-              const RayGrid& fine_rays, const View& finest, RayEnd end, const FittedMapOptions& options)
+    EndFitter(const RayScene& scene, const DepthMap& map, const std::vector<glm::dvec3>& normals,
+              const View& view, const RayGrid& fine_rays, const View& finest, RayEnd end,
+              const FittedMapOptions& options)
         : normals_(normals),
           deep_(scene, map),
           finest_(finest),
@@ -267,7 +268,7 @@ class EndFitter {
         }
     }
 
-    const TriangleNormals& normals_;
+    const std::vector<glm::dvec3>& normals_;
     DeepSolid deep_;
     const View& finest_;
     RayProbe probe_;
@@ -290,7 +291,7 @@ class EndFitter {
 /// Fits all texels of a map, a few rows per task.
 class MapFitter {
   public:
-    MapFitter(const RayScene& scene, const TriangleNormals& normals, const View& view,
+    MapFitter(const RayScene& scene, const std::vector<glm::dvec3>& normals, const View& view,
               const FittedMapOptions& options)
         : scene_(scene),
           normals_(normals),
@@ -400,7 +401,7 @@ class MapFitter {
     }
 
     const RayScene& scene_;
-    const TriangleNormals& normals_;
+    const std::vector<glm::dvec3>& normals_;
     const View& view_;
     View fine_;  // one texel per ray of a footprint
     RayGrid fine_rays_;
@@ -412,12 +413,14 @@ class MapFitter {
 
 }  // namespace
 
-TriangleNormals::TriangleNormals(const TriangleMesh& mesh) : normals_(mesh.triangles.size()) {
-    tbb::parallel_for(std::size_t{0}, normals_.size(),
-                      [&](std::size_t i) { normals_[i] = unitNormal(mesh, static_cast<std::uint32_t>(i)); });
+std::vector<glm::dvec3> unitNormals(const TriangleMesh& mesh) {
+    std::vector<glm::dvec3> normals(mesh.triangles.size());
+    tbb::parallel_for(std::size_t{0}, normals.size(),
+                      [&](std::size_t i) { normals[i] = unitNormal(mesh, static_cast<std::uint32_t>(i)); });
+    return normals;
 }
 
-DepthMap bakeFittedMap(const RayScene& scene, const TriangleNormals& normals, const View& view,
+DepthMap bakeFittedMap(const RayScene& scene, const std::vector<glm::dvec3>& normals, const View& view,
                        const FittedMapOptions& options, std::uint64_t& covered,
                        const std::function<void(std::uint32_t)>& rowsDone) {
     return MapFitter(scene, normals, view, options).run(covered, rowsDone);

@@ -14,21 +14,16 @@
 
 namespace relief {
 
-/// The unit normals of all triangles, shared by the fits of all maps.
-class TriangleNormals {
-  public:
-    explicit TriangleNormals(const TriangleMesh& mesh);
-    [[nodiscard]] const glm::dvec3& operator[](std::uint32_t triangle) const { return normals_[triangle]; }
-
-  private:
-    std::vector<glm::dvec3> normals_;
-};
+/// Returns the unit normals of all triangles.
+[[nodiscard]] std::vector<glm::dvec3> unitNormals(const TriangleMesh& mesh);
 
 /// Bakes a map with Decode::kPlane on all threads of the current TBB arena. The result does not depend on their number.
+/// \param normals   from unitNormals(); shared by all maps.
 /// \param rowsDone  called with the number of newly finished texel rows, from several threads at once.
 /// \param covered   receives the number of texels with a surface.
-[[nodiscard]] DepthMap bakeFittedMap(const RayScene& scene, const TriangleNormals& normals, const View& view,
-                                     const FittedMapOptions& options, std::uint64_t& covered,
+[[nodiscard]] DepthMap bakeFittedMap(const RayScene& scene, const std::vector<glm::dvec3>& normals,
+                                     const View& view, const FittedMapOptions& options,
+                                     std::uint64_t& covered,
                                      const std::function<void(std::uint32_t)>& rowsDone);
 
 }  // namespace relief

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <utility>
 
 #include "formats/depth_map.h"
 
@@ -53,7 +55,8 @@ Hit RayProbe::hitOf(std::uint32_t face, std::uint32_t x, std::uint32_t y, std::u
     }
     const auto [depth, along] = planes_.at(plane, face, x, y);
     const double most = view_.projection() == Projection::kCube ? double{kCubeDepthMax} : 1.0;
-    return {static_cast<float>(std::clamp(depth, 0.0, most)), triangle, isFromBehind(along)};
+    const bool from_behind = end_ == RayEnd::kNear ? along > 0.0 : along < 0.0;
+    return {static_cast<float>(std::clamp(depth, 0.0, most)), triangle, from_behind};
 }
 
 Hit RayProbe::trace(std::uint32_t face, std::uint32_t x, std::uint32_t y) {
@@ -63,7 +66,7 @@ Hit RayProbe::trace(std::uint32_t face, std::uint32_t x, std::uint32_t y) {
     }
     const Hit hit = hitOf(face, x, y, query.hit.primID);
     // Only a hit on the inner side of a closed mesh is doubtful: no ray from free space can reach it.
-    return scene_.closed() && hitsInnerSide(hit) ? traceBeside(face, x, y, hit) : hit;
+    return scene_.closed() && hit.fromBehind() != scene_.insideOut() ? traceBeside(face, x, y, hit) : hit;
 }
 
 RTCRayHit RayProbe::traced(const Segment& segment) const {
@@ -71,20 +74,6 @@ RTCRayHit RayProbe::traced(const Segment& segment) const {
                              static_cast<float>(segment.length));
     RayQuery().intersect(scene_.tree().scene.get(), query);
     return query;
-}
-
-std::uint32_t RayProbe::bestFacing(std::span<const std::uint32_t> triangles,
-                                   const glm::dvec3& direction) const {
-    std::uint32_t best = triangles.front();
-    double best_score = -2.0;
-    for (const std::uint32_t triangle : triangles) {
-        const double score = facingScore(scene_.mesh(), triangle, scene_.winding(), direction);
-        if (score > best_score || (score == best_score && triangle < best)) {
-            best = triangle;
-            best_score = score;
-        }
-    }
-    return best;
 }
 
 Hit RayProbe::traceBeside(std::uint32_t face, std::uint32_t x, std::uint32_t y, const Hit& hit) {
@@ -133,8 +122,12 @@ Hit RayProbe::traceBeside(std::uint32_t face, std::uint32_t x, std::uint32_t y, 
         scene_.inside(segment.origin + 0.5 * static_cast<double>(nearest) * segment.direction)) {
         return hit;
     }
-    const std::uint32_t best = bestFacing(std::span(touched).first(as_near), segment.direction);
-    const Hit found = hitOf(face, x, y, best);
+    // The one that faces the ray most; of equal ones, the one with the lowest index.
+    const auto rank = [&](std::uint32_t triangle) {
+        return std::pair(-facingScore(scene_.mesh(), triangle, scene_.winding(), segment.direction),
+                         triangle);
+    };
+    const Hit found = hitOf(face, x, y, std::ranges::min(std::span(touched).first(as_near), {}, rank));
     const bool before =
         hit.empty() || (end_ == RayEnd::kNear ? found.depth() < hit.depth() : found.depth() > hit.depth());
     return before ? found : hit;

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstddef>
-#include <span>
 
 #include "bake/mesh/embree_mesh.h"
 #include "bake/mesh/triangle_plane.h"
@@ -34,22 +33,13 @@ class RayProbe {
     [[nodiscard]] Segment segmentOf(const TexelRay& ray) const;
     /// The hit of a texel's ray on a triangle.
     [[nodiscard]] Hit hitOf(std::uint32_t face, std::uint32_t x, std::uint32_t y, std::uint32_t triangle);
-    /// Whether the ray hit the inner side of a closed mesh.
-    [[nodiscard]] bool hitsInnerSide(const Hit& hit) const { return hit.fromBehind() != scene_.insideOut(); }
     /// Traces rays beside the original ray, because Embree misses some vertices and edges that a ray hits exactly, even
     /// in robust mode. A triangle in front of `hit` counts if such a ray hits it and the original ray touches it.
     [[nodiscard]] Hit traceBeside(std::uint32_t face, std::uint32_t x, std::uint32_t y, const Hit& hit);
     [[nodiscard]] RTCRayHit traced(const Segment& segment) const;
-    /// \param along  dot(normal, direction of growing depth)
-    [[nodiscard]] bool isFromBehind(double along) const {
-        return end_ == RayEnd::kNear ? along > 0.0 : along < 0.0;
-    }
     /// Whether a line through `origin`, perpendicular to `right` and `up`, passes within kTouching of the triangle.
     [[nodiscard]] bool touches(const glm::dvec3& origin, const glm::dvec3& right, const glm::dvec3& up,
                                std::uint32_t triangle) const;
-    /// Returns the triangle with the best facingScore(); of equal ones, the one with the lowest index.
-    [[nodiscard]] std::uint32_t bestFacing(std::span<const std::uint32_t> triangles,
-                                           const glm::dvec3& direction) const;
 
     const RayScene& scene_;
     const View& view_;

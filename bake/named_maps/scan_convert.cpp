@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "bake/mesh/cube_faces.h"
@@ -48,10 +49,6 @@ struct Grid {
     }
 };
 
-bool comesBefore(const glm::dvec3& a, const glm::dvec3& b) {
-    return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
-}
-
 }  // namespace
 
 /// The output for some rows.
@@ -69,7 +66,7 @@ class ScanConverter::Edge {
     /// \param from, to  from Grid::of
     /// \param turn  1 or −1, chosen so that sideOf() is positive inside.
     Edge(const glm::dvec3& from, const glm::dvec3& to, double turn, bool cube) {
-        const bool as_given = comesBefore(from, to);
+        const bool as_given = std::tie(from.x, from.y, from.z) < std::tie(to.x, to.y, to.z);
         const glm::dvec3& a = as_given ? from : to;
         const glm::dvec3& b = as_given ? to : from;
         const double sign = as_given ? turn : -turn;

@@ -140,8 +140,7 @@ class Capper {
         const glm::dvec3 directions[] = {
             size > 0.0 ? normal / size : glm::dvec3(1, 1, 1), {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
         // Starts at a few float steps, so that the bulge stays invisible.
-        const glm::dvec3 far = glm::max(glm::abs(mesh_.bounds.min), glm::abs(mesh_.bounds.max));
-        for (double step = 0x1p-21 * std::max({far.x, far.y, far.z}); step < extent; step *= 4.0) {
+        for (double step = 0x1p-21 * double{mesh_.bounds.farthest()}; step < extent; step *= 4.0) {
             for (const glm::dvec3& direction : directions) {
                 for (const double sign : {1.0, -1.0}) {
                     if (const auto apex = usable(loop, centroid + sign * step * direction)) {
