@@ -211,8 +211,8 @@ Result<AccuracyEntry> loadAndMeasure(const Truth& truth, const std::string& path
     const Collider collider = RELIEF_TRY(loadCollider(path));
     const TriangleMesh& mesh = truth.query.mesh();
     if (collider.provenance.mesh_hash != mesh.content_hash) {
-        return fail(ErrorCode::kInvalidInput, quotedPath(path) + " was not baked from " + mesh.name +
-                                                  "; bake that mesh, or give --collider another file");
+        return invalidInput(quotedPath(path) + " was not baked from " + mesh.name +
+                            "; bake that mesh, or give --collider another file");
     }
     return measureMaps(truth, collider);
 }

@@ -23,12 +23,11 @@ tl::unexpected<Error> noArea(const TriangleMesh& mesh) {
         farthest = std::max({farthest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     }
     const float step = std::nextafter(farthest, 2.0F * farthest) - farthest;
-    return fail(
-        ErrorCode::kInvalidInput,
-        mesh.name + ": no triangle has an area; " +
-            (farthest >= kFar ? "its coordinates reach " + shortest(farthest) + ", where floats are " +
-                                    shortest(step) + " apart: move it to the origin"
-                              : "export the surface as polygons, not as points or lines"));
+    return invalidInput(mesh.name + ": no triangle has an area; " +
+                        (farthest >= kFar
+                             ? "its coordinates reach " + shortest(farthest) + ", where floats are " +
+                                   shortest(step) + " apart: move it to the origin"
+                             : "export the surface as polygons, not as points or lines"));
 }
 
 /// Maximum boxesOnLine() of an ordinary mesh.
@@ -96,18 +95,17 @@ Result<TriangleMesh> finishMesh(TriangleMesh mesh) {
     for (std::size_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
         const glm::uvec3 t = mesh.triangles[triangle];
         if (std::max({t.x, t.y, t.z}) >= mesh.positions.size()) {
-            return fail(ErrorCode::kInvalidInput,
-                        mesh.name + ": a triangle uses vertex " + std::to_string(std::max({t.x, t.y, t.z})) +
-                            " but there are " + std::to_string(mesh.positions.size()) + "; export it again");
+            return invalidInput(mesh.name + ": a triangle uses vertex " +
+                                std::to_string(std::max({t.x, t.y, t.z})) + " but there are " +
+                                std::to_string(mesh.positions.size()) + "; export it again");
         }
         for (const std::uint32_t i : {t.x, t.y, t.z}) {
             const glm::vec3& p = mesh.positions[i];
             // Written to reject NaN.
             if (!(std::abs(p.x) <= kCoordinateMax && std::abs(p.y) <= kCoordinateMax &&
                   std::abs(p.z) <= kCoordinateMax)) {
-                return fail(ErrorCode::kInvalidInput,
-                            mesh.name + ": vertex " + std::to_string(i) +
-                                " has a coordinate that is not a number or beyond 1e15; repair the mesh");
+                return invalidInput(mesh.name + ": vertex " + std::to_string(i) +
+                                    " has a coordinate that is not a number or beyond 1e15; repair the mesh");
             }
         }
         if (hasArea(planeOf(mesh.positions, t))) {
@@ -141,8 +139,7 @@ Result<TriangleMesh> finishMesh(TriangleMesh mesh) {
         }
     }
     if (mesh.bounds.longestSide() < kSizeMin) {
-        return fail(ErrorCode::kInvalidInput,
-                    mesh.name + ": the mesh is smaller than 1e-15 units; scale it up");
+        return invalidInput(mesh.name + ": the mesh is smaller than 1e-15 units; scale it up");
     }
     return mesh;
 }

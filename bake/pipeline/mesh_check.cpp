@@ -34,12 +34,11 @@ Result<void> checkSameMesh(const Collider& collider, const std::string& repair, 
             std::abs(double{collider.bounds.min[i]} - double{mesh.bounds.min[i]}) <= tolerance &&
             std::abs(double{collider.bounds.max[i]} - double{mesh.bounds.max[i]}) <= tolerance;
         if (!same) {
-            return fail(ErrorCode::kInvalidInput,
-                        mesh.name + " has bounds " + shortest(mesh.bounds.min) + " to " +
-                            shortest(mesh.bounds.max) + ", but the collider baked from " +
-                            cleanUtf8(collider.provenance.mesh_name) + " has " +
-                            shortest(collider.bounds.min) + " to " + shortest(collider.bounds.max) +
-                            "; set --mesh to the mesh that it was baked from");
+            return invalidInput(mesh.name + " has bounds " + shortest(mesh.bounds.min) + " to " +
+                                shortest(mesh.bounds.max) + ", but the collider baked from " +
+                                cleanUtf8(collider.provenance.mesh_name) + " has " +
+                                shortest(collider.bounds.min) + " to " + shortest(collider.bounds.max) +
+                                "; set --mesh to the mesh that it was baked from");
         }
     }
     return {};

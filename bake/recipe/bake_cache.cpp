@@ -118,7 +118,7 @@ Result<BakeCacheEntries> parseBakeCache(std::string_view text) {
     } catch (const Json::exception&) {
         // The kind of error does not matter, because the file will be rewritten.
     }
-    return fail(ErrorCode::kInvalidInput, "it is not a cache file, or has an unsupported version");
+    return invalidInput("it is not a cache file, or has an unsupported version");
 }
 
 std::string bakeCacheText(const BakeCacheEntries& entries) {
@@ -152,7 +152,7 @@ Result<std::optional<std::vector<std::byte>>> readCacheFile(const fs::path& path
     }
     // A link could lead out of the folder.
     if (!fs::is_regular_file(status)) {
-        return fail(ErrorCode::kInvalidInput, quotedPath(path) + ": not a regular file");
+        return invalidInput(quotedPath(path) + ": not a regular file");
     }
     return RELIEF_TRY(readFile(path, kCacheBytesMax));
 }

@@ -22,12 +22,11 @@ constexpr std::string_view kFolders = "**";
 }  // namespace
 
 Result<GlobPattern> GlobPattern::parse(std::string_view text) {
-    const auto invalid = [](const std::string& message) { return fail(ErrorCode::kInvalidInput, message); };
     if (text.find('\0') != std::string_view::npos) {
-        return invalid("contains a zero byte; remove it");
+        return invalidInput("contains a zero byte; remove it");
     }
     if (text.starts_with('/')) {
-        return invalid("is an absolute path; write it relative to the recipe's folder");
+        return invalidInput("is an absolute path; write it relative to the recipe's folder");
     }
     GlobPattern pattern;
     for (const std::string_view part : split(text, '/')) {
@@ -35,7 +34,7 @@ Result<GlobPattern> GlobPattern::parse(std::string_view text) {
             continue;
         }
         if (part == "..") {
-            return invalid("leaves the recipe's folder; name files below it");
+            return invalidInput("leaves the recipe's folder; name files below it");
         }
         // Consecutive ** are equivalent to one.
         if (part != kFolders || pattern.parts_.empty() || pattern.parts_.back() != kFolders) {
@@ -45,10 +44,10 @@ Result<GlobPattern> GlobPattern::parse(std::string_view text) {
     }
     pattern.of_folders_ = text.ends_with('/');
     if (pattern.parts_.empty()) {
-        return invalid("names no file; write a file or a pattern such as rocks/*.obj");
+        return invalidInput("names no file; write a file or a pattern such as rocks/*.obj");
     }
     if (pattern.parts_.back() == kFolders) {
-        return invalid("ends with **, which matches folders; write **/* for the files in them");
+        return invalidInput("ends with **, which matches folders; write **/* for the files in them");
     }
     if (pattern.parts_.size() > kPartsMax) {
         return fail(ErrorCode::kLimit,

@@ -175,10 +175,9 @@ Result<void> requireSolid(const MeshHealth& health, const std::string& mesh_name
     if (health.isSolid()) {
         return {};
     }
-    return fail(ErrorCode::kInvalidInput, mesh_name + ": not a closed solid: " + faultsText(health) +
-                                              "; the first is " + health.first_fault->description + " at " +
-                                              shortest(health.first_fault->position) +
-                                              "; repair the mesh, try --repair, or leave out --strict");
+    return invalidInput(mesh_name + ": not a closed solid: " + faultsText(health) + "; the first is " +
+                        health.first_fault->description + " at " + shortest(health.first_fault->position) +
+                        "; repair the mesh, try --repair, or leave out --strict");
 }
 
 void fields(FieldVisitor& visit, const MeshFault& fault) {

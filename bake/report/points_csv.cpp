@@ -50,10 +50,9 @@ Result<std::vector<glm::vec3>> parsePoints(std::string_view text, const std::str
             points.push_back(*point);
         } else if (!header_allowed || !isHeader(reader.fields())) {
             const std::string_view line = reader.line();
-            return fail(ErrorCode::kInvalidInput, name + ":" + std::to_string(reader.number()) + ": '" +
-                                                      cleanUtf8(line.substr(0, kQuotedMax)) +
-                                                      (line.size() > kQuotedMax ? "…" : "") +
-                                                      "' is not a point; write three finite numbers x,y,z");
+            return invalidInput(
+                name + ":" + std::to_string(reader.number()) + ": '" + cleanUtf8(line.substr(0, kQuotedMax)) +
+                (line.size() > kQuotedMax ? "…" : "") + "' is not a point; write three finite numbers x,y,z");
         }
         header_allowed = false;
     }

@@ -51,14 +51,13 @@ Result<ErrorCurves> parseErrorCurves(std::string_view text) {
     const auto curves = member("curves");
     if (format == json.end() || *format != kFormat || version == json.end() || *version != kVersion ||
         curves == json.end() || !curves->is_object()) {
-        return fail(ErrorCode::kInvalidInput,
-                    "it is not a file of error curves, or has an unsupported version");
+        return invalidInput("it is not a file of error curves, or has an unsupported version");
     }
     ErrorCurves all;
     for (const auto& [key, values] : curves->items()) {
         std::optional<ErrorCurve> curve = curveOf(values);
         if (!curve) {
-            return fail(ErrorCode::kInvalidInput, "it contains a curve that does not decrease");
+            return invalidInput("it contains a curve that does not decrease");
         }
         all.emplace(key, std::move(*curve));
     }
