@@ -25,10 +25,6 @@ bool canBePosed(const AnimatedMesh& mesh) {
            std::ranges::any_of(mesh.joints, [](const MeshJoint& joint) { return joint.bind != Affine{}; });
 }
 
-bool hasName(const AnimatedMesh& mesh, const std::string& name) {
-    return std::ranges::any_of(mesh.clips, [&](const MeshClip& clip) { return clip.name == name; });
-}
-
 /// Maps the nodes of one mesh to the nodes of another mesh by name.
 class NodeMatch {
   public:
@@ -81,11 +77,8 @@ Result<void> addFile(const std::string& file, const ImportLimits& limits, Animat
     AnimatedImport clips = RELIEF_TRY(importAnimatedFileInWorker(file, ImportKind::kClips, {}, limits));
     TriangleMesh& from = clips.rest;
     std::vector<std::string> warnings;
-    const Result<void> added = addClipsOf(clips.mesh, all.mesh, warnings);
-    if (!added) {
-        return fail(added.error().code,
-                    "cannot add the clips of " + quotedPath(file) + ": " + added.error().message);
-    }
+    RELIEF_TRY(withPrefix("cannot add the clips of " + quotedPath(file),
+                          addClipsOf(clips.mesh, all.mesh, warnings)));
     for (const std::string& warning : warnings) {
         from.warnings.push_back(from.name + ": " + warning);
     }
@@ -102,7 +95,8 @@ Result<void> addFile(const std::string& file, const ImportLimits& limits, Animat
 void addClip(AnimatedMesh& mesh, MeshClip clip, std::vector<std::string>& warnings) {
     const std::string name = cleanUtf8(clip.name, kBareNameMax);
     clip.name = name;
-    for (int number = 2; hasName(mesh, clip.name); ++number) {
+    for (int number = 2; std::ranges::find(mesh.clips, clip.name, &MeshClip::name) != mesh.clips.end();
+         ++number) {
         clip.name = name + " " + std::to_string(number);
     }
     if (clip.name != name) {

@@ -87,15 +87,13 @@ class AnimatedReader {
     }
 
     Result<TriangleMesh> run() {
+        const bool only_clips = job_.kind == ImportKind::kClips;
         RELIEF_TRY(checkGltf(document_, out_.warnings));
         from_ = RELIEF_TRY(readGltfNodes(document_, job_.options.hidden));
-        if (job_.kind == ImportKind::kClips) {
-            RELIEF_TRY(readClips());
-            RELIEF_TRY(validateClips(mesh_));
-        } else {
-            RELIEF_TRY(readAll());
-            RELIEF_TRY(validate(mesh_));
-        }
+        // All nodes of a clip file, because its scene may contain none of them.
+        RELIEF_TRY(only_clips ? addNodes(nodesBelow(rootsOf(from_), from_)) : readShown());
+        RELIEF_TRY(readGltfClips(document_, buffers_, nodes_, mesh_, out_.warnings));
+        RELIEF_TRY(only_clips ? validateClips(mesh_) : validate(mesh_));
         out_.animation = writeAnimatedMesh(mesh_);
         return std::move(out_);
     }
@@ -106,13 +104,7 @@ class AnimatedReader {
         std::vector<Affine> binds;
     };
 
-    /// Adds all nodes, because the scene of a clip file may contain none of them.
-    Result<void> readClips() {
-        RELIEF_TRY(addNodes(nodesBelow(rootsOf(from_), from_)));
-        return readGltfClips(document_, buffers_, nodes_, mesh_, out_.warnings);
-    }
-
-    Result<void> readAll() {
+    Result<void> readShown() {
         const std::vector<std::uint32_t> roots = RELIEF_TRY(gltfRoots(document_, from_));
         const std::vector<std::uint32_t> shown = nodesBelow(roots, from_);
         RELIEF_TRY(meshes_.read(shown, from_, true));
@@ -127,8 +119,7 @@ class AnimatedReader {
         }
         mesh_.influence_begin.push_back(static_cast<std::uint32_t>(mesh_.influences.size()));
         mesh_.delta_begin.push_back(static_cast<std::uint32_t>(mesh_.deltas.size()));
-        RELIEF_TRY(countParts());
-        return readGltfClips(document_, buffers_, nodes_, mesh_, out_.warnings);
+        return countParts();
     }
 
     Result<void> readSkins(const std::vector<std::uint32_t>& shown) {

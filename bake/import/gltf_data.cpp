@@ -199,7 +199,7 @@ Result<void> replaceSparse(const GltfValue& sparse, GltfBuffers& buffers, std::u
 
 /// Splits a GLB into its chunks; any other file is JSON.
 Result<GltfChunks> gltfChunks(std::span<const std::byte> bytes) {
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const std::string_view text = textOf(bytes);
     GltfChunks chunks{text, std::nullopt, {}};
     if (!text.starts_with("glTF")) {
         return chunks;

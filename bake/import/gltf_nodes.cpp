@@ -52,20 +52,6 @@ Result<std::optional<GltfValue>> extensionOf(const std::optional<GltfValue>& of,
     return extensions ? extensions->object(name) : std::optional<GltfValue>();
 }
 
-Result<void> checkExtensions(const GltfValue& document) {
-    using Names = std::vector<std::string>;
-    for (const std::string& name : RELIEF_TRY(document.get<Names>("extensionsRequired", {}))) {
-        const bool known = name.starts_with("KHR_materials_") || name.starts_with("KHR_xmp") ||
-                           std::ranges::find(kKnown, name) != kKnown.end();
-        if (!known) {
-            return fail(ErrorCode::kUnsupported,
-                        "it requires the extension '" + cleanUtf8(name, 100) +
-                            "', which is not supported; export the file without the extension");
-        }
-    }
-    return {};
-}
-
 /// Whether animations change the visibility of nodes (KHR_animation_pointer). Fails only if an animation is invalid.
 /// checkGltf() ignores this error, because a static mesh does not depend on animations.
 Result<bool> animatesVisibility(const GltfValue& document) {
@@ -237,20 +223,6 @@ Result<std::vector<T>> instanceValues(const GltfValue& attributes, const char* n
                     : Result<std::vector<T>>(std::vector<T>());
 }
 
-/// Warns of combine modes that would use only the smaller or larger value.
-Result<void> checkCombineModes(const GltfValue& material, std::vector<std::string>& warnings) {
-    constexpr const char* kWarning =
-        "physics materials have a frictionCombine or restitutionCombine of minimum or maximum, which has no "
-        "effect: their values multiply those of a particle";
-    for (const char* name : {"frictionCombine", "restitutionCombine"}) {
-        const auto mode = RELIEF_TRY(material.get<std::string>(name, "average"));
-        if (mode != "average" && mode != "multiply") {
-            warnOnce(warnings, kWarning);
-        }
-    }
-    return {};
-}
-
 }  // namespace
 
 Result<void> checkGltf(const GltfValue& document, std::vector<std::string>& warnings) {
@@ -258,7 +230,17 @@ Result<void> checkGltf(const GltfValue& document, std::vector<std::string>& warn
     if (animatesVisibility(document).value_or(false)) {
         warnings.emplace_back(kAnimatedVisibility);
     }
-    return checkExtensions(document);
+    using Names = std::vector<std::string>;
+    for (const std::string& name : RELIEF_TRY(document.get<Names>("extensionsRequired", {}))) {
+        const bool known = name.starts_with("KHR_materials_") || name.starts_with("KHR_xmp") ||
+                           std::ranges::find(kKnown, name) != kKnown.end();
+        if (!known) {
+            return fail(ErrorCode::kUnsupported,
+                        "it requires the extension '" + cleanUtf8(name, 100) +
+                            "', which is not supported; export the file without the extension");
+        }
+    }
+    return {};
 }
 
 Result<std::vector<GltfNode>> readGltfNodes(const GltfValue& document, HiddenMode hidden) {
@@ -368,7 +350,14 @@ Result<std::optional<SurfaceResponse>> readSurfaceResponse(const GltfValue& docu
         }
         *factor = std::min(*factor, 1.0F);
     }
-    RELIEF_TRY(checkCombineModes(material, warnings));
+    for (const char* name : {"frictionCombine", "restitutionCombine"}) {
+        const auto mode = RELIEF_TRY(material.get<std::string>(name, "average"));
+        if (mode != "average" && mode != "multiply") {
+            warnOnce(warnings,
+                     "physics materials have a frictionCombine or restitutionCombine of minimum or maximum, "
+                     "which has no effect: their values multiply those of a particle");
+        }
+    }
     return response;
 }
 

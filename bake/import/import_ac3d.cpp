@@ -30,9 +30,7 @@ using ByMaterial = std::map<std::uint64_t, PolygonMesh>;
 
 class Ac3dReader {
   public:
-    explicit Ac3dReader(const ImportJob& job)
-        : job_(job),
-          text_(std::string_view(reinterpret_cast<const char*>(job.bytes.data()), job.bytes.size())) {}
+    explicit Ac3dReader(const ImportJob& job) : job_(job), text_(textOf(job.bytes)) {}
 
     Result<ImportScene> read() {
         if (!text_.anyWord().starts_with("AC3D")) {

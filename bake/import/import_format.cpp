@@ -46,9 +46,7 @@ bool isBinaryStl(std::string_view extension, std::span<const std::byte> bytes) {
 }  // namespace
 
 const MeshFormat* meshFormat(std::string_view extension) {
-    const std::string lower = lowerCase(extension);
-    const auto found = std::find_if(std::begin(kRows), std::end(kRows),
-                                    [&](const MeshFormat& row) { return row.extension == lower; });
+    const MeshFormat* const found = std::ranges::find(kRows, lowerCase(extension), &MeshFormat::extension);
     return found == std::end(kRows) ? nullptr : found;
 }
 

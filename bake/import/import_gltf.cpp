@@ -38,11 +38,13 @@ ScenePart posed(ScenePart part, const GltfInfluences& influences, const std::vec
 
 class GltfReader {
   public:
-    GltfReader(const ImportJob& job, const GltfChunks& chunks, const GltfValue& document, ImportFiles& files)
+    GltfReader(const ImportJob& job, const GltfDocument& file, ImportFiles& files)
         : hidden_(job.options.hidden),
-          document_(document),
-          buffers_(chunks, files),
-          meshes_(job.triangle_max, buffers_, scene_.warnings) {}
+          document_(*file.json),
+          buffers_(file.chunks, files),
+          meshes_(job.triangle_max, buffers_, scene_.warnings) {
+        scene_.warnings = file.chunks.warnings;
+    }
 
     Result<ImportScene> run() {
         scene_.frame = {1.0, UpAxis::kPlusY};
@@ -154,7 +156,7 @@ class GltfReader {
     }
 
     HiddenMode hidden_;
-    const GltfValue& document_;
+    const GltfValue document_;
     GltfBuffers buffers_;
     ImportScene scene_;
     GltfMeshes meshes_;
@@ -169,13 +171,7 @@ class GltfReader {
 
 Result<ImportScene> readGltf(const ImportJob& job, ImportFiles& files) {
     const GltfDocument file = RELIEF_TRY(openGltf(job.bytes));
-    const GltfValue document(*file.json);
-    Result<ImportScene> scene = GltfReader(job, file.chunks, document, files).run();
-    if (scene) {
-        const std::vector<std::string>& warnings = file.chunks.warnings;
-        scene->warnings.insert(scene->warnings.begin(), warnings.begin(), warnings.end());
-    }
-    return scene;
+    return GltfReader(job, file, files).run();
 }
 
 }  // namespace relief

@@ -8,14 +8,6 @@
 #include "formats/base/text.h"
 
 namespace relief {
-namespace {
-
-std::string number(double value) {
-    return shortest(static_cast<float>(value));
-}
-
-}  // namespace
-
 void fields(FieldVisitor& visit, ImportOptions& options) {
     visit("unit", options.unit,
           {.help = "Unit of lengths in the file, converted to metres: m, cm, mm, um, km, in, ft or yd",
@@ -78,7 +70,7 @@ FrameChange changeOf(const SourceFrame& source, std::string_view unit, std::opti
     }
     if (given && source.metres && std::abs(*given / *source.metres - 1.0) > 1e-6) {
         change.warnings.push_back("--unit " + std::string(unit) + " overrides the file's unit, " +
-                                  number(*source.metres) + " m");
+                                  shortest(static_cast<float>(*source.metres)) + " m");
     }
     // The axis after mirroring.
     const auto now = [&source](UpAxis axis) {

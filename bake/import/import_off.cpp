@@ -177,7 +177,7 @@ class OffReader {
 }  // namespace
 
 Result<PolygonMesh> readOff(std::span<const std::byte> bytes) {
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const std::string_view text = textOf(bytes);
     OffReader reader(text, {});
     Result<PolygonMesh> mesh = reader.read();
     // The first attempt skips all words after the first element of a line, as colours. If it fails, or reads an element

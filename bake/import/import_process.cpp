@@ -166,8 +166,7 @@ Result<void> ImportProcess::finish(bool begun) {
 }
 
 tl::unexpected<Error> ImportProcess::unreadable(const std::string& what) const {
-    return fail(ErrorCode::kInvalidInput,
-                "the importer " + what + "; export the " + noun_ + " again, in another format");
+    return invalidInput("the importer " + what + "; export the " + noun_ + " again, in another format");
 }
 
 tl::unexpected<Error> ImportProcess::ended(int number) const {
@@ -183,8 +182,7 @@ tl::unexpected<Error> ImportProcess::ended(int number) const {
                         "the importer was ended by " + signalName(number) +
                             " from outside (the system may be out of memory); try again");
         case SIGSYS:
-            return fail(
-                ErrorCode::kInvalidInput,
+            return invalidInput(
                 "the importer made a forbidden system call (SIGSYS), which suggests a hostile file; do not "
                 "use the file; if you trust it, report a bug");
         case SIGBUS:  // not a truncated file: its memory is anonymous

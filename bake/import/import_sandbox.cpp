@@ -160,11 +160,6 @@ class Rules {
     int failure_ = 0;
 };
 
-bool isPipe(int file) {
-    struct stat status {};
-    return ::fstat(file, &status) == 0 && S_ISFIFO(status.st_mode);
-}
-
 void addRules(Rules& rules, int folder, int result) {
     for (const int call : kAllowed) {
         rules.allow(call);
@@ -181,7 +176,8 @@ void addRules(Rules& rules, int folder, int result) {
         rules.allow(SCMP_SYS(openat2), {Rules::is(0, static_cast<scmp_datum_t>(folder))});
     }
     const auto file = static_cast<scmp_datum_t>(result);
-    const bool pipe = isPipe(result);
+    struct stat status {};
+    const bool pipe = ::fstat(result, &status) == 0 && S_ISFIFO(status.st_mode);
 #ifndef RELIEF_SANITIZED
     if (pipe) {
         rules.allow(SCMP_SYS(write), {Rules::is(0, file)});

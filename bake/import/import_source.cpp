@@ -16,22 +16,17 @@
 #include "formats/validate.h"
 
 namespace relief {
-namespace {
 
-namespace fs = std::filesystem;
-
-}  // namespace
-
-ImportSource::ImportSource(fs::path path, std::string extension, std::vector<std::byte> bytes)
+ImportSource::ImportSource(std::filesystem::path path, std::string extension, std::vector<std::byte> bytes)
     : path_(std::move(path)),
       extension_(std::move(extension)),
       bytes_(std::move(bytes)),
       hash_(xxh3_128Hex(bytes_)) {
-    const fs::path parent = path_.parent_path();
+    const std::filesystem::path parent = path_.parent_path();
     folder_ = Descriptor(::open(parent.empty() ? "." : parent.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
 }
 
-Result<ImportSource> ImportSource::open(const fs::path& path) {
+Result<ImportSource> ImportSource::open(const std::filesystem::path& path) {
     std::vector<std::byte> bytes = RELIEF_TRY(readFile(path));
     const std::string extension = lowerCase(path.extension().string());
     if (extension.empty() || meshFormat(extension.substr(1)) == nullptr) {
@@ -43,15 +38,13 @@ Result<ImportSource> ImportSource::open(const fs::path& path) {
                 (image ? "if it is a height map, bake it with --heights" : "convert it to glTF, OBJ or PLY"));
     }
     if (bytes.empty()) {
-        return fail(ErrorCode::kInvalidInput,
-                    quotedPath(path) + ": the file is empty; export the mesh again");
+        return invalidInput(quotedPath(path) + ": the file is empty; export the mesh again");
     }
     return ImportSource(path, extension.substr(1), std::move(bytes));
 }
 
 tl::unexpected<Error> ImportSource::invalidResult(const char* what) const {
-    return fail(ErrorCode::kInvalidInput,
-                quotedPath(path_) + ": the importer returned " + what + "; export the mesh again");
+    return invalidInput(quotedPath(path_) + ": the importer returned " + what + "; export the mesh again");
 }
 
 Result<TriangleMesh> ImportSource::finish(TriangleMesh raw, std::size_t names) const {
@@ -68,13 +61,8 @@ Result<Level> ImportSource::finishLevel(TriangleMesh raw, std::size_t names, boo
     if (!raw.animation.empty()) {
         return invalidResult("an animation that was not requested");
     }
-    Result<TriangleMesh> all = named(std::move(raw), names);
-    if (!all) {
-        return forward(all);
-    }
-    Result<Level> level = splitLevel(std::move(*all), materials);
-    return level ? std::move(level)
-                 : fail(level.error().code, quotedPath(path_) + ": " + level.error().message);
+    TriangleMesh all = RELIEF_TRY(named(std::move(raw), names));
+    return withPrefix(quotedPath(path_), splitLevel(std::move(all), materials));
 }
 
 Result<AnimatedImport> ImportSource::finishAnimated(TriangleMesh raw, ImportKind kind) const {
@@ -109,7 +97,7 @@ Result<TriangleMesh> ImportSource::named(TriangleMesh raw, std::size_t names) co
     std::vector<std::pair<std::string, std::string>> files;  // path, hash
     for (std::size_t i = 0; i < raw.dependencies.size(); ++i) {
         const std::string& file = raw.dependencies[i];
-        const fs::path relative(file);
+        const std::filesystem::path relative(file);
         const bool beneath = !file.empty() && relative.is_relative() &&
                              std::find(relative.begin(), relative.end(), "..") == relative.end() &&
                              file.find('\0') == std::string::npos;

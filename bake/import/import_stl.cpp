@@ -51,12 +51,8 @@ Result<PolygonMesh> readBinary(std::span<const std::byte> bytes) {
     PolygonMesh mesh;
     const std::byte* at = bytes.data() + kStlHeader;
     for (std::uint64_t i = 0; i < count; ++i, at += kTriangle) {
-        std::array<float, 9> numbers{};
-        std::memcpy(numbers.data(), at + 12, sizeof(numbers));
         std::array<glm::vec3, 3> corners{};
-        for (std::size_t k = 0; k < 3; ++k) {
-            corners[k] = {numbers[3 * k], numbers[3 * k + 1], numbers[3 * k + 2]};
-        }
+        std::memcpy(corners.data(), at + 12, sizeof(corners));
         addTriangle(corners, mesh);
     }
     if (const auto trailing = static_cast<std::uint64_t>(bytes.data() + bytes.size() - at); trailing > 0) {
@@ -160,9 +156,8 @@ bool isText(std::span<const std::byte> bytes) {
     if (bytes.size() >= kStlHeader && bytes.size() >= kStlHeader + declaredTriangles(bytes) * kTriangle) {
         return false;
     }
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     // A truncated binary file may begin with "solid", too; its header is padded with zeros.
-    TextScanner scanner(text);
+    TextScanner scanner(textOf(bytes));
     return lowerCase(scanner.anyWord()) == "solid" &&
            scanner.rest().substr(0, kStlHeader).find('\0') == std::string_view::npos;
 }
@@ -170,8 +165,7 @@ bool isText(std::span<const std::byte> bytes) {
 }  // namespace
 
 Result<PolygonMesh> readStl(std::span<const std::byte> bytes) {
-    return isText(bytes) ? StlText({reinterpret_cast<const char*>(bytes.data()), bytes.size()}).read()
-                         : readBinary(bytes);
+    return isText(bytes) ? StlText(textOf(bytes)).read() : readBinary(bytes);
 }
 
 }  // namespace relief

@@ -158,8 +158,7 @@ Result<TriangleMesh> importRaw(const ImportJob& job) {
                                            " names are requested at once; use fewer");
     }
     ImportJob without_mark = job;
-    const std::string_view text(reinterpret_cast<const char*>(job.bytes.data()), job.bytes.size());
-    without_mark.bytes = job.bytes.subspan(job.bytes.size() - withoutByteOrderMark(text).size());
+    without_mark.bytes = job.bytes.last(withoutByteOrderMark(textOf(job.bytes)).size());
     const std::optional<std::string> format = otherFormat(job.extension, without_mark.bytes);
     if (format) {
         without_mark.file_name += "." + *format;

@@ -128,8 +128,7 @@ void PolygonCutter::cutEars(Test test) {
             reflexes_.push_back(i);
         }
     }
-    std::ranges::sort(reflexes_,
-                      [&](std::uint32_t a, std::uint32_t b) { return points_[a].x < points_[b].x; });
+    std::ranges::sort(reflexes_, {}, [&](std::uint32_t i) { return points_[i].x; });
     sorted_ = reflexes_.size();
     std::uint32_t corner = 0;
     std::uint32_t tried = 0;
@@ -151,10 +150,7 @@ void PolygonCutter::cutEars(Test test) {
         }
         corner = following;
     }
-    std::uint32_t first = corner;
-    for (const std::uint32_t other : {next_[corner], before_[corner]}) {
-        first = std::min(first, other);
-    }
+    const std::uint32_t first = std::min({corner, next_[corner], before_[corner]});
     triangles_.emplace_back(first, next_[first], before_[first]);
 }
 

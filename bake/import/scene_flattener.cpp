@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -147,7 +146,13 @@ class Flattener {
         }
         mesh_.warnings = std::move(scene_.warnings);
         RELIEF_TRY(countParts());
-        return applyFrame();
+        const ImportOptions& options = job_.options;
+        RELIEF_TRY(checkFrame(scene_.frame, options.unit, options.up));
+        const FrameChange change = changeOf(scene_.frame, options.unit, options.up);
+        mesh_.unit = change.unit;
+        mesh_.warnings.insert(mesh_.warnings.end(), change.warnings.begin(), change.warnings.end());
+        root_.linear = change.scale * change.turn;
+        return {};
     }
 
     Result<TriangleMesh> finish() {
@@ -283,16 +288,6 @@ class Flattener {
         }
         mesh_.unused_vertices = counts.unused;
         warnAboutParts(counts, mesh_.warnings);
-        return {};
-    }
-
-    Result<void> applyFrame() {
-        const ImportOptions& options = job_.options;
-        RELIEF_TRY(checkFrame(scene_.frame, options.unit, options.up));
-        const FrameChange change = changeOf(scene_.frame, options.unit, options.up);
-        mesh_.unit = change.unit;
-        mesh_.warnings.insert(mesh_.warnings.end(), change.warnings.begin(), change.warnings.end());
-        root_.linear = change.scale * change.turn;
         return {};
     }
 

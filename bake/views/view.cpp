@@ -225,10 +225,7 @@ Result<MapSpec> completeSpec(MapSpec spec, const PreparedMesh& mesh, std::uint32
         spec.height = cube ? spec.width : resolution;
     }
     for (const std::uint32_t side : {spec.width, spec.height}) {
-        if (const Result<std::uint32_t> checked = checkMapSize(side, spec.format, "size of a map");
-            !checked) {
-            return forward(checked);
-        }
+        static_cast<void>(RELIEF_TRY(checkMapSize(side, spec.format, "size of a map")));
     }
     if (cube && !spec.center && !spec.box) {
         spec.center = mesh->bounds.center();
