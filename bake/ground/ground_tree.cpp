@@ -169,15 +169,11 @@ class GroundTree {
     }
 
     Result<void> splitCells() {
-        for (std::uint32_t z = 0; z < roots_.z; ++z) {
-            for (std::uint32_t y = 0; y < roots_.y; ++y) {
-                for (std::uint32_t x = 0; x < roots_.x; ++x) {
-                    Cell cell{.x = x, .y = bottom_ + static_cast<std::int32_t>(y), .z = z};
-                    cell.kind = kindOf(cell, columnOf(0, x, z));
-                    cells_.push_back(cell);
-                }
-            }
-        }
+        forEachPoint(glm::uvec3(0), roots_, [&](const glm::uvec3& at) {
+            Cell cell{.x = at.x, .y = bottom_ + static_cast<std::int32_t>(at.y), .z = at.z};
+            cell.kind = kindOf(cell, columnOf(0, at.x, at.z));
+            cells_.push_back(cell);
+        });
         shared_.assign(std::size_t{ranges_.width(0)} * ranges_.depth(0), kNone);
         for (std::size_t i = 0; i < cells_.size(); ++i) {
             if (cells_[i].kind == PatchRecord::Kind::kSplit) {

@@ -240,8 +240,7 @@ class Expander {
                                                 ", which points outside the recipe's folder; remove it");
             }
         }
-        std::string output = RELIEF_TRY(outputOf(asset, mesh, job.mesh_is_folder));
-        job.output = std::move(output);
+        job.output = RELIEF_TRY(outputOf(asset, mesh, job.mesh_is_folder));
         job.world = asset.isWorld();
         if (!resolveInside(output_folder_, job.output)) {
             return at(asset.output_place, "the output " + inQuotes(job.output) +
