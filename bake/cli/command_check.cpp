@@ -24,16 +24,6 @@
 namespace relief {
 namespace {
 
-/// Checks the animation of a valid container, which the inspection does not read.
-Result<void> checkAnimation(const std::vector<std::byte>& bytes, const ContainerLimits& limits) {
-    const Collider collider = RELIEF_TRY(readContainer(bytes, limits));
-    if (!collider.animation.empty()) {
-        const Result<AnimatedMesh> mesh = readAnimatedMesh(collider.animation);
-        return mesh ? Result<void>() : fail(mesh.error().code, mesh.error().message + "; bake it again");
-    }
-    return {};
-}
-
 /// Prints the report of inspectContainer, also for a damaged file.
 /// Errors: kIo, kLimit; kInvalidInput or Inspection::errorCode() if the file is damaged.
 Result<void> checkFile(const std::string& file, bool json, const ContainerLimits& limits) {
@@ -41,7 +31,13 @@ Result<void> checkFile(const std::string& file, bool json, const ContainerLimits
     const std::string quoted = inputText(file);
     const Inspection inspection = RELIEF_TRY(withPrefix(quoted, inspectContainer(bytes, limits)));
     if (!inspection.damaged()) {
-        RELIEF_TRY(withPrefix(quoted, checkAnimation(bytes, limits)));
+        // The inspection does not read the animation.
+        const Collider collider = RELIEF_TRY(withPrefix(quoted, readContainer(bytes, limits)));
+        if (!collider.animation.empty()) {
+            if (const Result<AnimatedMesh> mesh = readAnimatedMesh(collider.animation); !mesh) {
+                return fail(mesh.error().code, quoted + ": " + mesh.error().message + "; bake it again");
+            }
+        }
     }
     const std::string name = inputName(file);
     const Result<void> printed =
@@ -58,15 +54,6 @@ Result<void> checkFile(const std::string& file, bool json, const ContainerLimits
         }
     }
     return {};
-}
-
-void addAdvice(const CheckCommand& command, const std::string& file, MeshCheck& run) {
-    // No advice applies to an animated collider, because its maps are fixed.
-    if (run.recorded.request.animated ||
-        (run.passes(command.max_error) && (command.max_error || run.wrongPercent() <= kGoodPercent))) {
-        return;
-    }
-    run.advice = adviceFor(run, command.request.mesh, file == "-" ? "out.relief" : file);
 }
 
 std::string checkText(const MeshCheckReport& report) {
@@ -122,7 +109,12 @@ Result<void> runCheck(const CheckCommand& command, const std::string& file, File
     for (const std::string& read : run.imported->dependencies) {
         RELIEF_TRY(files.reads(read));
     }
-    addAdvice(command, file, run);
+    const bool passed = run.passes(command.max_error);
+    // No advice applies to an animated collider, because its maps are fixed.
+    if (!run.recorded.request.animated &&
+        !(passed && (command.max_error || run.wrongPercent() <= kGoodPercent))) {
+        run.advice = adviceFor(run, command.request.mesh, file == "-" ? "out.relief" : file);
+    }
     const MeshCheckReport report{run, inputName(file), command.max_error};
     if (!command.html.empty()) {
         const std::string page =
@@ -130,7 +122,6 @@ Result<void> runCheck(const CheckCommand& command, const std::string& file, File
         RELIEF_TRY(writeText(command.html, page));
     }
     RELIEF_TRY(printOut(command.json ? jsonTextOf(report) : checkText(report)));
-    const bool passed = run.passes(command.max_error);
     if (!passed && run.original.accuracy.field.near.total() <= double{*command.max_error}) {
         return fail(ErrorCode::kDifference, *lostPartsWarning(run.part_accuracy, run.parts, run.collider) +
                                                 "; --min-part LENGTH ignores shorter parts");

@@ -61,16 +61,6 @@ std::vector<NamedImage> imagesOf(const Collider& collider, std::uint32_t resolut
     return images;
 }
 
-Result<void> exportImages(const std::vector<NamedImage>& images, const std::filesystem::path& folder) {
-    for (const NamedImage& image : images) {
-        const ExrImage drawn = RELIEF_TRY(image.draw());
-        const std::vector<std::byte> bytes = RELIEF_TRY(encodeExr(drawn));
-        RELIEF_TRY(writeFile(folder / image.name, bytes));
-        spdlog::debug("wrote {}", quotedPath(folder / image.name));
-    }
-    return {};
-}
-
 /// Creates the folders of these files. Fails if the files would overwrite another file of the run.
 /// \param outputs  of type NamedImage or EngineFile.
 template <class Outputs>
@@ -185,17 +175,22 @@ Result<void> runExport(const ExportCommand& command, FileGuard& files) {
             ErrorCode::kUsage,
             inputText(command.file) + " has no patches, and its maps have fixed sizes; remove --resolution");
     }
+    const std::filesystem::path folder = command.output;
     const std::vector<NamedImage> images = imagesOf(collider, command.resolution.value_or(kResolution));
     if (!command.output.empty()) {
-        RELIEF_TRY(prepareFolder(command.output, images, "-o", files));
+        RELIEF_TRY(prepareFolder(folder, images, "-o", files));
     }
     if (engine) {
         RELIEF_TRY(exportForEngine(collider, *engine, command, files));
     }
     if (!command.output.empty()) {
-        RELIEF_TRY(exportImages(images, command.output));
-        spdlog::info("wrote {} images into {}", images.size(),
-                     quotedPath(std::filesystem::path(command.output)));
+        for (const NamedImage& image : images) {
+            const ExrImage drawn = RELIEF_TRY(image.draw());
+            const std::vector<std::byte> bytes = RELIEF_TRY(encodeExr(drawn));
+            RELIEF_TRY(writeFile(folder / image.name, bytes));
+            spdlog::debug("wrote {}", quotedPath(folder / image.name));
+        }
+        spdlog::info("wrote {} images into {}", images.size(), quotedPath(folder));
     }
     return exportGrids(collider, command);
 }

@@ -16,16 +16,6 @@
 namespace relief {
 namespace {
 
-Result<void> preflightGround(const BakeCommand& command, FileGuard& files) {
-    if (!command.world.empty()) {
-        return preflightWorld(command, files);
-    }
-    if (command.request.mesh.empty()) {
-        return fail(ErrorCode::kUsage, "MESH is required; name a height map, or see relief bake --help");
-    }
-    return preflightBake(command, files);
-}
-
 /// The field of a world, or of a collider as the only body of a world.
 Result<WorldField> fieldOf(const std::string& file, const ContainerLimits& limits) {
     if (isWorldFile(file)) {
@@ -39,9 +29,8 @@ Result<WorldField> fieldOf(const std::string& file, const ContainerLimits& limit
 }
 
 Result<void> checkOptions(const std::string& file, const CheckCommand& command) {
-    ImportLimits mesh_limits;
-    mesh_limits.triangles = command.request.import_limits.triangles;
-    const std::string import_option = importOptionOf(command.request.import, mesh_limits);
+    const std::string import_option =
+        importOptionOf(command.request.import, {.triangles = command.request.import_limits.triangles});
     const std::string option = !command.html.empty()      ? "--page"
                                : command.request.min_part ? "--min-part"
                                                           : import_option;
@@ -120,7 +109,10 @@ Result<void> runGroundCommand(const BakeCommand& command, FileGuard& files) {
     const Stopwatch total;
     const std::string& folder = command.world;
     static_cast<void>(RELIEF_TRY(settingsOf(command.request)));
-    RELIEF_TRY(preflightGround(command, files));
+    if (folder.empty() && command.request.mesh.empty()) {
+        return fail(ErrorCode::kUsage, "MESH is required; name a height map, or see relief bake --help");
+    }
+    RELIEF_TRY(folder.empty() ? preflightBake(command, files) : preflightWorld(command, files));
     Progress progress({quotedPath(command.request.mesh), !command.common.quiet, command.request.timeout});
     progress.begin("baking the ground");
     const GroundResult result = RELIEF_TRY(bakeHeightMap(

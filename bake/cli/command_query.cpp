@@ -29,16 +29,12 @@ struct QueryCommand {
     std::optional<DistanceTo> distance;
 };
 
-/// The printed values of the nearest surface: its distance, normal and map.
-FieldSample toSample(const SurfaceSample& nearest) {
-    return {nearest.distance, nearest.normal, nearest.map};
-}
-
-std::vector<FieldSample> sampled(const Collider& collider, std::span<const glm::vec3> points, bool plane) {
+/// Returns sample_at(p) for each point.
+template <class SampleAt>
+std::vector<FieldSample> sampled(std::span<const glm::vec3> points, const SampleAt& sample_at) {
     std::vector<FieldSample> samples(points.size());
-    tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
-        samples[i] = plane ? evaluate(collider, points[i]) : toSample(nearestSurface(collider, points[i]));
-    });
+    tbb::parallel_for(std::size_t{0}, points.size(),
+                      [&](std::size_t i) { samples[i] = sample_at(points[i]); });
     return samples;
 }
 
@@ -57,12 +53,10 @@ Result<std::vector<FieldSample>> sampledWorld(const QueryCommand& command, std::
         RELIEF_TRY(files.reads(folder / collider.file));
         RELIEF_TRY(files.reads(collider.coarse ? folder / collider.coarse->file : std::filesystem::path()));
     }
-    std::vector<FieldSample> samples(points.size());
-    tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
-        const WorldSample sample = field.evaluate(points[i]);
-        samples[i] = {sample.distance, sample.normal, sample.body};
+    return sampled(points, [&](const glm::vec3& p) {
+        const WorldSample sample = field.evaluate(p);
+        return FieldSample{sample.distance, sample.normal, sample.body};
     });
-    return samples;
 }
 
 Result<void> runQuery(const QueryCommand& command, FileGuard& files) {
@@ -78,9 +72,15 @@ Result<void> runQuery(const QueryCommand& command, FileGuard& files) {
     const std::vector<std::byte> text = RELIEF_TRY(readFile(command.points));
     const std::vector<glm::vec3> points =
         RELIEF_TRY(parsePoints(textOf(text), command.points == "-" ? "standard input" : command.points));
+    const auto at = [&](const glm::vec3& p) {
+        if (command.distance == DistanceTo::kPlane) {
+            return evaluate(collider, p);
+        }
+        const SurfaceSample nearest = nearestSurface(collider, p);
+        return FieldSample{nearest.distance, nearest.normal, nearest.map};
+    };
     const std::vector<FieldSample> samples =
-        world ? RELIEF_TRY(sampledWorld(command, points, files))
-              : sampled(collider, points, command.distance == DistanceTo::kPlane);
+        world ? RELIEF_TRY(sampledWorld(command, points, files)) : sampled(points, at);
     return writeText(command.output, formatSamples(points, samples, world ? "body" : "map"));
 }
 

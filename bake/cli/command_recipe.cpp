@@ -39,15 +39,6 @@ constexpr std::string_view kHeights = "--heights=";
 /// Options that apply to the whole run, and are therefore not keys of recipes.
 constexpr std::array<std::string_view, 3> kRunOptions = {"threads", "json", "depfile"};
 
-std::vector<FieldWords> fieldsOfAsset() {
-    std::vector<FieldWords> all = fieldsOf(BakeRequest());
-    std::ranges::move(fieldsOf(BakeOutputs()), std::back_inserter(all));
-    std::erase_if(all, [](const FieldWords& field) {
-        return std::ranges::find(kRunOptions, field.name) != kRunOptions.end();
-    });
-    return all;
-}
-
 /// Returns an error if an option is set that belongs in the recipe.
 Result<void> checkOptions(const CLI::App& verb) {
     const std::vector<RecipeKey> keys = recipeKeys();
@@ -113,20 +104,6 @@ std::optional<Shard> parseShard(const std::string& text) {
     return Shard{*index, *count};
 }
 
-Result<RecipeRun> runOf(const BakeCommand& command) {
-    RecipeRun run;
-    run.recipe = command.recipe.recipe;
-    run.output_folder = command.output.empty() ? recipeFolder(run.recipe) : fs::path(command.output);
-    run.dry_run = command.recipe.dry_run;
-    run.keys = recipeKeys();
-    run.jobs = command.request.threads.value_or(std::max(1U, std::thread::hardware_concurrency()));
-    if (command.output == "-") {
-        return fail(ErrorCode::kUsage,
-                    "--output is a folder with --recipe, and cannot be standard output; name a folder");
-    }
-    return run;
-}
-
 /// Checks the files that are written in addition to the outputs.
 Result<void> preflight(const BakeCommand& command, const RecipeRun& run, FileGuard& files) {
     const BakeRecipeOptions& options = command.recipe;
@@ -145,15 +122,6 @@ Result<void> preflight(const BakeCommand& command, const RecipeRun& run, FileGua
     RELIEF_TRY(files.writes(outputs.depfile, "--depfile", made));
     RELIEF_TRY(files.writes(options.events, "--events", made));
     return run.dry_run ? Result<void>() : preflightFolder(run.output_folder, "--output");
-}
-
-Result<void> printDryRun(const std::vector<AssetResult>& assets) {
-    std::vector<std::vector<std::string>> rows = {{"output", "mesh", "why"}};
-    for (const AssetResult& asset : assets) {
-        rows.push_back({cleanUtf8(asset.job.output), cleanUtf8(asset.job.mesh),
-                        asset.reason.empty() ? "up to date" : asset.reason});
-    }
-    return printOut(table(rows));
 }
 
 /// The error of the whole run, if any asset failed.
@@ -179,20 +147,29 @@ struct RecipeWork {
 /// Reads the recipe and plans the run, without writing anything.
 Result<RecipeWork> plan(const BakeCommand& command, const CLI::App& verb, const FileGuard& files) {
     RecipeWork work;
+    RecipeRun& run = work.run;
     RELIEF_TRY(checkOptions(verb));
-    work.run = RELIEF_TRY(runOf(command));
-    const std::vector<RecipeAsset> assets = RELIEF_TRY(loadRecipe(work.run.recipe, recipeKeys()));
+    if (command.output == "-") {
+        return fail(ErrorCode::kUsage,
+                    "--output is a folder with --recipe, and cannot be standard output; name a folder");
+    }
+    const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+    run.recipe = command.recipe.recipe;
+    run.output_folder = command.output.empty() ? recipeFolder(run.recipe) : fs::path(command.output);
+    run.dry_run = command.recipe.dry_run;
+    run.keys = recipeKeys();
+    run.jobs = command.request.threads.value_or(cores);
+    const std::vector<RecipeAsset> assets = RELIEF_TRY(loadRecipe(run.recipe, run.keys));
     RELIEF_TRY(checkAssets(assets));
-    RecipeJobs all = RELIEF_TRY(recipeJobs(assets, work.run.recipe, work.run.output_folder, files));
+    RecipeJobs all = RELIEF_TRY(recipeJobs(assets, run.recipe, run.output_folder, files));
     work.folders = std::move(all.folders);
     work.files = std::move(all.files);
     const Shard shard = command.recipe.shard.value_or(Shard{});
     std::ranges::copy_if(all.jobs, std::back_inserter(work.jobs),
                          [&](const RecipeJob& job) { return inShard(job.output, shard); });
-    RELIEF_TRY(preflight(command, work.run, work.files));
-    const auto cores = std::max(1U, std::thread::hardware_concurrency());
-    work.run.threads =
-        std::max(1U, cores / std::max(1U, std::min(work.run.jobs, static_cast<unsigned>(work.jobs.size()))));
+    RELIEF_TRY(preflight(command, run, work.files));
+    run.threads =
+        std::max(1U, cores / std::max(1U, std::min(run.jobs, static_cast<unsigned>(work.jobs.size()))));
     return work;
 }
 
@@ -302,13 +279,20 @@ Result<void> addKeys(std::vector<AssetResult>& assets, const RecipeRun& run) {
 Result<void> printResult(const BakeCommand& command, const RecipeRun& run, const RecipeResult& result,
                          double ms) {
     const BakeRecipeOptions& options = command.recipe;
-    if (!command.outputs.json) {
-        return options.dry_run && options.events != "-" ? printDryRun(result.assets) : Result<void>();
+    if (command.outputs.json) {
+        return printOut(jsonTextOf(RecipeJson{options.recipe, run.output_folder.string(), options.shard,
+                                              countAssets(result.assets), ms,
+                                              viewsOf<AssetReport>(result.assets, false)}));
     }
-    RecipeJson report{options.recipe, run.output_folder.string(), options.shard, countAssets(result.assets),
-                      ms};
-    report.assets = viewsOf<AssetReport>(result.assets, false);
-    return printOut(jsonTextOf(report));
+    if (!options.dry_run || options.events == "-") {
+        return {};
+    }
+    std::vector<std::vector<std::string>> rows = {{"output", "mesh", "why"}};
+    for (const AssetResult& asset : result.assets) {
+        rows.push_back({cleanUtf8(asset.job.output), cleanUtf8(asset.job.mesh),
+                        asset.reason.empty() ? "up to date" : asset.reason});
+    }
+    return printOut(table(rows));
 }
 
 /// Writes the files for build systems, after everything is up to date.
@@ -335,9 +319,13 @@ Result<void> writeFiles(const BakeCommand& command, RecipeWork& work,
 }  // namespace
 
 std::vector<RecipeKey> recipeKeys() {
+    std::vector<FieldWords> all = fieldsOf(BakeRequest());
+    std::ranges::move(fieldsOf(BakeOutputs()), std::back_inserter(all));
     std::vector<RecipeKey> keys;
-    for (const FieldWords& field : fieldsOfAsset()) {
-        keys.push_back({optionName(field.name).substr(2), field.kind});
+    for (const FieldWords& field : all) {
+        if (std::ranges::find(kRunOptions, field.name) == kRunOptions.end()) {
+            keys.push_back({optionName(field.name).substr(2), field.kind});
+        }
     }
     return keys;
 }

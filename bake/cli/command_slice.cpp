@@ -16,40 +16,19 @@
 namespace relief {
 namespace {
 
-enum class Axis : std::uint8_t { kX, kY, kZ };
-
-/// Position on the axis.
-struct Place {
-    std::optional<float> at;  // object units; nullopt: center
-};
-
 struct SliceCommand {
     CommonOptions common;
     std::string file;
     std::string output;
     ContainerLimits limits;
-    Axis axis = Axis::kZ;
-    std::optional<Place> place;
+    SliceOptions options;  ///< without the size
     std::uint64_t size = 512;
 };
 
-std::optional<Place> parsePlace(const std::string& word) {
-    const Place place{parseFloat(word)};
-    return place.at || word == "center" ? std::optional(place) : std::nullopt;
-}
-
-SliceOptions optionsOf(const SliceCommand& command) {
-    SliceOptions options;
-    options.axis = static_cast<int>(command.axis);
-    options.at = command.place.value_or(Place{}).at;
-    options.size = static_cast<std::uint32_t>(std::min<std::uint64_t>(command.size, kSliceSizeMax + 1));
-    return options;
-}
-
 /// Warns about a plane outside the bounds. The picture still shows the field there.
 void warnOutside(const SliceCommand& command, const Collider& collider) {
-    const std::optional<float> at = optionsOf(command).at;
-    const int axis = static_cast<int>(command.axis);
+    const std::optional<float>& at = command.options.at;
+    const int axis = command.options.axis;
     const float low = collider.bounds.min[axis];
     const float high = collider.bounds.max[axis];
     if (at && !(*at >= low && *at <= high)) {
@@ -62,6 +41,8 @@ void warnOutside(const SliceCommand& command, const Collider& collider) {
 }
 
 Result<void> runSlice(const SliceCommand& command, FileGuard& files) {
+    SliceOptions options = command.options;
+    options.size = static_cast<std::uint32_t>(std::min<std::uint64_t>(command.size, kSliceSizeMax + 1));
     const std::string extension = lowerCase(std::filesystem::path(command.output).extension().string());
     if (extension != ".png" && extension != ".exr" && command.output != "-") {
         return fail(ErrorCode::kUsage,
@@ -71,7 +52,7 @@ Result<void> runSlice(const SliceCommand& command, FileGuard& files) {
     RELIEF_TRY(files.writes(command.output, "-o"));
     const Collider collider = RELIEF_TRY(loadCollider(command.file, command.limits));
     warnOutside(command, collider);
-    const Slice slice = RELIEF_TRY(evaluateSlice(collider, optionsOf(command)));
+    const Slice slice = RELIEF_TRY(evaluateSlice(collider, options));
     const std::vector<std::byte> bytes =
         RELIEF_TRY(extension == ".exr" ? encodeExr(distanceImage(slice, collider))
                                        : drawSlice(slice, {inputName(command.file), collider.unit}));
@@ -93,10 +74,15 @@ void addSlice(CLI::App& app, Action& action) {
                              "relief slice bunny.relief --axis z --at center -o slice.png\n"
                              "relief slice bunny.relief --axis y --at 0.1 --size 1024 -o slice.exr");
     addOption(verb, "FILE", command->file, "Collider; - for standard input")->typeName("")->required();
-    addWords(verb, "--axis", command->axis, WordsFor<Axis>{{"x", Axis::kX}, {"y", Axis::kY}, {"z", Axis::kZ}},
+    addWords(verb, "--axis", command->options.axis, WordsFor<int>{{"x", 0}, {"y", 1}, {"z", 2}},
              "Axis perpendicular to the plane (default: z)");
-    addParsed(
-        verb, "--at", command->place, parsePlace, "a number or center",
+    addCustomOption(
+        verb, "--at",
+        [&at = command->options.at](const std::string& word) {
+            at = parseFloat(word);
+            return at || word == "center";
+        },
+        "a number or center",
         "Position of the plane along the axis, in object units, or center (default: center of the bounds)")
         ->valueText("V");
     addOption(verb, "--size", command->size, "Samples along the longer side (default: 512)")

@@ -112,31 +112,23 @@ Result<std::string> worldPage(const ViewCommand& command, FileGuard& files) {
     return makeWorldPage(command.file, {inputName(command.file), &field, &accuracy, {}}, player, files);
 }
 
-/// The file of -o, by default beside FILE.
-Result<std::string> outputOf(const ViewCommand& command) {
-    if (!command.output.empty()) {
-        return command.output;
-    }
-    if (command.file == "-") {
-        return fail(ErrorCode::kUsage,
-                    "a page made from standard input has no default name; add -o OUT.html");
-    }
-    return fs::path(command.file).replace_extension(".html").string();
-}
-
 /// Writes the page; equal inputs give identical bytes. Validates files like `relief check`.
 Result<void> runView(const ViewCommand& command, FileGuard& files) {
     const bool world = isWorldFile(command.file);
+    const std::string beside = fs::path(command.file).replace_extension(".html").string();
     if (lowerCase(fs::path(command.file).extension().native()) == ".toml") {
-        return fail(ErrorCode::kUsage,
-                    quotedPath(command.file) + " is a scene; make its page with relief-sim " +
-                        shellQuoted(command.file) + " --page " +
-                        shellQuoted(fs::path(command.file).replace_extension(".html").string()));
+        return fail(ErrorCode::kUsage, quotedPath(command.file) +
+                                           " is a scene; make its page with relief-sim " +
+                                           shellQuoted(command.file) + " --page " + shellQuoted(beside));
     }
     if (world && !command.check.mesh.empty() && command.check.min_part) {
         return fail(ErrorCode::kUsage, "--min-part has no effect on worlds; remove it");
     }
-    const std::string output = RELIEF_TRY(outputOf(command));
+    if (command.output.empty() && command.file == "-") {
+        return fail(ErrorCode::kUsage,
+                    "a page made from standard input has no default name; add -o OUT.html");
+    }
+    const std::string& output = command.output.empty() ? beside : command.output;
     RELIEF_TRY(files.reads(command.file));
     RELIEF_TRY(files.reads(command.check.mesh));
     RELIEF_TRY(files.writes(output, "-o"));

@@ -19,15 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void showMessages(const WorldBakeResult& result) {
-    logWarnings(result.warnings);
-    std::vector<OwnerWarnings> all;
-    for (const WorldColliderResult& collider : result.colliders) {
-        all.push_back({collider.mesh, collider.mesh, collider.warnings});
-    }
-    logWarnings(warningLines(all, "meshes", true));
-}
-
 /// The error of the whole run, if any collider failed.
 Result<void> verdict(const fs::path& folder, const WorldBakeResult& result) {
     for (const WorldColliderResult& collider : result.colliders) {
@@ -38,18 +29,6 @@ Result<void> verdict(const fs::path& folder, const WorldBakeResult& result) {
                                                  " colliders failed, first that of mesh '" + collider.mesh +
                                                  "': " + collider.error.message + "; " +
                                                  quotedPath(folder / kWorldFileName) + " is unchanged");
-        }
-    }
-    return {};
-}
-
-/// Reads the coarse containers, which loadWorld() skips.
-Result<void> checkCoarse(const World& world, const std::string& file, const ContainerLimits& limits) {
-    for (std::size_t i = 0; i < world.colliders.size(); ++i) {
-        if (world.colliders[i].coarse) {
-            static_cast<void>(RELIEF_TRY(withPrefix(
-                quotedPath(file),
-                loadWorldCollider(world, i, WorldDetail::kCoarse, fs::path(file).parent_path(), limits))));
         }
     }
     return {};
@@ -96,7 +75,12 @@ Result<void> runWorldCommand(const BakeCommand& command, FileGuard& files) {
         RELIEF_TRY(bakeWorld({command.request, folder, command.outputs.compress}, watcher));
     progress.finish();
     RELIEF_TRY(verdict(folder, result));
-    showMessages(result);
+    logWarnings(result.warnings);
+    std::vector<OwnerWarnings> warnings;
+    for (const WorldColliderResult& collider : result.colliders) {
+        warnings.push_back({collider.mesh, collider.mesh, collider.warnings});
+    }
+    logWarnings(warningLines(warnings, "meshes", true));
     RELIEF_TRY(writeDepfile(command, (folder / kWorldFileName).string(), result.inputs));
     return printReport(command, WorldBakeJson{result, command.world, total.ms()}, [&] {
         return worldBakeText(result, cleanUtf8(command.world), total.ms(), command.common.verbose);
@@ -110,7 +94,14 @@ Result<void> runWorldCheck(const CheckCommand& command, const std::string& file,
     }
     const std::string player = RELIEF_TRY(preflightPage(file, request.mesh, command.html, files));
     const WorldField field(RELIEF_TRY(loadWorld(file, command.limits)));
-    RELIEF_TRY(checkCoarse(field.world(), file, command.limits));
+    const World& world = field.world();
+    for (std::size_t i = 0; i < world.colliders.size(); ++i) {
+        if (world.colliders[i].coarse) {  // loadWorld() skips it
+            static_cast<void>(RELIEF_TRY(withPrefix(
+                quotedPath(file), loadWorldCollider(world, i, WorldDetail::kCoarse,
+                                                    fs::path(file).parent_path(), command.limits))));
+        }
+    }
     std::optional<WorldAccuracy> accuracy;
     if (!request.mesh.empty()) {
         accuracy = RELIEF_TRY(checkWorld({request, command.within, !command.html.empty()}, field));

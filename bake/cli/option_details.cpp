@@ -18,14 +18,6 @@ std::string keyLine(std::string_view key, const std::string& text) {
     return line + text;
 }
 
-std::string mapKeyLines() {
-    std::string text;
-    for (const MapKey& key : kMapKeys) {
-        text += keyLine(key.key, std::string(key.text) + " (" + std::string(key.formats) + ")");
-    }
-    return text;
-}
-
 /// "uint16|int16|float32: Type of raw samples (default: …)"
 std::string heightsKeyText(const FieldWords& field) {
     const std::string value = field.choices.empty() ? "" : valueText(field) + ": ";
@@ -33,34 +25,29 @@ std::string heightsKeyText(const FieldWords& field) {
     return value + std::string(field.info.help) + (fallback.empty() ? "" : " (default: " + fallback + ")");
 }
 
-std::string heightsKeyLines() {
-    std::string text;
-    for (const FieldWords& field : fieldsOf(HeightsSpec())) {
-        text += keyLine(field.name, heightsKeyText(field));
-    }
-    return text;
-}
-
-const std::vector<OptionGroup>& sharedGroups() {
-    static const std::vector<OptionGroup> kGroups = {
-        {"Limits",
-         {"--threads", "--timeout", "--max-import-memory", "--import-timeout", "--max-triangles",
-          "--max-memory"}},
-        {"Help and messages", {"--help", "--manual", "--quiet", "--verbose", "--warnings-only"}}};
-    return kGroups;
-}
-
+/// Appends the headings that all verbs share.
 std::vector<OptionGroup> withShared(std::vector<OptionGroup> groups) {
-    const std::vector<OptionGroup>& shared = sharedGroups();
-    groups.insert(groups.end(), shared.begin(), shared.end());
+    groups.push_back({"Limits",
+                      {"--threads", "--timeout", "--max-import-memory", "--import-timeout", "--max-triangles",
+                       "--max-memory"}});
+    groups.push_back(
+        {"Help and messages", {"--help", "--manual", "--quiet", "--verbose", "--warnings-only"}});
     return groups;
 }
 
 }  // namespace
 
 void addKeyDetails(CLI::App& verb) {
-    addDetails(verb, "--map", mapKeyLines());
-    addDetails(verb, "--heights", heightsKeyLines());
+    std::string maps;
+    for (const MapKey& key : kMapKeys) {
+        maps += keyLine(key.key, std::string(key.text) + " (" + std::string(key.formats) + ")");
+    }
+    addDetails(verb, "--map", maps);
+    std::string heights;
+    for (const FieldWords& field : fieldsOf(HeightsSpec())) {
+        heights += keyLine(field.name, heightsKeyText(field));
+    }
+    addDetails(verb, "--heights", heights);
 }
 
 void groupBakeOptions(CLI::App& verb) {
