@@ -18,7 +18,8 @@ class LineWriter : public FieldVisitor {
     void operator()(std::string_view name, FieldRef value, const FieldInfo& /*info*/) override {
         if (value.form() == FieldForm::kOptional) {
             if (value.count() > 0) {
-                add(name, value[0].as<const MeshFault>());
+                const auto& fault = value[0].as<const MeshFault>();
+                add(name, fault.description + " at " + shortest(fault.position));
             }
         } else {
             add(name, value.form() == FieldForm::kBool ? value.as<bool>() ? "yes" : "no"
@@ -28,12 +29,9 @@ class LineWriter : public FieldVisitor {
     [[nodiscard]] std::string take() { return std::move(text_); }
 
   private:
-    void add(std::string_view name, const MeshFault& fault) {
-        add(name, fault.description + " at " + shortest(fault.position));
-    }
     void add(std::string_view name, const std::string& value) {
         std::string words(name);
-        std::replace(words.begin(), words.end(), '_', ' ');
+        std::ranges::replace(words, '_', ' ');
         text_ += "  " + words + ": " + value + "\n";
     }
 

@@ -8,13 +8,9 @@
 #include "formats/base/text.h"
 
 namespace relief {
-namespace {
-
-constexpr std::size_t kLineMax = 80;  // maximum length of a line of options, in characters
-
-}  // namespace
 
 std::string originText(const Provenance& from) {
+    constexpr std::size_t kLineMax = 80;  // maximum length of a line of options, in characters
     const std::string by = "baked    by " + from.tool_version;
     const std::string options = from.optionsText();
     if (options.size() <= kLineMax) {

@@ -45,8 +45,8 @@ void sourceFields(FieldVisitor& visit, const std::string& heights, std::uint32_t
 
 std::string groundText(const GroundResult& result, const std::string& output, double ms) {
     const std::string tiles = result.container.empty() ? " in " + countText(result.tiles.size(), "tile") : "";
-    const bool steep = std::any_of(result.tiles.begin(), result.tiles.end(),
-                                   [](const GroundTile& tile) { return tile.steep > 0; });
+    const bool steep =
+        std::ranges::any_of(result.tiles, [](const GroundTile& tile) { return tile.steep > 0; });
     const std::string error = millimetres(result.errorMax()) + " along y";
     return output + ": ground of " + std::to_string(result.columns) + "x" + std::to_string(result.rows) +
            " samples" + tiles + ", " +

@@ -6,10 +6,6 @@
 namespace relief {
 namespace {
 
-bool usable(PartState state) {
-    return state == PartState::kSound || state == PartState::kSuspicious;
-}
-
 std::string usableText(const Inspection& inspection) {
     if (!inspection.damaged()) {
         return "";
@@ -17,7 +13,8 @@ std::string usableText(const Inspection& inspection) {
     std::string maps;
     std::size_t count = 0;
     for (std::size_t i = 0; i < inspection.maps.size(); ++i) {
-        if (usable(inspection.maps[i].state)) {
+        const PartState state = inspection.maps[i].state;
+        if (state == PartState::kSound || state == PartState::kSuspicious) {
             maps += (count++ == 0 ? " " : ", ") + std::to_string(i);
         }
     }

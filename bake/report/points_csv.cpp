@@ -12,15 +12,11 @@ namespace {
 
 constexpr std::size_t kQuotedMax = 40;  // maximum bytes of an invalid line that its message quotes
 
-bool startsLikeANumber(std::string_view field) {
-    return !field.empty() &&
-           (field[0] == '+' || field[0] == '-' || field[0] == '.' || (field[0] >= '0' && field[0] <= '9'));
-}
-
 /// Whether a first line is a header: three fields, none of which looks like a number.
 bool isHeader(std::span<const std::string_view> fields) {
-    return fields.size() == 3 && std::none_of(fields.begin(), fields.end(), [](std::string_view field) {
-               return field.empty() || startsLikeANumber(field) || field == "nan" || field == "inf";
+    return fields.size() == 3 && std::ranges::none_of(fields, [](std::string_view field) {
+               return field.empty() || field.find_first_of("+-.0123456789") == 0 || field == "nan" ||
+                      field == "inf";
            });
 }
 

@@ -89,17 +89,13 @@ std::string recipeSummary(const RecipeCounts& counts, double ms) {
 
 std::vector<AssetReport> AssetReport::kinds() {
     static const auto each = [] {
-        std::array<AssetResult, kWordsOf<AssetState>.size()> assets;
+        std::vector<AssetResult> assets(kWordsOf<AssetState>.size());
         for (std::size_t i = 0; i < assets.size(); ++i) {
             assets[i].state = static_cast<AssetState>(i);
         }
         return assets;
     }();
-    std::vector<AssetReport> reports;
-    for (const AssetResult& asset : each) {
-        reports.push_back({asset});
-    }
-    return reports;
+    return viewsOf<AssetReport>(each);
 }
 
 std::vector<AssetEvent> AssetEvent::kinds() {
@@ -148,22 +144,6 @@ Result<void> RecipeEvents::finish() const {
 
 // --- Summary ---
 
-namespace {
-
-/// Returns whether two warnings are grouped: if they are equal, apart from numbers with join_numbers, or if both are
-/// about a missing unit.
-bool sameGroup(std::string_view a, std::string_view b, bool join_numbers) {
-    const auto words = [](std::string_view text) {
-        std::string rest(text);
-        std::erase_if(rest, [](char c) { return (c >= '0' && c <= '9') || c == '.'; });
-        return rest;
-    };
-    return a == b || (join_numbers && words(a) == words(b)) ||
-           (a.starts_with(kNoUnit) && b.starts_with(kNoUnit));
-}
-
-}  // namespace
-
 std::vector<std::string> warningLines(std::span<const OwnerWarnings> all, std::string_view owners,
                                       bool join_numbers) {
     constexpr std::size_t kNamed = 3;
@@ -172,14 +152,20 @@ std::vector<std::string> warningLines(std::span<const OwnerWarnings> all, std::s
         bool same = true;     // all owners have the same text
         std::vector<std::string> owners;
     };
+    const auto words = [](std::string text) {
+        std::erase_if(text, [](char c) { return (c >= '0' && c <= '9') || c == '.'; });
+        return text;
+    };
     std::vector<Group> groups;
     for (const OwnerWarnings& own : all) {
         // Remove the name of the mesh, with which a warning may start, so that equal warnings match.
         const std::string mesh = own.mesh + ": ";
         for (const std::string& full : own.warnings) {
             const std::string warning = full.starts_with(mesh) ? full.substr(mesh.size()) : full;
-            auto group = std::ranges::find_if(
-                groups, [&](const Group& one) { return sameGroup(one.warning, warning, join_numbers); });
+            auto group = std::ranges::find_if(groups, [&](const Group& one) {
+                return one.warning == warning || (join_numbers && words(one.warning) == words(warning)) ||
+                       (one.warning.starts_with(kNoUnit) && warning.starts_with(kNoUnit));
+            });
             group = group == groups.end() ? groups.insert(group, {warning, true, {}}) : group;
             group->same = group->same && group->warning == warning;
             group->owners.push_back(own.owner);

@@ -22,12 +22,6 @@ std::string sideText(double inside_percent) {
                                  : percentText(inside_percent) + " of them classified as inside";
 }
 
-/// Returns "0.41 m across: 4.5 % of the wrong points, 86 % of them classified as inside".
-std::string placeText(const WorstPlace& place, const std::string& unit) {
-    return lengthText(place.size(), unit) + " across: " + percentText(place.contribution_percent) +
-           " of the wrong points, " + sideText(place.false_inside_percent);
-}
-
 /// Returns "map 2 (front-back along 0/0/-1)", or "no map" for −1.
 std::string mapWords(const Collider& collider, int map) {
     if (map < 0) {
@@ -166,7 +160,9 @@ std::string placesText(std::span<const WorstPlace> places, const Collider& colli
     for (std::size_t i = 0; i < places.size(); ++i) {
         const WorstPlace& place = places[i];
         text += "  " + std::to_string(i + 1) + "  " + positionText(place.position) + ", " +
-                placeText(place, collider.unit) + "\n     " + causeText(place, collider) + "\n";
+                lengthText(place.size(), collider.unit) +
+                " across: " + percentText(place.contribution_percent) + " of the wrong points, " +
+                sideText(place.false_inside_percent) + "\n     " + causeText(place, collider) + "\n";
     }
     return text;
 }

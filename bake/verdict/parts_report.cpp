@@ -72,13 +72,6 @@ double middleExtent(const SurfacePart& part) {
     return extents[1];
 }
 
-std::string partSideText(const PartAccuracy& accuracy) {
-    const double inside = accuracy.wrong.false_inside / std::max(accuracy.wrong.total(), 1e-9);
-    return inside > 0.9   ? "classified as inside"
-           : inside < 0.1 ? "classified as outside"
-                          : "classified both ways";
-}
-
 /// Returns a text like "27 of 82 parts are lost".
 std::string countOfMeasured(std::uint64_t count, const PartsAccuracy& accuracy, const char* what) {
     const std::uint64_t unmeasured = accuracy.countOf(PartVerdict::kUnmeasured);
@@ -133,9 +126,13 @@ double partTexel(const SurfacePart& part, const Collider& collider) {
 std::string partText(const PartAccuracy& accuracy, const SurfaceParts& parts, const Collider& collider) {
     const SurfacePart& part = parts.parts[accuracy.part];
     const std::string fix = partFix(part, collider);
+    const double inside = accuracy.wrong.false_inside / std::max(accuracy.wrong.total(), 1e-9);
     return lengthText(part.size(), collider.unit) + " long at " + positionText(part.bounds.center()) + ": " +
            percentText(accuracy.wrong.total()) + " of the points near it are on the wrong side, " +
-           partSideText(accuracy) + (fix.empty() ? "" : "; " + fix);
+           (inside > 0.9   ? "classified as inside"
+            : inside < 0.1 ? "classified as outside"
+                           : "classified both ways") +
+           (fix.empty() ? "" : "; " + fix);
 }
 
 }  // namespace
@@ -247,10 +244,7 @@ std::optional<std::string> lostPartsWarning(const PartsAccuracy& accuracy, const
         return std::nullopt;
     }
     const auto size = [&](const PartAccuracy& one) { return parts.parts[one.part].size(); };
-    const auto end = accuracy.parts.begin() + static_cast<std::ptrdiff_t>(lost);
-    const auto largest =
-        std::max_element(accuracy.parts.begin(), end,
-                         [&](const PartAccuracy& a, const PartAccuracy& b) { return size(a) < size(b); });
+    const auto largest = std::ranges::max_element(std::span(accuracy.parts).first(lost), {}, size);
     return countOfMeasured(lost, accuracy, "lost") + (lost == 1 ? ": " : ", the largest ") +
            partName(parts.parts[largest->part], largest->part) + ", " + partText(*largest, parts, collider);
 }
@@ -364,28 +358,6 @@ void fields(FieldVisitor& visit, const PartReport& report) {
           {"How to keep the part; null unless coarse, lost or minor"});
 }
 
-/// Returns the first kListedPartsMax parts.
-std::vector<PartReport> worstOf(const PartsReport& report) {
-    const std::vector<PartAccuracy>& all = report.accuracy.parts;
-    std::vector<PartReport> rows;
-    for (const PartAccuracy& one : std::span(all).first(std::min(all.size(), kListedPartsMax))) {
-        rows.push_back({one, report.parts.parts[one.part], report.collider});
-    }
-    return rows;
-}
-
-/// Returns the first kListedPartsMax nodes, and as many materials.
-std::vector<GroupAccuracy> groupsOf(const PartsAccuracy& accuracy) {
-    std::vector<GroupAccuracy> rows;
-    std::array<std::size_t, 2> listed{};
-    for (const GroupAccuracy& group : accuracy.groups) {
-        if (listed[group.is_material ? 1 : 0]++ < kListedPartsMax) {
-            rows.push_back(group);
-        }
-    }
-    return rows;
-}
-
 }  // namespace
 
 void fields(FieldVisitor& visit, const PartsReport& report) {
@@ -403,10 +375,22 @@ void fields(FieldVisitor& visit, const PartsReport& report) {
     for (std::size_t i = 0; i < kPartVerdicts; ++i) {
         visit(kWordsOf<PartVerdict>[i], accuracy.count[i], {kCounts[i]});
     }
-    visit("worst", worstOf(report),
+    std::vector<PartReport> worst;
+    const std::size_t shown = std::min(accuracy.parts.size(), kListedPartsMax);
+    for (const PartAccuracy& one : std::span(accuracy.parts).first(shown)) {
+        worst.push_back({one, report.parts.parts[one.part], report.collider});
+    }
+    visit("worst", worst,
           {"At most 100 parts, the lost ones first; a part is connected, and belongs to one node and "
            "one material"});
-    visit("groups", groupsOf(accuracy),
+    std::vector<GroupAccuracy> groups;
+    std::array<std::size_t, 2> listed{};  // nodes and materials
+    for (const GroupAccuracy& one : accuracy.groups) {
+        if (listed[one.is_material ? 1 : 0]++ < kListedPartsMax) {
+            groups.push_back(one);
+        }
+    }
+    visit("groups", groups,
           {"The worst 100 named nodes, then the worst 100 materials, if there are "
            "several; their parts are weighted by area"});
 }
