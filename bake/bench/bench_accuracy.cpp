@@ -86,9 +86,8 @@ Result<std::vector<MapSpec>> threeMaps(const TriangleMesh& mesh, std::uint64_t b
 
 /// Bakes the projected depth of the paper in its front-back format.
 Result<Baked> bakePaper(const PreparedMesh& mesh, std::uint64_t bytes) {
-    std::vector<MapSpec> specs = RELIEF_TRY(threeMaps(*mesh, bytes));
     BakeOptions options;
-    options.maps = std::move(specs);
+    options.maps = RELIEF_TRY(threeMaps(*mesh, bytes));
     return bake(mesh, options);
 }
 
@@ -316,15 +315,11 @@ Result<void> measureBudget(const PreparedMesh& imported, const Arguments& argume
     return {};
 }
 
-bool isVolume(const std::string& method) {
-    return method == "volume" || method == "unreal" || method == "bricks" || method == "fitted";
-}
-
 Result<void> run(const Arguments& arguments) {
     const std::vector<std::uint64_t> budgets = RELIEF_TRY(parseBudgets(arguments.budgets));
     if (!arguments.atlas.empty()) {
         if (arguments.meshes.size() != 1 || budgets.size() != 1 || arguments.methods.size() != 1 ||
-            !isVolume(arguments.methods[0])) {
+            arguments.methods[0] == "paper" || arguments.methods[0] == "ours") {
             return fail(
                 ErrorCode::kUsage,
                 "--atlas writes a single volume; give one MESH, one --budget, and one of --methods volume, "

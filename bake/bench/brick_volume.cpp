@@ -119,11 +119,6 @@ std::vector<double> exactNodes(const MeshQuery& query, const BrickGrid& grid, co
     return nodes;
 }
 
-bool haveSameSign(const std::vector<double>& nodes) {
-    return std::ranges::all_of(nodes, [](double d) { return d >= 0.0; }) ||
-           std::ranges::all_of(nodes, [](double d) { return d < 0.0; });
-}
-
 /// Fits nodes so that the trilinear value is closest to the distances at points of the voxels that the surface crosses.
 void fitNodes(const MeshQuery& query, const BrickGrid& grid, const Box& box, std::vector<double>& nodes) {
     using Matrix = Eigen::MatrixXd;
@@ -223,8 +218,8 @@ class BrickBuilder {
             leaves_[i] = makeLeaf(boxOf(volume_.roots_[i].cell), 0, std::move(samples_by_root[i]));
             leaves_[i].slot = static_cast<std::uint32_t>(i);
         });
-        for (std::size_t i = 0; i < leaves_.size(); ++i) {
-            bricks_ += leaves_[i].stored ? 1 : 0;
+        for (const Leaf& leaf : leaves_) {
+            bricks_ += leaf.stored ? 1 : 0;
         }
         while (splitWorst(bytes)) {
         }
@@ -334,7 +329,9 @@ class BrickBuilder {
             return leaf;
         }
         leaf.nodes = exactNodes(query_, grid_, box);
-        leaf.stored = !haveSameSign(leaf.nodes);
+        const auto outside = [](double distance) { return distance >= 0.0; };
+        const auto inside = [](double distance) { return distance < 0.0; };
+        leaf.stored = !std::ranges::all_of(leaf.nodes, outside) && !std::ranges::all_of(leaf.nodes, inside);
         for (const std::uint32_t sample : leaf.samples) {
             const glm::dvec3 in_voxels = (glm::dvec3(samples_[sample].position) - box.low) / box.size *
                                          static_cast<double>(grid_.cells);
@@ -344,13 +341,9 @@ class BrickBuilder {
         return leaf;
     }
 
-    [[nodiscard]] std::uint64_t bytesNow() const {
-        return bricks_ * grid_.nodes() + volume_.indexBytes(bricks_);
-    }
-
     /// Splits the leaves with the largest errors. \return false if the bytes are used up.
     bool splitWorst(std::uint64_t bytes) {
-        const std::uint64_t now = bytesNow();
+        const std::uint64_t now = bricks_ * grid_.nodes() + volume_.indexBytes(bricks_);
         // At least four of eight cubes contain surface.
         const std::uint64_t cost = 3 * grid_.nodes() + 8 * 4;
         if (now + 2 * cost > bytes) {

@@ -63,7 +63,9 @@ class Figure {
 
     Result<std::vector<std::byte>> draw(const std::string& title) {
         canvas_->text(left_, 1.8 * em_, title);
-        drawSamples();
+        canvas_->image(
+            left_, top_, slice_.width, slice_.height, zoom_,
+            [this](std::uint32_t x, std::uint32_t y) { return colorAt(x, slice_.height - 1 - y); });
         drawColorBar();
         drawLegend();
         return canvas_->png();
@@ -84,12 +86,6 @@ class Figure {
             return kInk;
         }
         return sample.distance < kFarOutside ? distanceColor(sample.distance / range_) : kFarColor;
-    }
-
-    void drawSamples() {
-        canvas_->image(
-            left_, top_, slice_.width, slice_.height, zoom_,
-            [this](std::uint32_t x, std::uint32_t y) { return colorAt(x, slice_.height - 1 - y); });
     }
 
     void drawColorBar() {

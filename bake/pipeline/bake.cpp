@@ -51,18 +51,6 @@ std::optional<tbb::global_control> threadLimit(const BakeRequest& request) {
                                               *request.threads);
 }
 
-/// Returns the files that the mesh references, such as buffers and materials; no output may replace them.
-Result<std::vector<InputFile>> inputsOf(const TriangleMesh& mesh, FileGuard* files) {
-    std::vector<InputFile> inputs;
-    for (std::size_t i = 0; i < mesh.dependencies.size(); ++i) {
-        if (files != nullptr) {
-            RELIEF_TRY(files->reads(mesh.dependencies[i]));
-        }
-        inputs.push_back({mesh.dependencies[i], mesh.dependency_hashes[i]});
-    }
-    return inputs;
-}
-
 /// Returns the request that makes the same solid again, for recordedBake(). Maps record their own settings.
 BakeRequest recordOf(const BakeRequest& request, const BakeSettings& settings, const SolidMesh& solid) {
     BakeRequest record;
@@ -110,7 +98,12 @@ Result<BakeResult> bakeFrom(const BakeRequest& request, const BakeSettings& sett
     const SolidMesh& solid = result;
     const TriangleMesh& mesh = *solid.mesh.mesh;
     result.notices = noticesOf(solid, nodes);
-    result.inputs = RELIEF_TRY(inputsOf(mesh, watcher.files));
+    for (std::size_t i = 0; i < mesh.dependencies.size(); ++i) {
+        if (watcher.files != nullptr) {  // no output may replace the files that the mesh references
+            RELIEF_TRY(watcher.files->reads(mesh.dependencies[i]));
+        }
+        result.inputs.push_back({mesh.dependencies[i], mesh.dependency_hashes[i]});
+    }
     Result<BakedMaps> maps = bakeMaps(request, settings, solid, watcher);
     if (!maps && maps.error().code != ErrorCode::kUsage) {
         if (const auto stray = outlierText(solid.parts, mesh.unit)) {

@@ -137,16 +137,13 @@ Result<void> readMaps(const BakeRequest& request, BakeSettings& settings) {
     return {};
 }
 
-bool isRecorded(std::string_view name) {
-    static const std::vector<FieldWords> kFields = fieldsOf(BakeRequest());
-    return std::ranges::any_of(
-        kFields, [&](const FieldWords& field) { return field.name == name && field.info.recorded; });
-}
-
 /// Reads one recorded option into the request. \return false if bakes do not record it, or its value is invalid
 bool readRecorded(std::string_view name, std::string_view value, BakeRequest& request) {
+    static const std::vector<FieldWords> kFields = fieldsOf(BakeRequest());
+    const bool recorded = std::ranges::any_of(
+        kFields, [&](const FieldWords& field) { return field.name == name && field.info.recorded; });
     BakeRequest changed = request;
-    if (!isRecorded(name) || !setField(changed, name, value) || !parseShapeOptions(changed.as) ||
+    if (!recorded || !setField(changed, name, value) || !parseShapeOptions(changed.as) ||
         !wrapAlpha(changed.repair.method) || (name == "map" && !parseMapSpec(value)) ||
         (name == "heights" && !parseHeightsSpec(value))) {
         return false;

@@ -19,11 +19,6 @@ constexpr std::uint32_t kTrialSamplesMax = 50'000;
 /// An option helps if at most this fraction of the wrong points remains.
 constexpr double kHelps = 0.9;
 
-/// Rounds to four digits, to keep commands short.
-float rounded(double value) {
-    return parseFloat(shortNumber(value)).value_or(static_cast<float>(value));
-}
-
 class Advisor {
   public:
     Advisor(const MeshCheck& run, const std::string& mesh_file, const std::string& output)
@@ -65,12 +60,19 @@ class Advisor {
         if (closes_ && any({WrongCause::kTexel, WrongCause::kSilhouette, WrongCause::kUnseen})) {
             tryBudget(roundBudget(2 * run_.collider.texelBytes()), "patches of twice the size");
         }
-        if (run_.shape.sheets > 0 && run_.shape.thickness > 0.0) {
-            tryThicker();
+        if (run_.shape.sheets > 0 && run_.shape.thickness > 0.0 && !repaired()) {
+            const double twice = 2.0 * run_.shape.thickness;
+            // Four digits, to keep the command short.
+            const float length = parseFloat(shortNumber(twice)).value_or(static_cast<float>(twice));
+            BakeRequest request = patches_;
+            request.thickness = Thickness{double{length}, false};
+            attempt(request, "sheets twice as thick", *request.budget, false);
         }
         if ((open || sheet) && !repaired()) {
-            trySolid();
-            if (std::none_of(advice_.begin(), advice_.end(), [](const Advice& advice) {
+            if (!closes_) {  // without --holes keep
+                attempt(patches_, "closed holes, and sheets as shells", *patches_.budget, false);
+            }
+            if (std::ranges::none_of(advice_, [](const Advice& advice) {
                     return advice.helps && *advice.wrong_percent <= kGoodPercent;
                 })) {
                 BakeRequest wrapped = patches_;
@@ -79,15 +81,14 @@ class Advisor {
                                    std::nullopt, "wrapping takes up to a minute", false});
             }
         }
-        std::stable_sort(advice_.begin(), advice_.end(),
-                         [](const Advice& a, const Advice& b) { return rank(a) < rank(b); });
+        std::ranges::stable_sort(advice_, {}, rank);
         return std::move(advice_);
     }
 
   private:
     [[nodiscard]] bool any(std::initializer_list<WrongCause> causes) const {
-        return std::any_of(run_.places.begin(), run_.places.end(), [&](const WorstPlace& place) {
-            return std::find(causes.begin(), causes.end(), place.cause) != causes.end();
+        return std::ranges::any_of(run_.places, [&](const WorstPlace& place) {
+            return std::ranges::find(causes, place.cause) != causes.end();
         });
     }
     static double rank(const Advice& advice) {
@@ -114,9 +115,6 @@ class Advisor {
         const Baked baked = RELIEF_TRY(bakeSolid(request, solid));
         return measureField(truth, fieldOf(baked.collider)).near.total();
     }
-    [[nodiscard]] Result<double> wrongOf(const BakeRequest& request) const {
-        return wrongOf(request, run_.baked, truth_);
-    }
     /// Measures the bake of another solid against that solid.
     [[nodiscard]] Result<double> wrongOfSolid(const BakeRequest& request) const {
         const ShapedMesh shaped = RELIEF_TRY(makeSolid(request, run_.imported));
@@ -130,7 +128,8 @@ class Advisor {
         const std::string too_much = tooMuch(bytes);
         if (!too_much.empty()) {
             advice_.push_back({command, description, std::nullopt, too_much, false});
-        } else if (const Result<double> wrong = same_solid ? wrongOf(request) : wrongOfSolid(request)) {
+        } else if (const Result<double> wrong =
+                       same_solid ? wrongOf(request, run_.baked, truth_) : wrongOfSolid(request)) {
             advice_.push_back({command, description, *wrong, "", *wrong <= kHelps * run_.wrongPercent()});
         }
     }
@@ -139,21 +138,6 @@ class Advisor {
         BakeRequest request = patches_;
         request.budget = budget;
         attempt(request, description, budget, !(run_.shape.default_thickness > 0.0) || repaired());
-    }
-
-    /// Tries a bake without --holes keep.
-    void trySolid() {
-        if (!closes_) {
-            attempt(patches_, "closed holes, and sheets as shells", *patches_.budget, false);
-        }
-    }
-
-    void tryThicker() {
-        if (!repaired()) {
-            BakeRequest request = patches_;
-            request.thickness = Thickness{double{rounded(2.0 * run_.shape.thickness)}, false};
-            attempt(request, "sheets twice as thick", *request.budget, false);
-        }
     }
 
     const MeshCheck& run_;

@@ -36,12 +36,6 @@ Result<MaterialSource> materialsOf(const BakeRequest& request, const TriangleMes
     return materialSource(mesh, request.materials.has_value());
 }
 
-/// Returns MaterialSource::sides.
-bool hasKnownSides(const BakeRequest& request, const ShapeReport& shape) {
-    return request.holes == Holes::kClose && request.repair.method.empty() && shape.sheets == 0 &&
-           shape.terrains == 0;
-}
-
 Result<void> checkThickness(const BakeRequest& request, const TriangleMesh& mesh) {
     const std::optional<Thickness>& thickness = request.thickness;
     const float longest = mesh.bounds.longestSide();
@@ -95,7 +89,8 @@ Result<SolidMesh> solidOf(const BakeRequest& request, SourceMesh source, const B
     solid.shape = std::move(shaped.report);
     solid.parts = std::move(shaped.parts);
     if (!materials.empty()) {
-        materials.sides = hasKnownSides(request, solid.shape);
+        materials.sides = request.holes == Holes::kClose && !repairs && solid.shape.sheets == 0 &&
+                          solid.shape.terrains == 0;
         solid.materials = std::make_shared<MaterialSource>(std::move(materials));
     }
     if (request.holes == Holes::kKeep) {
