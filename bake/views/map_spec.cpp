@@ -101,157 +101,140 @@ class MapSpecBuilder {
     }
 
     /// Must be called first, because the valid keys depend on the format.
-    [[nodiscard]] Result<void> setFormat(std::string_view word);
-    [[nodiscard]] Result<void> set(std::string_view key, std::string_view value);
+    [[nodiscard]] Result<void> setFormat(std::string_view word) {
+        const auto* found = std::ranges::find(kMapFormats, word, &MapFormatInfo::name);
+        if (found == kMapFormats.end()) {
+            return unknown("format", word, kMapFormatWords);
+        }
+        spec_.format = static_cast<MapFormat>(found - kMapFormats.begin());
+        if (isFrontBack(spec_.format)) {
+            spec_.format = defaults_.front_back;
+        } else if (spec_.format == MapFormat::kPatches) {
+            spec_.decode = Decode::kPlane;
+        }
+        return {};
+    }
+    [[nodiscard]] Result<void> set(std::string_view key, std::string_view value) {
+        const auto* found = std::ranges::find(kKeys, key);
+        if (found == kKeys.end()) {
+            return unknown("key", key, kKeys);
+        }
+        const auto index = static_cast<std::size_t>(found - kKeys.begin());
+        if (std::exchange(seen_.at(index), true)) {
+            return usage(std::string(key) + " is set twice; remove one");
+        }
+        if (const std::string useless = whyIneffective(key); !useless.empty()) {
+            return usage(std::string(key) + useless);
+        }
+        if (key == "dir") {
+            spec_.direction = RELIEF_TRY(parseDirection(key, value));
+        } else if (key == "up") {
+            spec_.up = RELIEF_TRY(parseDirection(key, value));
+        } else if (key == "center") {
+            const std::vector<float> n = parseNumbers(value, 3);
+            if (n.empty()) {
+                return badValue(key, value, "three numbers a/b/c");
+            }
+            spec_.center = glm::vec3(n[0], n[1], n[2]);
+        } else {
+            return key == "size"     ? setSize(value)
+                   : key == "box"    ? setBox(value)
+                   : key == "budget" ? setBudget(value)
+                   : key == "texel"  ? setTexel(value)
+                                     : setWord(key, value);
+        }
+        return {};
+    }
     /// Validates the combination of the keys.
-    [[nodiscard]] Result<MapSpec> finish() const;
+    [[nodiscard]] Result<MapSpec> finish() const {
+        if (isCube() && spec_.center && spec_.box) {
+            return usage("a cube with a box is centred on the box; remove center or box");
+        }
+        RELIEF_TRY(checkUp(spec_));
+        return spec_;
+    }
 
   private:
     [[nodiscard]] bool isCube() const { return spec_.format == MapFormat::kCube8; }
-    [[nodiscard]] std::string whyIneffective(std::string_view key) const;
-    Result<void> setWord(std::string_view key, std::string_view value);
-    Result<void> setSize(std::string_view value);
-    Result<void> setBox(std::string_view value);
-    Result<void> setBudget(std::string_view value);
-    Result<void> setTexel(std::string_view value);
+    /// Returns why a key has no effect for the format and how to fix it; empty if it has an effect.
+    [[nodiscard]] std::string whyIneffective(std::string_view key) const {
+        const bool of_patches = key == "budget" || key == "texel";
+        if (of_patches != (spec_.format == MapFormat::kPatches)) {
+            return of_patches ? " applies only to patches; set size"
+                              : " does not apply to patches; remove it";
+        }
+        if ((key == "dir" || key == "up") && isCube()) {
+            return " does not apply to a cube, which has all directions; remove it";
+        }
+        if (key == "center" && !isCube()) {
+            return " applies only to a cube; use box to move an orthographic map";
+        }
+        return key == "depth" && !isFrontBack(spec_.format) ? " applies only to front-back; remove it" : "";
+    }
+    Result<void> setWord(std::string_view key, std::string_view value) {
+        if (key == "depth") {
+            const bool fixed = RELIEF_TRY(parseWord(key, value, {"half", "unorm16"}));
+            spec_.format = fixed ? MapFormat::kFrontBackFixed : MapFormat::kFrontBackHalf;
+        } else if (key == "decode") {
+            const bool plane = RELIEF_TRY(parseWord(key, value, {"projected", "plane"}));
+            spec_.decode = plane ? Decode::kPlane : Decode::kProjected;
+        } else if (!isFrontBack(spec_.format)) {
+            const bool greater = RELIEF_TRY(parseWord(key, value, {"less", "greater"}));
+            spec_.compare = greater ? Compare::kGreater : Compare::kLess;
+        } else {
+            return usage("front-back keeps both surfaces; remove compare");
+        }
+        return {};
+    }
+    Result<void> setSize(std::string_view value) {
+        const std::vector<std::string_view> parts = split(value, 'x');
+        const std::optional<std::uint64_t> width = parseUnsigned(parts.front());
+        const std::optional<std::uint64_t> height = parseUnsigned(parts.back());
+        if (parts.size() > 2 || !width || !height || (isCube() && *width != *height)) {
+            return badValue("size", value, isCube() ? "N, as a cube's faces are square" : "N or WxH");
+        }
+        spec_.width = RELIEF_TRY(checkMapSize(*width, spec_.format, "size"));
+        spec_.height = RELIEF_TRY(checkMapSize(*height, spec_.format, "size"));
+        return {};
+    }
+    Result<void> setBox(std::string_view value) {
+        if (value == "tight") {
+            return {};
+        }
+        const std::vector<float> n = parseNumbers(value, 6);
+        if (n.empty()) {
+            return badValue("box", value, "tight or two corners x0/y0/z0/x1/y1/z1");
+        }
+        const Bounds box{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+        if (!(box.min.x < box.max.x && box.min.y < box.max.y && box.min.z < box.max.z)) {
+            return badValue("box", value, "two corners x0/y0/z0/x1/y1/z1 with x0 < x1, y0 < y1 and z0 < z1");
+        }
+        spec_.box = box;
+        return {};
+    }
+    Result<void> setBudget(std::string_view value) {
+        const std::optional<std::uint64_t> bytes = parseByteCount(value);
+        if (!bytes || *bytes < kPatchBytesMin || *bytes > kPatchBytesMax) {
+            return badValue("budget", value,
+                            std::to_string(kPatchBytesMin) + " to " + std::to_string(kPatchBytesMax) +
+                                " bytes, such as 1MB");
+        }
+        spec_.bytes = *bytes;
+        return {};
+    }
+    Result<void> setTexel(std::string_view value) {
+        const std::optional<float> texel = parseFloat(value);
+        if (!texel || !(*texel >= 1e-15F && *texel <= 1e15F)) {
+            return badValue("texel", value, "a length above 0, in the collider's units");
+        }
+        spec_.texel = *texel;
+        return {};
+    }
 
     MapSpecDefaults defaults_;
     MapSpec spec_;
     std::array<bool, kKeys.size()> seen_{};  // by key
 };
-
-Result<void> MapSpecBuilder::setFormat(std::string_view word) {
-    const auto* found = std::ranges::find(kMapFormats, word, &MapFormatInfo::name);
-    if (found == kMapFormats.end()) {
-        return unknown("format", word, kMapFormatWords);
-    }
-    spec_.format = static_cast<MapFormat>(found - kMapFormats.begin());
-    if (isFrontBack(spec_.format)) {
-        spec_.format = defaults_.front_back;
-    } else if (spec_.format == MapFormat::kPatches) {
-        spec_.decode = Decode::kPlane;
-    }
-    return {};
-}
-
-Result<void> MapSpecBuilder::set(std::string_view key, std::string_view value) {
-    const auto* found = std::ranges::find(kKeys, key);
-    if (found == kKeys.end()) {
-        return unknown("key", key, kKeys);
-    }
-    const auto index = static_cast<std::size_t>(found - kKeys.begin());
-    if (std::exchange(seen_.at(index), true)) {
-        return usage(std::string(key) + " is set twice; remove one");
-    }
-    if (const std::string useless = whyIneffective(key); !useless.empty()) {
-        return usage(std::string(key) + useless);
-    }
-    if (key == "dir") {
-        spec_.direction = RELIEF_TRY(parseDirection(key, value));
-    } else if (key == "up") {
-        spec_.up = RELIEF_TRY(parseDirection(key, value));
-    } else if (key == "center") {
-        const std::vector<float> n = parseNumbers(value, 3);
-        if (n.empty()) {
-            return badValue(key, value, "three numbers a/b/c");
-        }
-        spec_.center = glm::vec3(n[0], n[1], n[2]);
-    } else {
-        return key == "size"     ? setSize(value)
-               : key == "box"    ? setBox(value)
-               : key == "budget" ? setBudget(value)
-               : key == "texel"  ? setTexel(value)
-                                 : setWord(key, value);
-    }
-    return {};
-}
-
-/// Returns why a key has no effect for the format and how to fix it; empty if it has an effect.
-std::string MapSpecBuilder::whyIneffective(std::string_view key) const {
-    const bool of_patches = key == "budget" || key == "texel";
-    if (of_patches != (spec_.format == MapFormat::kPatches)) {
-        return of_patches ? " applies only to patches; set size" : " does not apply to patches; remove it";
-    }
-    if ((key == "dir" || key == "up") && isCube()) {
-        return " does not apply to a cube, which has all directions; remove it";
-    }
-    if (key == "center" && !isCube()) {
-        return " applies only to a cube; use box to move an orthographic map";
-    }
-    return key == "depth" && !isFrontBack(spec_.format) ? " applies only to front-back; remove it" : "";
-}
-
-Result<void> MapSpecBuilder::setWord(std::string_view key, std::string_view value) {
-    if (key == "depth") {
-        const bool fixed = RELIEF_TRY(parseWord(key, value, {"half", "unorm16"}));
-        spec_.format = fixed ? MapFormat::kFrontBackFixed : MapFormat::kFrontBackHalf;
-    } else if (key == "decode") {
-        const bool plane = RELIEF_TRY(parseWord(key, value, {"projected", "plane"}));
-        spec_.decode = plane ? Decode::kPlane : Decode::kProjected;
-    } else if (!isFrontBack(spec_.format)) {
-        const bool greater = RELIEF_TRY(parseWord(key, value, {"less", "greater"}));
-        spec_.compare = greater ? Compare::kGreater : Compare::kLess;
-    } else {
-        return usage("front-back keeps both surfaces; remove compare");
-    }
-    return {};
-}
-
-Result<MapSpec> MapSpecBuilder::finish() const {
-    if (isCube() && spec_.center && spec_.box) {
-        return usage("a cube with a box is centred on the box; remove center or box");
-    }
-    RELIEF_TRY(checkUp(spec_));
-    return spec_;
-}
-
-Result<void> MapSpecBuilder::setSize(std::string_view value) {
-    const std::vector<std::string_view> parts = split(value, 'x');
-    const std::optional<std::uint64_t> width = parseUnsigned(parts.front());
-    const std::optional<std::uint64_t> height = parseUnsigned(parts.back());
-    if (parts.size() > 2 || !width || !height || (isCube() && *width != *height)) {
-        return badValue("size", value, isCube() ? "N, as a cube's faces are square" : "N or WxH");
-    }
-    spec_.width = RELIEF_TRY(checkMapSize(*width, spec_.format, "size"));
-    spec_.height = RELIEF_TRY(checkMapSize(*height, spec_.format, "size"));
-    return {};
-}
-
-Result<void> MapSpecBuilder::setBudget(std::string_view value) {
-    const std::optional<std::uint64_t> bytes = parseByteCount(value);
-    if (!bytes || *bytes < kPatchBytesMin || *bytes > kPatchBytesMax) {
-        return badValue(
-            "budget", value,
-            std::to_string(kPatchBytesMin) + " to " + std::to_string(kPatchBytesMax) + " bytes, such as 1MB");
-    }
-    spec_.bytes = *bytes;
-    return {};
-}
-
-Result<void> MapSpecBuilder::setTexel(std::string_view value) {
-    const std::optional<float> texel = parseFloat(value);
-    if (!texel || !(*texel >= 1e-15F && *texel <= 1e15F)) {
-        return badValue("texel", value, "a length above 0, in the collider's units");
-    }
-    spec_.texel = *texel;
-    return {};
-}
-
-Result<void> MapSpecBuilder::setBox(std::string_view value) {
-    if (value == "tight") {
-        return {};
-    }
-    const std::vector<float> n = parseNumbers(value, 6);
-    if (n.empty()) {
-        return badValue("box", value, "tight or two corners x0/y0/z0/x1/y1/z1");
-    }
-    const Bounds box{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
-    if (!(box.min.x < box.max.x && box.min.y < box.max.y && box.min.z < box.max.z)) {
-        return badValue("box", value, "two corners x0/y0/z0/x1/y1/z1 with x0 < x1, y0 < y1 and z0 < z1");
-    }
-    spec_.box = box;
-    return {};
-}
 
 }  // namespace
 

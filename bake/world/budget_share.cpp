@@ -95,66 +95,60 @@ double powerOf(const ErrorCurve& hull) {
 class WorthCurve {
   public:
     /// \param curve  not empty. \param weight  factor on its errors, 0 or more.
-    WorthCurve(const ErrorCurve& curve, double weight);
+    WorthCurve(const ErrorCurve& curve, double weight) : power_(kPower) {
+        const ErrorCurve hull = hullOf(curve);
+        for (std::size_t i = 1; i < hull.size(); ++i) {
+            add(std::sqrt(hull[i - 1].bytes * hull[i].bytes), weight * slope(hull[i - 1], hull[i]));
+        }
+        const ErrorPoint& end = hull.back();
+        if (!(weight * end.wrong >= std::numeric_limits<double>::min())) {
+            most_ = end.bytes;
+            return;
+        }
+        const double power = powerOf(hull);
+        const double worth = weight * power * end.wrong / end.bytes;
+        add(end.bytes, knots_.empty() ? worth : std::min(worth, portable::exp(knots_.back().worth)));
+        power_ = std::clamp(power, kPowerMin, kPowerMax);
+    }
 
     /// Returns the number of bytes up to which one more byte has at least this worth; grows as the worth falls.
     /// \param log_worth  natural logarithm of the worth.
-    [[nodiscard]] double bytesAt(double log_worth) const;
+    [[nodiscard]] double bytesAt(double log_worth) const {
+        if (knots_.empty()) {
+            return most_;
+        }
+        const auto bytes = [this](double log_bytes) {
+            return std::min(most_, portable::exp(std::min(log_bytes, kLogBytesMax)));
+        };
+        if (log_worth >= knots_.front().worth) {
+            return bytes(knots_.front().bytes);
+        }
+        for (std::size_t i = 1; i < knots_.size(); ++i) {
+            const Knot& a = knots_[i - 1];
+            const Knot& b = knots_[i];
+            if (log_worth >= b.worth) {
+                return bytes(a.bytes + (a.worth - log_worth) / (a.worth - b.worth) * (b.bytes - a.bytes));
+            }
+        }
+        const Knot& end = knots_.back();
+        return bytes(end.bytes + (end.worth - log_worth) / (power_ + 1.0));
+    }
 
   private:
     struct Knot {
         double bytes = 0.0;  // natural logarithms
         double worth = 0.0;
     };
-    void add(double bytes, double worth);
+    void add(double bytes, double worth) {
+        if (worth >= std::numeric_limits<double>::min()) {
+            knots_.push_back({portable::log(bytes), portable::log(worth)});
+        }
+    }
 
     std::vector<Knot> knots_;  // in descending order of worth
     double power_;             // errors are proportional to bytes^-power beyond the last knot
     double most_ = std::numeric_limits<double>::infinity();  // bytes; more bytes do not reduce the error
 };
-
-WorthCurve::WorthCurve(const ErrorCurve& curve, double weight) : power_(kPower) {
-    const ErrorCurve hull = hullOf(curve);
-    for (std::size_t i = 1; i < hull.size(); ++i) {
-        add(std::sqrt(hull[i - 1].bytes * hull[i].bytes), weight * slope(hull[i - 1], hull[i]));
-    }
-    const ErrorPoint& end = hull.back();
-    if (!(weight * end.wrong >= std::numeric_limits<double>::min())) {
-        most_ = end.bytes;
-        return;
-    }
-    const double power = powerOf(hull);
-    const double worth = weight * power * end.wrong / end.bytes;
-    add(end.bytes, knots_.empty() ? worth : std::min(worth, portable::exp(knots_.back().worth)));
-    power_ = std::clamp(power, kPowerMin, kPowerMax);
-}
-
-double WorthCurve::bytesAt(double log_worth) const {
-    if (knots_.empty()) {
-        return most_;
-    }
-    const auto bytes = [this](double log_bytes) {
-        return std::min(most_, portable::exp(std::min(log_bytes, kLogBytesMax)));
-    };
-    if (log_worth >= knots_.front().worth) {
-        return bytes(knots_.front().bytes);
-    }
-    for (std::size_t i = 1; i < knots_.size(); ++i) {
-        const Knot& a = knots_[i - 1];
-        const Knot& b = knots_[i];
-        if (log_worth >= b.worth) {
-            return bytes(a.bytes + (a.worth - log_worth) / (a.worth - b.worth) * (b.bytes - a.bytes));
-        }
-    }
-    const Knot& end = knots_.back();
-    return bytes(end.bytes + (end.worth - log_worth) / (power_ + 1.0));
-}
-
-void WorthCurve::add(double bytes, double worth) {
-    if (worth >= std::numeric_limits<double>::min()) {
-        knots_.push_back({portable::log(bytes), portable::log(worth)});
-    }
-}
 
 class ShareSolver {
   public:
