@@ -176,7 +176,9 @@ class WorldBaker {
         ErrorCurves used;
         std::mutex mutex;
         const auto plan = [&](std::size_t i, std::uint64_t bytes) -> Result<ErrorCurve> {
-            const std::string key = curveKey(i, bytes);
+            BakeRequest request = requests_[i];
+            request.budget = bytes;
+            const std::string key = assetKey(tool_, cacheOptions(request, 0), inputs_[i]);
             const auto found = known->find(key);
             ErrorCurve curve = found != known->end() ? found->second : RELIEF_TRY(planMesh(i, bytes));
             const std::lock_guard lock(mutex);
@@ -184,12 +186,6 @@ class WorldBaker {
         };
         RELIEF_TRY(shareByErrors(*result_.budget, shares, plan));
         return *known == used ? Result<void>() : saveErrorCurves(request_.folder, used);
-    }
-
-    [[nodiscard]] std::string curveKey(std::size_t mesh, std::uint64_t bytes) const {
-        BakeRequest request = requests_[mesh];
-        request.budget = bytes;
-        return assetKey(tool_, cacheOptions(request, 0), inputs_[mesh]);
     }
 
     /// Returns the error curve of a mesh. Keeps its solid for the bake, within kTrianglesKept.
@@ -249,13 +245,10 @@ class WorldBaker {
     /// Bakes the largest meshes first, so that the last one to finish is small.
     Result<void> bakeStale() {
         notify(watcher_.begin, "baking colliders");
-        std::stable_sort(stale_.begin(), stale_.end(), [this](std::size_t a, std::size_t b) {
-            const auto size = [this](std::size_t i) {
-                const WorldColliderResult& collider = meshes_[i];
-                return collider.budget ? static_cast<double>(*collider.budget)
-                                       : collider.area * collider.largest_scale * collider.largest_scale;
-            };
-            return size(a) > size(b);
+        std::ranges::stable_sort(stale_, std::greater<>(), [this](std::size_t i) {
+            const WorldColliderResult& collider = meshes_[i];
+            return collider.budget ? static_cast<double>(*collider.budget)
+                                   : collider.area * collider.largest_scale * collider.largest_scale;
         });
         std::size_t done = level_.meshes.size() - stale_.size();
         std::mutex mutex;
