@@ -8,6 +8,7 @@
 #include "formats/base/text.h"
 
 namespace relief {
+
 void fields(FieldVisitor& visit, ImportOptions& options) {
     visit("unit", options.unit,
           {.help = "Unit of lengths in the file, converted to metres: m, cm, mm, um, km, in, ft or yd",

@@ -8,6 +8,7 @@
 #include "formats/patch_tree.h"
 
 namespace relief {
+
 std::uint32_t patchCount(const DepthMap& map) {
     using Kind = PatchRecord::Kind;
     const auto [roots, levels] = patchTreeSize(map.texels);
