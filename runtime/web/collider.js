@@ -2,7 +2,7 @@
 // Colliders: read, query, and bind one to a WebGL2 program.
 import { checkFinite, index, numbers } from "./arguments.js";
 import { free, use, useUnlessLost } from "./context.js";
-import { ReliefError, bytesOf } from "./fetch.js";
+import { ReliefError, bytesOf, check } from "./fetch.js";
 import { call, callChecked, callForHandle, init, textAt, wasm } from "./wasm.js";
 
 /** Runs a query and splits its relief_samples (relief_runtime.h) into arrays; `which` names the last one. */
@@ -32,9 +32,7 @@ export async function load(source) {
 }
 
 export function collider(what, value) {
-    if (!(value instanceof Collider)) {
-        throw new ReliefError(`${what} needs a Collider from load(); did you forget to await it?`);
-    }
+    check(value instanceof Collider, `${what} needs a Collider from load(); did you forget to await it?`);
     return value;
 }
 
@@ -42,18 +40,14 @@ export class Collider {
     #handle;
 
     constructor(bytes) {
-        if (!(bytes instanceof Uint8Array)) {
-            throw new ReliefError("new Collider() needs a Uint8Array; load() accepts other sources");
-        }
+        check(bytes instanceof Uint8Array, "new Collider() needs a Uint8Array; load() accepts other sources");
         this.bytes = bytes;
         this.#handle = callForHandle("relief_collider_read", bytes, bytes.length);
         this.info = JSON.parse(textAt(call("relief_collider_info", this.handle)));
     }
 
     get handle() {
-        if (!this.#handle) {
-            throw new ReliefError("this collider has been disposed of");
-        }
+        check(this.#handle, "this collider has been disposed of");
         return this.#handle;
     }
     get bounds() {
@@ -66,9 +60,7 @@ export class Collider {
 
     texels(map) {
         const { width, height, faces, format } = this.info.maps[index("map", map, this.info.maps.length)];
-        if (format === "patches") {
-            throw new ReliefError(`map ${map} contains patches and has no texels; use tree(${map})`);
-        }
+        check(format !== "patches", `map ${map} contains patches and has no texels; use tree(${map})`);
         const texels = new Float32Array(8 * width * height * faces);
         callChecked("relief_collider_texels", this.handle, map, texels);
         return texels;
@@ -76,9 +68,8 @@ export class Collider {
 
     tree(map) {
         const { bytes, format } = this.info.maps[index("map", map, this.info.maps.length)];
-        if (format !== "patches") {
-            throw new ReliefError(`map ${map} has no tree, because its format is ${format}; use texels(${map})`);
-        }
+        check(format === "patches",
+              `map ${map} has no tree, because its format is ${format}; use texels(${map})`);
         const words = new Uint32Array(bytes / 4);
         callChecked("relief_collider_tree", this.handle, map, words);
         return words;
@@ -108,9 +99,7 @@ export class GpuCollider {
     }
 
     #ready() {
-        if (!this.#handle) {
-            throw new ReliefError("this GpuCollider has been disposed of");
-        }
+        check(this.#handle, "this GpuCollider has been disposed of");
         useUnlessLost(this.#gl, this.#losses, "create a new GpuCollider");
     }
 
@@ -124,9 +113,8 @@ export class GpuCollider {
         this.#ready();
         this.#places(unit, block);
         const gl = this.#gl;
-        if (!(program instanceof WebGLProgram) || !gl.getProgramParameter(program, gl.LINK_STATUS)) {
-            throw new ReliefError("attach() needs a linked WebGLProgram");
-        }
+        check(program instanceof WebGLProgram && gl.getProgramParameter(program, gl.LINK_STATUS),
+              "attach() needs a linked WebGLProgram");
         const before = gl.getParameter(gl.CURRENT_PROGRAM);
         gl.useProgram(program);
         ["u_relief_float", "u_relief_fixed", "u_relief_front_back"].forEach((name, i) =>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // WebGL2 contexts: makes one current for the WebAssembly module, and tracks its losses.
-import { ReliefError } from "./fetch.js";
+import { check } from "./fetch.js";
 import { withPassState } from "./pass_state.js";
 import { call, instance, wasm } from "./wasm.js";
 
@@ -11,11 +11,9 @@ let nullContext = 0; // emscripten handle of a context whose functions do nothin
 function recordOf(gl) {
     let known = contexts.get(gl);
     if (known === undefined) {
-        if (typeof WebGL2RenderingContext === "undefined" || !(gl instanceof WebGL2RenderingContext)) {
-            throw new ReliefError(gl === null
-                ? "this browser provides no WebGL2 context; try another browser or newer drivers"
-                : "particles need a WebGL2 context from canvas.getContext('webgl2')");
-        }
+        check(typeof WebGL2RenderingContext !== "undefined" && gl instanceof WebGL2RenderingContext,
+              gl === null ? "this browser provides no WebGL2 context; try another browser or newer drivers"
+                  : "particles need a WebGL2 context from canvas.getContext('webgl2')");
         const handle = wasm.GL.registerContext(withPassState(gl), { majorVersion: 2, enableExtensionsByDefault: false });
         known = { handle, losses: 0, ready: false };
         contexts.set(gl, known);
@@ -31,15 +29,13 @@ function recordOf(gl) {
 export function use(gl) {
     instance();
     const known = recordOf(gl);
-    if (gl.isContextLost()) {
-        throw new ReliefError("the WebGL context is lost; wait for 'webglcontextrestored', " +
-                              "then restart() systems and create new GpuColliders");
-    }
+    check(!gl.isContextLost(),
+          "the WebGL context is lost; wait for 'webglcontextrestored', " +
+          "then restart() systems and create new GpuColliders");
     if (!known.ready) {
-        if (!gl.getExtension("EXT_color_buffer_float")) {
-            throw new ReliefError("this browser cannot render to float textures (EXT_color_buffer_float); " +
-                                  "try another browser or newer drivers");
-        }
+        check(gl.getExtension("EXT_color_buffer_float"),
+              "this browser cannot render to float textures (EXT_color_buffer_float); " +
+              "try another browser or newer drivers");
         known.ready = true;
     }
     wasm.GL.makeContextCurrent(known.handle);
@@ -48,9 +44,7 @@ export function use(gl) {
 
 /** Like use(), but also throws if the number of losses is no longer `losses`. fix: advice for the message. */
 export function useUnlessLost(gl, losses, fix) {
-    if (use(gl) !== losses) {
-        throw new ReliefError(`the WebGL context was lost meanwhile; ${fix}`);
-    }
+    check(use(gl) === losses, `the WebGL context was lost meanwhile; ${fix}`);
 }
 
 /** Frees an object of a context. For objects lost with their context, only the emscripten tables are updated. */

@@ -8,6 +8,12 @@ export class ReliefError extends Error {
     }
 }
 
+export function check(valid, message) {
+    if (!valid) {
+        throw new ReliefError(message);
+    }
+}
+
 /** Fetches a source, or returns it if it already is a Response. */
 async function responseOf(source, signal) {
     return source instanceof Response ? source : fetch(source, { signal }).catch((error) => {
@@ -23,17 +29,13 @@ export async function bytesOf(source, signal) {
     if (source instanceof ArrayBuffer || source instanceof Blob) {
         return new Uint8Array(await new Response(source).arrayBuffer());
     }
-    if (typeof source !== "string" && ![URL, Request, Response].some((kind) => source instanceof kind)) {
-        throw new ReliefError("load() needs a URL, a Response, a Blob, an ArrayBuffer or a Uint8Array");
-    }
+    check(typeof source === "string" || [URL, Request, Response].some((kind) => source instanceof kind),
+          "load() needs a URL, a Response, a Blob, an ArrayBuffer or a Uint8Array");
     const response = await responseOf(source, signal);
     const name = response.url || source;
-    if (!response.ok) {
-        throw new ReliefError(`${name}: the server returned ${response.status} ${response.statusText}`.trim());
-    }
-    if (/^text\/html/.test(response.headers.get("content-type"))) {
-        throw new ReliefError(`${name}: the server sent a web page instead of a collider; check the path`);
-    }
+    check(response.ok, `${name}: the server returned ${response.status} ${response.statusText}`.trim());
+    check(!/^text\/html/.test(response.headers.get("content-type")),
+          `${name}: the server sent a web page instead of a collider; check the path`);
     return new Uint8Array(await response.arrayBuffer());
 }
 
@@ -44,10 +46,9 @@ export async function bytesOf(source, signal) {
 export async function worldFiles(source, coarse) {
     // The containers are relative to the final URL, after redirects.
     const response = await responseOf(source);
-    if (!response.url) {
-        throw new ReliefError("this Response has no URL, so the containers of the world cannot be found; " +
-                              "pass the files to new World()");
-    }
+    check(response.url,
+          "this Response has no URL, so the containers of the world cannot be found; " +
+          "pass the files to new World()");
     const base = new URL(response.url);
     const text = await bytesOf(response);
     const files = { "world.json": text };
@@ -85,9 +86,7 @@ export class Fetches {
         let reason = null;
         try {
             bytes = await this.#load(file, signal);
-            if (!(bytes instanceof Uint8Array)) {
-                throw new ReliefError(`${file}: 'load' returned no Uint8Array`);
-            }
+            check(bytes instanceof Uint8Array, `${file}: 'load' returned no Uint8Array`);
         } catch (error) {
             reason = String(error?.message ?? error);
         }
@@ -123,9 +122,8 @@ function namesOf(text, base, coarse) {
     const list = Array.isArray(colliders) ? colliders : [];
     const outside = (name) => typeof name !== "string" || name.split("/").some((part) => ["", ".", ".."].includes(part));
     const wrong = list.findIndex((one) => outside(one?.file) || (coarse && one.coarse && outside(one.coarse.file)));
-    if (list.length === 0 || wrong >= 0) {
-        throw new ReliefError(`${base}: not a world.json of 'relief bake --world': ` +
-                              (wrong >= 0 ? `colliders[${wrong}] names no file in its folder` : "it has no colliders"));
-    }
+    check(list.length > 0 && wrong < 0,
+          `${base}: not a world.json of 'relief bake --world': ` +
+          (wrong >= 0 ? `colliders[${wrong}] names no file in its folder` : "it has no colliders"));
     return [...new Set(list.map((one) => (coarse && one.coarse ? one.coarse.file : one.file)))];
 }

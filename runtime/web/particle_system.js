@@ -3,7 +3,7 @@
 import { checkFinite, matrix, numbers, pixels } from "./arguments.js";
 import { collider } from "./collider.js";
 import { free, use, useUnlessLost } from "./context.js";
-import { Fetches, ReliefError } from "./fetch.js";
+import { Fetches, ReliefError, check } from "./fetch.js";
 import { call, callChecked, callForHandle, textAt, wasm } from "./wasm.js";
 import { World, makeFolder, removeFolder, writeIn } from "./world.js";
 
@@ -11,9 +11,8 @@ const isTable = (value) => value !== null && typeof value === "object" && !Array
 
 /** Converts a scene to JSON. Non-finite numbers become strings, which the reader rejects with their key. */
 const jsonOf = (scene) => JSON.stringify(scene, (key, value) => {
-    if (typeof value === "function" || typeof value === "symbol") {
-        throw new ReliefError(`a scene can contain numbers, strings, booleans, lists and tables, but no ${typeof value}`);
-    }
+    check(typeof value !== "function" && typeof value !== "symbol",
+          `a scene can contain numbers, strings, booleans, lists and tables, but no ${typeof value}`);
     return ArrayBuffer.isView(value) ? [...value] : typeof value === "number" && !Number.isFinite(value) ? String(value) : value;
 });
 
@@ -40,31 +39,25 @@ export class ParticleSystem {
 
     constructor(gl, options = {}) {
         const wrong = Object.keys(options).find((key) => !["collider", "files", "minHitSpeed", "onHits", "onWarning", "scene", "shaded", "world"].includes(key));
-        if (wrong !== undefined) {
-            throw new ReliefError(`ParticleSystem has no option '${wrong}'; it has collider, files, minHitSpeed, onHits, onWarning, scene, shaded and world`);
-        }
+        check(wrong === undefined,
+              `ParticleSystem has no option '${wrong}'; it has collider, files, minHitSpeed, onHits, onWarning, scene, shaded and world`);
         if (options.collider) {
             collider("the option 'collider'", options.collider);
         }
         if (options.world) {
-            if (!(options.world instanceof World)) {
-                throw new ReliefError("the option 'world' needs a World from loadWorld() or streamWorld(); did you forget to await it?");
-            }
-            if (options.collider) {
-                throw new ReliefError("use either 'world' or 'collider'; to add colliders, name them in the scene and pass 'files'");
-            }
+            check(options.world instanceof World,
+                  "the option 'world' needs a World from loadWorld() or streamWorld(); did you forget to await it?");
+            check(!options.collider,
+                  "use either 'world' or 'collider'; to add colliders, name them in the scene and pass 'files'");
             options.world.handle; // throws if disposed
         }
-        if (options.onWarning !== undefined && typeof options.onWarning !== "function") {
-            throw new ReliefError("the option 'onWarning' must be a function that takes a line");
-        }
-        if (options.onHits !== undefined && typeof options.onHits !== "function") {
-            throw new ReliefError("the option 'onHits' must be a function that takes StepHits");
-        }
+        check(options.onWarning === undefined || typeof options.onWarning === "function",
+              "the option 'onWarning' must be a function that takes a line");
+        check(options.onHits === undefined || typeof options.onHits === "function",
+              "the option 'onHits' must be a function that takes StepHits");
         const { minHitSpeed = 0 } = options;
-        if (!(Number.isFinite(minHitSpeed) && minHitSpeed >= 0)) {
-            throw new ReliefError("the option 'minHitSpeed' must be a speed, 0 or more");
-        }
+        check(Number.isFinite(minHitSpeed) && minHitSpeed >= 0,
+              "the option 'minHitSpeed' must be a speed, 0 or more");
         use(gl);
         this.#gl = gl;
         this.#shaded = options.shaded ?? true;
@@ -128,16 +121,14 @@ export class ParticleSystem {
     /** Throws if the world lacks coarse containers, as a world from loadWorld() does. */
     #checkCoarse({ colliders, files }) {
         const missing = colliders.find(({ coarse }) => coarse && !(coarse.file in files));
-        if (missing) {
-            throw new ReliefError(`the scene has 'stream', but its world lacks '${missing.coarse.file}'; ` +
-                                  "remove 'stream', or use streamWorld()");
-        }
+        check(!missing,
+              `the scene has 'stream', but its world lacks '${missing?.coarse.file}'; ` +
+              "remove 'stream', or use streamWorld()");
     }
 
     get handle() {
-        if (!this.#handle) {
-            throw new ReliefError(this.#folder === null ? "this system has been disposed of" : "this system failed to restart");
-        }
+        check(this.#handle,
+              this.#folder === null ? "this system has been disposed of" : "this system failed to restart");
         return this.#handle;
     }
 
@@ -147,21 +138,16 @@ export class ParticleSystem {
     }
 
     restart() {
-        if (this.#folder === null) {
-            throw new ReliefError("this system has been disposed of");
-        }
+        check(this.#folder !== null, "this system has been disposed of");
         use(this.#gl);
         this.#free();
         this.#create();
     }
 
     set(patch) {
-        if (typeof this.#scene === "string") {
-            throw new ReliefError("set() cannot change a scene given as text; create a new system");
-        }
-        if (!isTable(patch)) {
-            throw new ReliefError("set() takes a part of a scene: an object with the keys of scene.toml");
-        }
+        check(typeof this.#scene !== "string",
+              "set() cannot change a scene given as text; create a new system");
+        check(isTable(patch), "set() takes a part of a scene: an object with the keys of scene.toml");
         this.#ready();
         const before = this.#scene;
         this.#scene = merged(before, patch);
@@ -180,11 +166,9 @@ export class ParticleSystem {
     step(dt) {
         this.#ready();
         const seconds = dt ?? this.info.dt;
-        if (!(typeof seconds === "number" && seconds >= 0 && seconds <= 1)) {
-            const given = typeof seconds === "number" ? seconds : JSON.stringify(seconds);
-            throw new ReliefError(`step(${given}): a step must be 0 to 1 seconds; limit it by ` +
-                                  "Math.min(seconds, 1 / 30)");
-        }
+        const given = typeof seconds === "number" ? seconds : JSON.stringify(seconds);
+        check(typeof seconds === "number" && seconds >= 0 && seconds <= 1,
+              `step(${given}): a step must be 0 to 1 seconds; limit it by Math.min(seconds, 1 / 30)`);
         if (seconds > 0) {
             const warnings = callChecked("relief_player_step", this.handle, seconds);
             this.#fetch();
@@ -242,10 +226,9 @@ export class ParticleSystem {
     setPointsOfInterest(points) {
         const places = Array.isArray(points) ? points : [];
         const wrong = places.findIndex((one) => one?.position?.length !== 3 || !(one.radius > 0));
-        if (!Array.isArray(points) || wrong >= 0) {
-            throw new ReliefError("setPointsOfInterest() takes a list of { position: [x, y, z], radius } with a radius above 0" +
-                                  (wrong >= 0 ? `; item ${wrong} is invalid` : ""));
-        }
+        check(Array.isArray(points) && wrong < 0,
+              "setPointsOfInterest() takes a list of { position: [x, y, z], radius } with a radius above 0" +
+              (wrong >= 0 ? `; item ${wrong} is invalid` : ""));
         this.#ready();
         const list = checkFinite("setPointsOfInterest()", Float32Array.from(places.flatMap(({ position, radius }) => [...position, radius])));
         callChecked("relief_player_near", this.handle, list, list.length / 4);
@@ -340,9 +323,8 @@ export class ParticleSystem {
 
     pose(body, joints = [], weights = []) {
         this.#ready();
-        if (!Number.isInteger(body) || body < 0 || joints.length % 16 !== 0) {
-            throw new ReliefError("pose() needs the index of a body, and 16 numbers per joint");
-        }
+        check(Number.isInteger(body) && body >= 0 && joints.length % 16 === 0,
+              "pose() needs the index of a body, and 16 numbers per joint");
         callChecked("relief_player_pose", this.handle, body, checkFinite("pose()", Float32Array.from(joints)), joints.length / 16,
                     checkFinite("pose()", Float32Array.from(weights)), weights.length);
     }

@@ -2,7 +2,7 @@
 // Loads the WebAssembly module, which serves all contexts of a page, and calls its functions.
 import { decompress } from "fzstd";
 
-import { ReliefError } from "./fetch.js";
+import { ReliefError, check } from "./fetch.js";
 import createReliefWasm from "./relief_wasm.mjs";
 
 let loading = null; // promise of the WebAssembly instance
@@ -30,9 +30,7 @@ export function init({ wasmUrl = wasmBeside, ...options } = {}) {
 }
 
 export function instance() {
-    if (!wasm) {
-        throw new ReliefError("Relief is not loaded yet; await init() or load() first");
-    }
+    check(wasm, "Relief is not loaded yet; await init() or load() first");
     return wasm;
 }
 
@@ -47,9 +45,7 @@ function lastError() {
 function copyToWasm(value) {
     const size = typeof value === "string" ? wasm.lengthBytesUTF8(value) + 1 : Math.max(value.byteLength, 1);
     const at = wasm._malloc(size);
-    if (at === 0) {
-        throw new ReliefError(`out of memory for ${size} bytes; use fewer particles or a smaller collider`);
-    }
+    check(at !== 0, `out of memory for ${size} bytes; use fewer particles or a smaller collider`);
     if (typeof value === "string") {
         wasm.stringToUTF8(value, at, size);
     } else {

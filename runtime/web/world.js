@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Worlds, and the folders in the file system of the WebAssembly module that hold the files of worlds and scenes.
 import { Collider, runQuery } from "./collider.js";
-import { ReliefError, bytesOf, urlIn, worldFiles } from "./fetch.js";
+import { ReliefError, bytesOf, check, urlIn, worldFiles } from "./fetch.js";
 import { call, callForHandle, init, instance, wasm } from "./wasm.js";
 
 let folders = 0;
@@ -21,13 +21,13 @@ export function removeFolder(folder) {
 
 export function writeIn(folder, name, content) {
     const parts = name.split("/");
-    if (parts.some((part) => part === "" || part === "." || part === "..")) {
-        throw new ReliefError(`'${name}' is outside the scene's folder; use a relative path without '..'`);
-    }
+    check(!parts.some((part) => part === "" || part === "." || part === ".."),
+          `'${name}' is outside the scene's folder; use a relative path without '..'`);
     if (content instanceof Collider) {
         content.handle; // throws if disposed
-    } else if (!(content instanceof Uint8Array) && typeof content !== "string") {
-        throw new ReliefError(`the file '${name}' must be a Collider, a Uint8Array or a string`);
+    } else {
+        check(content instanceof Uint8Array || typeof content === "string",
+              `the file '${name}' must be a Collider, a Uint8Array or a string`);
     }
     wasm.FS.mkdirTree([folder, ...parts.slice(0, -1)].join("/"));
     wasm.FS.writeFile(`${folder}/${name}`, content instanceof Collider ? content.bytes : content);
@@ -54,15 +54,11 @@ export async function streamWorld(source, options = {}) {
 /** @param what  the function that takes the options, for messages. */
 function checkStream(what, options, keys) {
     const wrong = Object.keys(options).find((key) => !keys.includes(key));
-    if (wrong !== undefined) {
-        throw new ReliefError(`${what} has no option '${wrong}'; it has ${keys.join(", ")}`);
-    }
-    if (!(Number.isFinite(options.radius) && options.radius > 0)) {
-        throw new ReliefError(`${what} needs a radius above 0, within which the world has full detail`);
-    }
-    if (options.memory !== undefined && !(Number.isFinite(options.memory) && options.memory > 0)) {
-        throw new ReliefError(`${what}: memory must be a number of megabytes above 0`);
-    }
+    check(wrong === undefined, `${what} has no option '${wrong}'; it has ${keys.join(", ")}`);
+    check(Number.isFinite(options.radius) && options.radius > 0,
+          `${what} needs a radius above 0, within which the world has full detail`);
+    check(options.memory === undefined || (Number.isFinite(options.memory) && options.memory > 0),
+          `${what}: memory must be a number of megabytes above 0`);
 }
 
 export class World {
@@ -74,9 +70,8 @@ export class World {
         this.stream = null;
         if (stream) {
             checkStream("streaming a World", stream, ["radius", "memory", "load"]);
-            if (typeof stream.load !== "function") {
-                throw new ReliefError("streaming a World needs 'load', a function that returns the bytes of a file");
-            }
+            check(typeof stream.load === "function",
+                  "streaming a World needs 'load', a function that returns the bytes of a file");
             this.stream = { ...stream };
         }
         const folder = makeFolder();
@@ -98,9 +93,7 @@ export class World {
     }
 
     get handle() {
-        if (!this.#handle) {
-            throw new ReliefError("this world has been disposed of");
-        }
+        check(this.#handle, "this world has been disposed of");
         return this.#handle;
     }
 
