@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <glm/gtc/type_ptr.hpp>
 #include <limits>
 #include <optional>
 #include <string>
@@ -41,11 +42,7 @@ std::string lineOf(const Json& json) {
 
 /// \param matrices  view matrix, then projection matrix, column-major.
 CameraMatrices cameraOf(const float* matrices) {
-    glm::mat4 view;
-    glm::mat4 projection;
-    std::memcpy(&view, matrices, sizeof(view));
-    std::memcpy(&projection, matrices + 16, sizeof(projection));
-    return {view, projection};
+    return {glm::make_mat4(matrices), glm::make_mat4(matrices + 16)};
 }
 
 /// Writes numbers and vectors as floats, and moves `out` behind them.
@@ -97,18 +94,14 @@ EMSCRIPTEN_KEEPALIVE int relief_collider_texels(const relief_collider* collider,
     return answer(__func__, -1, [&](const Call& call) -> Result<int> {
         const Collider& of = *RELIEF_TRY(call.object(collider, "collider"));
         const DepthMap& from = of.maps[static_cast<std::size_t>(map)];
-        const auto put = [&](const std::optional<Surface>& surface) {
-            *out++ = surface ? surface->depth : std::numeric_limits<float>::quiet_NaN();
-            for (int i = 0; i < 3; ++i) {
-                *out++ = surface ? surface->normal[i] : 0.0F;
-            }
-        };
+        const Surface none{std::numeric_limits<float>::quiet_NaN(), glm::vec3(0.0F)};
+        const auto put = [&](const Surface& surface) { writeRow(out, surface.depth, surface.normal); };
         for (std::uint32_t face = 0; face < from.faceCount(); ++face) {
             for (std::uint32_t y = 0; y < from.height; ++y) {
                 for (std::uint32_t x = 0; x < from.width; ++x) {
                     const Texel texel = decodeTexel(from.format, from.texelAt(face, x, y));
-                    put(texel.front);
-                    put(texel.back);
+                    put(texel.front.value_or(none));
+                    put(texel.back.value_or(none));
                 }
             }
         }
@@ -273,19 +266,15 @@ EMSCRIPTEN_KEEPALIVE int relief_player_spawn(Player* player, const float* births
 }
 
 /// Draws the particles to the pixels (0, 0) … (width - 1, height - 1) of a framebuffer.
+/// \param meshes    1: draws the meshes of render.meshes instead, overwriting the framebuffer.
 /// \param matrices  view matrix, then projection matrix, column-major.
 /// \param srgb      1: the framebuffer stores sRGB values.
-EMSCRIPTEN_KEEPALIVE int relief_player_draw(Player* player, const float* matrices, int framebuffer, int width,
-                                            int height, int srgb) {
+EMSCRIPTEN_KEEPALIVE int relief_player_draw(Player* player, int meshes, const float* matrices,
+                                            int framebuffer, int width, int height, int srgb) {
     const RenderTarget target{static_cast<GLuint>(framebuffer), width, height, srgb != 0};
-    return inPass(__func__, -1, [&] { return drawPlayer(*player, cameraOf(matrices), target); });
-}
-
-/// Draws the meshes of render.meshes, overwriting the framebuffer. Parameters as for relief_player_draw().
-EMSCRIPTEN_KEEPALIVE int relief_player_draw_meshes(Player* player, const float* matrices, int framebuffer,
-                                                   int width, int height, int srgb) {
-    const RenderTarget target{static_cast<GLuint>(framebuffer), width, height, srgb != 0};
-    return inPass(__func__, -1, [&] { return drawPlayerMeshes(*player, cameraOf(matrices), target); });
+    return inPass(__func__, -1, [&] {
+        return (meshes != 0 ? drawPlayerMeshes : drawPlayer)(*player, cameraOf(matrices), target);
+    });
 }
 
 /// Returns JSON.

@@ -263,14 +263,15 @@ export class ParticleSystem {
     }
 
     draw(options) {
-        this.#draw("relief_player_draw", options);
+        this.#draw(0, options);
     }
 
     drawMeshes(options) {
-        this.#draw("relief_player_draw_meshes", options);
+        this.#draw(1, options);
     }
 
-    #draw(how, { view, projection, framebuffer, width, height, srgb = true } = {}) {
+    /** meshes: 0 or 1. */
+    #draw(meshes, { view, projection, framebuffer, width, height, srgb = true } = {}) {
         this.#ready();
         const gl = this.#gl;
         const matrices = Float32Array.of(...matrix("view", view), ...matrix("projection", projection));
@@ -288,7 +289,7 @@ export class ParticleSystem {
             wasm.GL.framebuffers[name] = target;
         }
         try {
-            callChecked(how, this.handle, matrices, name, ...size, srgb ? 1 : 0);
+            callChecked("relief_player_draw", this.handle, meshes, matrices, name, ...size, srgb ? 1 : 0);
         } finally {
             if (name) {
                 wasm.GL.framebuffers[name] = null;

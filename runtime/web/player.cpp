@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <glm/gtc/type_ptr.hpp>
 #include <span>
 #include <string_view>
 
@@ -34,17 +35,14 @@ Json describeBodies(const std::vector<SceneCollider>& colliders, const std::vect
     for (std::size_t at = 0; at < colliders.size(); ++at) {
         const SceneCollider& collider = colliders[at];
         const Pose& pose = poses[at];
-        const glm::mat3 turned = pose.scale * glm::mat3_cast(pose.rotation);
-        Json matrix = Json::array();
-        for (int i = 0; i < 3; ++i) {
-            matrix.insert(matrix.end(), {turned[i].x, turned[i].y, turned[i].z, 0.0F});
-        }
-        matrix.insert(matrix.end(), {pose.position.x, pose.position.y, pose.position.z, 1.0F});
+        glm::mat4 matrix(pose.scale * glm::mat3_cast(pose.rotation));
+        matrix[3] = glm::vec4(pose.position, 1.0F);
+        const float* const numbers = glm::value_ptr(matrix);
         bodies.push_back({{"file", collider.path.string()},
                           {"node", collider.node},
                           {"deforms", collider.deforms()},
                           {"moves", !collider.keys.empty() || collider.play},
-                          {"matrix", matrix}});
+                          {"matrix", std::vector<float>(numbers, numbers + 16)}});
     }
     return bodies;
 }
