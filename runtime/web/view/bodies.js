@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bodies of a scene: picking, names, facts and errors.
 import { bindTexture, drawScreen, kScreenVertex, program } from "./gl.js";
-import { inverse, length, mix, shortNumber, sub, transform } from "./math.js";
+import { clamp, inverse, length, mix, shortNumber, sub, transform } from "./math.js";
 
 // Colours for percentages of wrong points. Their limits, 1 and 5, match the grades of the verdict.
 const kGood = [0.42, 0.62, 0.45];
@@ -59,9 +59,6 @@ class DepthReader {
 }
 
 export class Bodies {
-    #picked = -1;
-    #tint = false;
-
     /**
      * @param placed  the drawable bodies of the scene
      * @param info  the same bodies in SystemInfo of the ParticleSystem
@@ -69,6 +66,8 @@ export class Bodies {
      */
     constructor(gl, placed, info, data) {
         Object.assign(this, { gl, placed, info, data });
+        this.picked = -1;
+        this.tinted = false; // colours by wrong points, if measured
         this.depths = new DepthReader(gl);
         this.meshes = new Map(); // container file name to mesh name
         for (const [name, bytes] of Object.entries(data.files)) {
@@ -82,34 +81,21 @@ export class Bodies {
         this.measured = measured?.length === placed.length ? measured : null;
     }
 
-    get picked() {
-        return this.#picked;
-    }
-
-    pick(i) {
-        this.#picked = i;
-    }
-
-    /** Enables colours by wrong points. */
-    tint(on) {
-        this.#tint = on && this.measured !== null;
-    }
-
     /** Returns the colour of a body; undefined: the colour of the theme. */
     color(i) {
-        const wrong = this.#tint ? wrongColor(this.measured[i].wrong_percent) : undefined;
-        return i === this.#picked ? mix(wrong ?? kPicked, kPicked, 0.6) : wrong;
+        const wrong = this.tinted && this.measured ? wrongColor(this.measured[i].wrong_percent) : undefined;
+        return i === this.picked ? mix(wrong ?? kPicked, kPicked, 0.6) : wrong;
     }
 
     /** Returns the body at a place of the picture, or −1. x, y: fractions of its sides, from the lower left. */
     at(picture, matrices, x, y) {
-        const pixel = [x * picture.width, y * picture.height].map((v, k) =>
-            Math.min(Math.max(Math.floor(v), 0), [picture.width, picture.height][k] - 1));
+        const { width, height } = picture;
+        const pixel = [clamp(Math.floor(x * width), 0, width - 1), clamp(Math.floor(y * height), 0, height - 1)];
         const depth = this.depths.read(picture, ...pixel);
         if (!(depth < 1)) {
             return -1;
         }
-        const clip = [2 * (pixel[0] + 0.5) / picture.width - 1, 2 * (pixel[1] + 0.5) / picture.height - 1, 2 * depth - 1];
+        const clip = [2 * (pixel[0] + 0.5) / width - 1, 2 * (pixel[1] + 0.5) / height - 1, 2 * depth - 1];
         const [a, b, c, w] = transform(inverse(matrices.camera), clip);
         return this.nearest([a / w, b / w, c / w], 1e-3 * length(sub([a / w, b / w, c / w], matrices.eye)));
     }
@@ -118,19 +104,18 @@ export class Bodies {
     nearest(point, within) {
         let best = -1;
         let least = within;
-        this.placed.forEach((one, i) => {
-            const { collider, box } = one.body ?? one;
+        this.placed.forEach(({ collider, box, model }, i) => {
             if (!collider) {
                 return; // deforming body
             }
-            const scale = length([...one.model.slice(0, 3)]);
-            const p = transform(inverse(one.model), point).slice(0, 3);
+            const scale = length(model);
+            const p = transform(inverse(model), point).slice(0, 3);
             const room = Math.max(within / scale, 0.01 * box.longest);
             if (p.some((v, k) => v < box.min[k] - room || v > box.max[k] + room)) {
                 return;
             }
             // Query inside the box: beyond it, a collider may return far outside.
-            const inside = p.map((v, k) => Math.min(Math.max(v, box.min[k]), box.max[k]));
+            const inside = p.map((v, k) => clamp(v, box.min[k], box.max[k]));
             const distance = (Math.abs(collider.query(inside).distance[0]) + length(sub(p, inside))) * scale;
             if (distance < least) {
                 [best, least] = [i, distance];
@@ -145,13 +130,12 @@ export class Bodies {
         const base = file.split("/").pop();
         const bytes = this.data.files[file]?.length;
         const { model } = this.placed[i];
-        const scale = length([...model.slice(0, 3)]);
         const wrong = this.measured?.[i];
         return [
             ["mesh", this.meshes.get(base)],
             [deforms ? "mesh file" : "collider", base],
             ["size", bytes && bytesText(bytes)],
-            ["scale", shortNumber(scale)],
+            ["scale", shortNumber(length(model))],
             ["at", [...model.slice(12, 15)].map(shortNumber).join(", ")],
             ["wrong points", wrong && `${shortNumber(wrong.wrong_percent)} %`],
         ].filter(([, value]) => value !== undefined && value !== "");

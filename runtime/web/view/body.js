@@ -20,10 +20,8 @@ function stepsAcross({ projection, width, height }, finest) {
 }
 
 export class Body {
-    #programs = {};
-
     constructor(gl, collider) {
-        Object.assign(this, { gl, collider });
+        Object.assign(this, { gl, collider, programs: {} });
         this.place(identity());
         this.box = boxOf(collider.bounds);
         this.gpu = collider.onGpu?.(gl) ?? new reliefParticles.GpuCollider(gl, collider);
@@ -45,20 +43,20 @@ export class Body {
     /** Returns a program that can evaluate the collider, and binds the collider. */
     use(kind) {
         const fragments = { surface: kSurfaceFragment, heat: kHeatFragment, slice: kSliceFragment };
-        if (!this.#programs[kind]) {
-            this.#programs[kind] = program(this.gl, kBodyVertex, fragments[kind], this.gpu.glsl);
-            this.gpu.attach(this.#programs[kind].name);
+        if (!this.programs[kind]) {
+            this.programs[kind] = program(this.gl, kBodyVertex, fragments[kind], this.gpu.glsl);
+            this.gpu.attach(this.programs[kind].name);
         }
         this.gpu.bind();
-        return this.#programs[kind];
+        return this.programs[kind];
     }
 
-    /** Draws the surface of the maps. values: uniforms shared by all bodies. model: object space to world space. */
-    draw(values, model = this.model) {
+    /** Draws the surface of the maps. values: uniforms shared by all bodies. */
+    draw(values) {
         const { gl, box, drawn } = this;
         const { maps, finest_texel: texel } = this.collider.info;
         this.use("surface").set({
-            ...values, u_model: model, u_box_min: drawn.min, u_box_max: drawn.max,
+            ...values, u_model: this.model, u_box_min: drawn.min, u_box_max: drawn.max,
             u_deep: kDeep * box.longest, u_tiny: Math.max(1e-3 * texel, 1e-6 * box.longest),
             u_clear: { int: kClearUnit }, u_cells_from: this.cells.from, u_cell: this.cells.side,
             u_steps: { int: Math.min(maps.reduce((sum, map) => sum + stepsAcross(map, box.longest / texel), 256), 60000) },
@@ -72,23 +70,9 @@ export class Body {
         gl.disable(gl.CULL_FACE);
     }
 
+    /** model: object space to world space. */
     place(model) {
         this.model = Float32Array.from(model);
-    }
-}
-
-/** A second instance of a body. */
-export class BodyPlace {
-    constructor(body) {
-        this.body = body;
-    }
-
-    place(model) {
-        this.model = Float32Array.from(model);
-    }
-
-    draw(values) {
-        this.body.draw(values, this.model);
     }
 }
 

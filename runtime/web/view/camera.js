@@ -44,12 +44,6 @@ export class Camera {
         this.changed();
     }
 
-    /** Like look(), but as the scene's camera: `taken` becomes false. */
-    follow(eye, target, fov) {
-        this.look(eye, target, fov);
-        this.taken = false;
-    }
-
     get eye() {
         const c = Math.cos(this.pitch);
         return add(this.target, scale([Math.sin(this.yaw) * c, Math.sin(this.pitch), Math.cos(this.yaw) * c],

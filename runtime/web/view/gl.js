@@ -28,12 +28,6 @@ export function program(gl, vertex, fragment, prefix = "") {
     const places = new Map();
     return {
         name: made,
-        at(name) {
-            if (!places.has(name)) {
-                places.set(name, gl.getUniformLocation(made, name));
-            }
-            return places.get(name);
-        },
         /**
          * Sets uniforms by their values: a number, 2 to 4 numbers, or a matrix of 16; { int } for integers and
          * samplers.
@@ -41,7 +35,10 @@ export function program(gl, vertex, fragment, prefix = "") {
         set(values) {
             gl.useProgram(made);
             for (const [key, value] of Object.entries(values)) {
-                const at = this.at(key);
+                if (!places.has(key)) {
+                    places.set(key, gl.getUniformLocation(made, key));
+                }
+                const at = places.get(key);
                 if (typeof value === "number") {
                     gl.uniform1f(at, value);
                 } else if (value.int !== undefined) {
@@ -79,9 +76,9 @@ export class Geometry {
         this.gl.bufferData(this.gl.ARRAY_BUFFER, positions, this.gl.DYNAMIC_DRAW);
     }
 
-    draw(mode = this.gl.TRIANGLES) {
+    draw() {
         this.gl.bindVertexArray(this.array);
-        this.gl.drawElements(mode, this.count, this.gl.UNSIGNED_INT, 0);
+        this.gl.drawElements(this.gl.TRIANGLES, this.count, this.gl.UNSIGNED_INT, 0);
         this.gl.bindVertexArray(null);
     }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of `relief view`: application state and render loop.
 import { Bodies } from "./bodies.js";
-import { Body, BodyPlace, LiveBody } from "./body.js";
+import { Body, LiveBody } from "./body.js";
 import { Camera, FlightKeys, followInput } from "./camera.js";
 import { Geometry } from "./gl.js";
 import { boxOf, transform } from "./math.js";
@@ -28,7 +28,6 @@ class App {
         this.look = { show: "surface", split: 0.5, map: -1, heat: 0, depth: 0, slice: null, floor: null, box: null };
         this.data = null; // result of readPageData()
         this.pin = null; // marked position
-        this.placed = false; // whether the bodies of a scene are placed
         this.followed = null; // the last camera of the scene
         this.camera = new Camera(() => this.changed());
         this.flight = new FlightKeys(this.camera);
@@ -85,13 +84,14 @@ class App {
             return;
         }
         const { gl, look } = this;
-        const { collider, mesh, scene } = this.data;
+        const { collider, mesh, scene, files, file } = this.data;
         if (scene) {
             await reliefParticles.init({ wasmBinary: await readWasm() });
         }
         this.view = new View(gl);
         this.particles = new Particles(gl);
-        this.body = this.view.body = new Body(gl, await this.#colliderOf(collider));
+        this.body = this.view.body =
+            new Body(gl, scene ? await reliefParticles.load(files[file]) : new PageCollider(collider));
         this.view.bodies = [this.body];
         look.box = this.body.box;
         if (mesh) {
@@ -108,11 +108,6 @@ class App {
         }
     }
 
-    #colliderOf(collider) {
-        const { scene, files, file } = this.data;
-        return scene ? reliefParticles.load(files[file]) : new PageCollider(collider);
-    }
-
     /** Starts the scene and places its bodies. The first body with the page's own collider is shown in the panel. */
     async #playScene() {
         const { data, gl, view } = this;
@@ -127,17 +122,16 @@ class App {
             } else {
                 const body = known.get(file) ?? new Body(gl, await reliefParticles.load(data.files[file]));
                 known.set(file, body);
-                placed.push(body === this.body && !placed.includes(body) ? body : new BodyPlace(body));
+                // Further instances have their own pose, and share everything else.
+                placed.push(body === this.body && !placed.includes(body) ? body : Object.create(body));
             }
             placed[i].place(matrix);
         }
         view.bodies = placed;
-        this.placed = true;
         this.bodies = new Bodies(gl, placed, bodies, data);
         this.look.color = (i) => this.bodies.color(i);
         this.flight.on = true;
         this.worldPanel = new WorldPanel(this);
-        this.worldPanel.refresh();
         this.ground = ground;
         this.look.box = boxOf(bounds);
         this.setFloor(true);
@@ -163,7 +157,8 @@ class App {
     #follow({ eye, target, fov }) {
         const now = `${eye} ${target} ${fov}`;
         if (!this.camera.taken && now !== this.followed) {
-            this.camera.follow(eye, target, fov * Math.PI / 180);
+            this.camera.look(eye, target, fov * Math.PI / 180);
+            this.camera.taken = false;
             this.followed = now;
         }
     }
@@ -240,7 +235,7 @@ class App {
         this.flight.advance(Math.min((now - this.lastFrame) / 1000, 0.1));
         this.particles.advance(Math.min((now - this.lastFrame) / 1000, 0.1));
         this.lastFrame = now;
-        if (this.placed && this.particles.steps !== this.movedAt) {
+        if (this.bodies && this.particles.steps !== this.movedAt) {
             this.movedAt = this.particles.steps; // the system stepped or restarted
             const { bodies, camera } = this.particles.system.info;
             this.#moveBodies(bodies);

@@ -55,7 +55,11 @@ export class Panel {
         when("slice-on", "onchange", () => this.#slice());
         when("slice-at", "oninput", () => this.#slice());
         when("heat", "onchange", () => this.#heat());
-        when("pause", "onclick", () => this.pause());
+        when("pause", "onclick", () => {
+            app.particles.paused = !app.particles.paused;
+            $("pause").textContent = app.particles.paused ? "Play" : "Pause";
+            app.changed(false);
+        });
         when("restart", "onclick", () => app.attempt(() => app.restart()));
     }
 
@@ -215,13 +219,6 @@ export class Panel {
     }
 
     // --- particles
-
-    pause() {
-        const { particles } = this.app;
-        particles.paused = !particles.paused;
-        $("pause").textContent = particles.paused ? "Play" : "Pause";
-        this.app.changed(false);
-    }
 
     /** Updates the particle count and the quality note. fraction: of the resolution per side. */
     tick(now, fraction) {

@@ -21,7 +21,6 @@ function quad(gl) {
 }
 
 export class View {
-    #kept = null;
     #fine = 1;
 
     constructor(gl) {
@@ -31,6 +30,7 @@ export class View {
         this.body = null; // the body in the panel
         this.mesh = null; // Geometry, in object space
         this.picture = null; // ParticleSystem.drawMeshes(), or null
+        this.kept = null; // picture of the bodies: a Target, up to twice the resolution of the canvas
         this.dirty = true;
         this.programs = {
             mesh: program(gl, kBodyVertex, kMeshFragment),
@@ -46,23 +46,23 @@ export class View {
     /** Draws everything except particles. look: App.look; still: nothing moves, so supersample if possible. */
     drawBodies(matrices, width, height, look, still) {
         const fine = still && !this.software && width * height <= 2.5e6 ? 2 : 1;
-        if (!this.dirty && fine <= this.#fine && this.#kept?.width === width * this.#fine &&
-            this.#kept.height === height * this.#fine) {
+        if (!this.dirty && fine <= this.#fine && this.kept?.width === width * this.#fine &&
+            this.kept.height === height * this.#fine) {
             return;
         }
         const { gl } = this;
-        if (!this.#kept || this.#kept.width !== width * fine || this.#kept.height !== height * fine) {
-            this.#kept?.dispose();
-            this.#kept = new Target(gl, width * fine, height * fine);
+        if (!this.kept || this.kept.width !== width * fine || this.kept.height !== height * fine) {
+            this.kept?.dispose();
+            this.kept = new Target(gl, width * fine, height * fine);
         }
         this.#fine = fine;
         this.dirty = false;
         if (look.show === "picture") {
             const { view, projection } = matrices;
-            this.picture({ view, projection, framebuffer: this.#kept.name, width: width * fine, height: height * fine });
+            this.picture({ view, projection, framebuffer: this.kept.name, width: width * fine, height: height * fine });
             return;
         }
-        this.#kept.bind();
+        this.kept.bind();
         const theme = kThemes[look.theme];
         gl.disable(gl.BLEND);
         gl.disable(gl.CULL_FACE);
@@ -148,11 +148,6 @@ export class View {
         gl.disable(gl.BLEND);
     }
 
-    /** The kept picture of the bodies: a Target, up to twice the resolution of the canvas. */
-    get kept() {
-        return this.#kept;
-    }
-
     /** Copies the kept picture and its depths to the canvas. */
     copyBodies(width, height) {
         const { gl } = this;
@@ -161,8 +156,8 @@ export class View {
         gl.disable(gl.BLEND);
         gl.enable(gl.DEPTH_TEST);
         gl.depthFunc(gl.ALWAYS);
-        bindTexture(gl, 0, this.#kept.color);
-        bindTexture(gl, 1, this.#kept.depth);
+        bindTexture(gl, 0, this.kept.color);
+        bindTexture(gl, 1, this.kept.depth);
         this.programs.copy.set({ u_color: { int: 0 }, u_depth: { int: 1 }, u_fine: { int: this.#fine } });
         drawScreen(gl);
         bindTexture(gl, 0, null);

@@ -1,23 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // The parts of the panel about bodies of a world: the picked body, and the errors of a check.
 import { bytesText, kWrongLegend } from "./bodies.js";
-import { shortNumber } from "./math.js";
+import { length, lengthText, shortNumber } from "./math.js";
 import { $, element } from "./panel.js";
 
 export class WorldPanel {
     constructor(app) {
         this.app = app;
         $("wrong-legend").style.background = kWrongLegend;
+        const { bodies, data } = app;
         $("wrong").onchange = () => {
-            app.bodies.tint($("wrong").checked);
+            bodies.tinted = $("wrong").checked;
             app.changed();
         };
         $("picked-close").onclick = () => this.pick(-1);
-    }
-
-    /** Fills the panel with the bodies of the scene. */
-    refresh() {
-        const { bodies, data } = this.app;
         $("fly-note").hidden = false;
         if (bodies.meshes.size > 0) {
             const files = [...new Set(bodies.info.map(({ file }) => file))];
@@ -49,7 +45,7 @@ export class WorldPanel {
     }
 
     #length(v) {
-        return `${shortNumber(v)}${this.app.data.check.unit ? ` ${this.app.data.check.unit}` : ""}`;
+        return lengthText(v, this.app.data.check.unit);
     }
 
     #goTo(place) {
@@ -62,7 +58,7 @@ export class WorldPanel {
         app.pin = place.position;
         const index = app.bodies.measured?.indexOf(app.bodies.nodes[place.body]) ?? -1;
         const body = app.bodies.placed[index];
-        const longest = body ? (body.body ?? body).box.longest * Math.hypot(...body.model.slice(0, 3)) : app.look.box.longest;
+        const longest = body ? body.box.longest * length(body.model) : app.look.box.longest;
         app.camera.lookAt(place.position, place.normal, 0.5 * longest);
         app.camera.pitch = Math.max(app.camera.pitch, 0.3); // do not look from below the ground
         this.pick(index);
@@ -71,7 +67,7 @@ export class WorldPanel {
     /** Picks a body and shows its facts; −1: none. */
     pick(i) {
         const { bodies } = this.app;
-        bodies.pick(i);
+        bodies.picked = i;
         $("picked").hidden = i < 0;
         if (i >= 0) {
             $("picked-name").textContent = bodies.name(i);
