@@ -130,17 +130,6 @@ Result<std::unique_ptr<GlContext>> makeContext(const PlayerOptions& options) {
     return context;
 }
 
-/// Returns a warning if most births were rejected.
-std::optional<std::string> rejectedWarning(const ParticleCounts& counts, std::uint32_t capacity) {
-    const std::uint64_t requested = counts.born + counts.rejected;
-    if (counts.rejected <= counts.born) {
-        return std::nullopt;
-    }
-    return std::to_string(counts.rejected) + " of " + std::to_string(requested) +
-           " births were rejected because the system was full; raise particles.capacity (now " +
-           std::to_string(capacity) + "), or lower emitter.rate, emitter.burst or emitter.lifetime";
-}
-
 }  // namespace
 
 Result<PlayerReport> play(const PlayerOptions& options) {
@@ -173,8 +162,13 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     RELIEF_TRY(Run(options, simulation, outputs, report).play());
     RELIEF_TRY(outputs.writeEnd(simulation.particles(), report));
     report.warnings = simulation.takeWarnings();
-    if (auto rejected = rejectedWarning(report.counts, report.scene.particles.capacity)) {
-        report.warnings.push_back(std::move(*rejected));
+    const ParticleCounts& counts = report.counts;
+    if (counts.rejected > counts.born) {
+        report.warnings.push_back(
+            std::to_string(counts.rejected) + " of " + std::to_string(counts.born + counts.rejected) +
+            " births were rejected because the system was full; raise particles.capacity (now " +
+            std::to_string(report.scene.particles.capacity) +
+            "), or lower emitter.rate, emitter.burst or emitter.lifetime");
     }
     guard.keepFolders();
     return report;

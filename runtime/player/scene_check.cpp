@@ -18,12 +18,6 @@ namespace fs = std::filesystem;
 /// Maximum number of files in checkText(); a world has thousands.
 constexpr std::size_t kFilesShown = 12;
 
-CheckedFile checkedFile(const fs::path& path, const char* kind) {
-    std::error_code error;  // the file was read before, but a pipe has no size
-    const std::uintmax_t bytes = fs::file_size(path, error);
-    return {path, kind, error ? 0 : static_cast<std::uint64_t>(bytes)};
-}
-
 }  // namespace
 
 Result<CheckReport> checkScene(const PlayerOptions& options) {
@@ -36,19 +30,24 @@ Result<CheckReport> checkScene(const PlayerOptions& options) {
     }
     RELIEF_TRY(checkPictures(loaded.scene, loaded.bounds));
     CheckReport report;
+    const auto add = [&](const fs::path& path, const char* kind) {
+        if (!path.empty()) {
+            std::error_code error;  // the file was read before, but a pipe has no size
+            const std::uintmax_t bytes = fs::file_size(path, error);
+            report.files.push_back({path, kind, error ? 0 : static_cast<std::uint64_t>(bytes)});
+        }
+    };
     const fs::path& world = loaded.scene.world;
     if (options.input != world && options.input != loaded.scene.colliders.front().path) {
-        report.files.push_back(checkedFile(options.input, "scene"));
+        add(options.input, "scene");
     }
-    if (!world.empty()) {
-        report.files.push_back(checkedFile(world, "world"));
-        report.world_bodies = loaded.world.bodies.size();
-    }
+    add(world, "world");
+    report.world_bodies = loaded.world.bodies.size();
     std::set<const Collider*> known;
     for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
         const SceneCollider& from = loaded.scene.colliders[i];
         if (known.insert(loaded.colliders[i].get()).second) {
-            report.files.push_back(checkedFile(from.path, from.live ? "mesh" : "collider"));
+            add(from.path, from.live ? "mesh" : "collider");
             report.collider_maps += loaded.colliders[i]->maps.size();
         }
     }
@@ -59,30 +58,22 @@ Result<CheckReport> checkScene(const PlayerOptions& options) {
             static_cast<void>(RELIEF_TRY(withPrefix(
                 loaded.scene.world_origin + ": world: " + quotedPath(world),
                 loadWorldCollider(loaded.world, i, WorldDetail::kFine, world.parent_path(), loaded.limits))));
-            report.files.push_back(checkedFile(containerOf(loaded.scene, *coarse), "collider"));
+            add(containerOf(loaded.scene, *coarse), "collider");
         }
     }
     if (loaded.scene.flow) {
-        report.files.push_back(checkedFile(loaded.scene.flow->path, "flow"));
+        add(loaded.scene.flow->path, "flow");
     }
     for (const SceneEmitter& emitter : loaded.scene.emitters) {
-        for (const auto& [path, kind] :
-             {std::pair(emitter.points_file, "points"), {emitter.mesh_file, "mesh"}}) {
-            if (!path.empty()) {
-                report.files.push_back(checkedFile(path, kind));
-            }
-        }
+        add(emitter.points_file, "points");
+        add(emitter.mesh_file, "mesh");
     }
-    for (const auto& [path, kind] :
-         {std::pair(loaded.scene.render.atlas, "atlas"), {loaded.scene.render.mesh, "mesh"}}) {
-        if (!path.empty()) {
-            report.files.push_back(checkedFile(path, kind));
-        }
-    }
-    if (!loaded.scene.render.meshes.empty()) {
+    add(render.atlas, "atlas");
+    add(render.mesh, "mesh");
+    if (!render.meshes.empty()) {
         RELIEF_TRY(loadDrawnMeshes(loaded));
         for (const fs::path& file : RELIEF_TRY(drawnFiles(loaded))) {
-            report.files.push_back(checkedFile(file, "mesh"));
+            add(file, "mesh");
         }
     }
     report.steps = loaded.scene.time.steps;

@@ -7,19 +7,6 @@
 #include "runtime/scene/scene_pictures.h"
 
 namespace relief {
-namespace {
-
-ColliderStyle colliderStyle(const Scene& scene) {
-    ColliderStyle style;
-    style.ground = scene.ground.enabled ? scene.ground.height : std::nullopt;
-    style.background = scene.render.background;
-    if (!scene.colliders.empty()) {
-        style.clay = scene.colliders.front().color.value_or(style.clay);
-    }
-    return style;
-}
-
-}  // namespace
 
 Result<void> ScenePicture::makeCollider(const ColliderView& view) {
     const Scene& scene = loaded_->scene;
@@ -32,7 +19,8 @@ Result<void> ScenePicture::makeCollider(const ColliderView& view) {
         mesh_ = RELIEF_TRY(loadColliderMesh(scene, loaded_->bounds));
     }
     collider_ = RELIEF_TRY(ColliderRenderer::create(view, mesh_.get()));
-    collider_style_ = colliderStyle(scene);
+    collider_style_ = {scene.ground.enabled ? scene.ground.height : std::nullopt, scene.render.background,
+                       scene.colliders.front().color.value_or(ColliderStyle().clay)};
     return {};
 }
 

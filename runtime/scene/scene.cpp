@@ -268,14 +268,6 @@ std::vector<ParticleType> particleTypes(const Scene& scene) {
     return types;
 }
 
-std::vector<ParticleLook> particleLooks(const Scene& scene) {
-    std::vector<ParticleLook> looks;
-    for (const SceneType& type : scene.types) {
-        looks.push_back(type.look);
-    }
-    return looks;
-}
-
 std::uint32_t prewarmSteps(const Scene& scene) {
     // Rounding must not add a step to a whole number of steps.
     return static_cast<std::uint32_t>(

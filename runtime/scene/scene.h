@@ -201,8 +201,6 @@ void fields(FieldVisitor& visit, Scene& scene);
 
 /// Returns the particle types of a scene; without [[type]], the single type of [collision].
 [[nodiscard]] std::vector<ParticleType> particleTypes(const Scene& scene);
-/// Returns the looks of the types.
-[[nodiscard]] std::vector<ParticleLook> particleLooks(const Scene& scene);
 
 /// Returns the number of steps before time 0.
 [[nodiscard]] std::uint32_t prewarmSteps(const Scene& scene);

@@ -16,33 +16,31 @@ namespace {
 
 constexpr std::uint64_t kAtlasBytesMax = std::uint64_t{256} << 20;
 
-tl::unexpected<Error> failAt(const std::string& origin, const char* key, const Error& error) {
-    return fail(error.code, origin + ": " + key + ": " + error.message);
+std::string atlasOrigin(const Scene& scene) {
+    return scene.render.atlas_origin + ": render.atlas";
+}
+
+std::string meshOrigin(const Scene& scene) {
+    return scene.render.mesh_origin + ": render.mesh";
 }
 
 Result<RgbaPicture> readAtlas(const Scene& scene) {
     const auto& render = scene.render;
-    const std::string origin = render.atlas_origin + ": render.atlas";
+    const std::string origin = atlasOrigin(scene);
     const auto bytes = RELIEF_TRY(withPrefix(origin, readFile(render.atlas, kAtlasBytesMax)));
     return withPrefix(origin, decodePng(bytes, quotedPath(render.atlas)));
 }
 
 Result<PictureMesh> readMesh(const Scene& scene, const Bounds& bounds) {
     const auto& render = scene.render;
-    auto mesh = RELIEF_TRY(withPrefix(render.mesh_origin + ": render.mesh", loadPictureMesh(render.mesh)));
+    auto mesh = RELIEF_TRY(withPrefix(meshOrigin(scene), loadPictureMesh(render.mesh)));
     Bounds box;
     for (const std::uint32_t v : mesh.triangles) {
         box.add(mesh.positions[v]);
     }
-    bool apart = false;
-    for (int i = 0; i < 3; ++i) {
-        apart = apart || box.min[i] > bounds.max[i] || box.max[i] < bounds.min[i];
-    }
-    if (apart) {
-        return failAt(render.mesh_origin, "render.mesh",
-                      {ErrorCode::kInvalidInput,
-                       quotedPath(render.mesh) +
-                           " does not overlap the collider; use the source mesh of the collider"});
+    if (!box.meets(bounds)) {
+        return invalidInput(meshOrigin(scene) + ": " + quotedPath(render.mesh) +
+                            " does not overlap the collider; use the source mesh of the collider");
     }
     return mesh;
 }
@@ -65,24 +63,21 @@ Result<std::unique_ptr<SpriteAtlas>> loadAtlas(const Scene& scene) {
         return nullptr;
     }
     const auto picture = RELIEF_TRY(readAtlas(scene));
-    auto atlas = SpriteAtlas::create(picture.rgba, picture.width, picture.height, render.atlas_columns,
-                                     render.atlas_rows);
-    if (!atlas) {
-        // The picture does not match the scene: an error of the file, not of the caller.
-        const ErrorCode code =
-            atlas.error().code == ErrorCode::kUsage ? ErrorCode::kInvalidInput : atlas.error().code;
-        return failAt(render.atlas_origin, "render.atlas", {code, atlas.error().message});
+    auto atlas =
+        withPrefix(atlasOrigin(scene), SpriteAtlas::create(picture.rgba, picture.width, picture.height,
+                                                           render.atlas_columns, render.atlas_rows));
+    if (!atlas && atlas.error().code == ErrorCode::kUsage) {
+        atlas.error().code = ErrorCode::kInvalidInput;  // the picture does not match the scene
     }
-    return std::make_unique<SpriteAtlas>(std::move(*atlas));
+    return std::make_unique<SpriteAtlas>(RELIEF_TRY(std::move(atlas)));
 }
 
 Result<std::unique_ptr<ColliderMesh>> loadColliderMesh(const Scene& scene, const Bounds& bounds) {
-    const auto& render = scene.render;
-    if (render.mesh.empty()) {
+    if (scene.render.mesh.empty()) {
         return nullptr;
     }
     const auto mesh = RELIEF_TRY(readMesh(scene, bounds));
-    auto drawn = RELIEF_TRY(withPrefix(render.mesh_origin + ": render.mesh", ColliderMesh::create(mesh)));
+    auto drawn = RELIEF_TRY(withPrefix(meshOrigin(scene), ColliderMesh::create(mesh)));
     return std::make_unique<ColliderMesh>(std::move(drawn));
 }
 
@@ -97,15 +92,16 @@ ColliderView colliderView(const LoadedScene& loaded, const WorldTextures& textur
 
 ParticleStyle particleStyle(const Scene& scene, const SpriteAtlas* atlas) {
     const auto& render = scene.render;
-    ParticleStyle style;
-    style.diameter = *render.point_size;
-    style.color = render.color;
-    style.opacity = render.opacity;
-    style.looks = particleLooks(scene);
-    style.sprite = render.sprite;
-    style.blend = render.blend;
-    style.soft_distance = render.soft_distance;
-    style.atlas = atlas;
+    ParticleStyle style{.diameter = *render.point_size,
+                        .color = render.color,
+                        .opacity = render.opacity,
+                        .sprite = render.sprite,
+                        .blend = render.blend,
+                        .soft_distance = render.soft_distance,
+                        .atlas = atlas};
+    for (const SceneType& type : scene.types) {
+        style.looks.push_back(type.look);
+    }
     return style;
 }
 
@@ -120,9 +116,7 @@ Camera sceneCamera(const Scene& scene, const Bounds& bounds, double seconds) {
     const auto& given = scene.camera;
     Camera camera;
     if (given.keys.empty()) {
-        camera.eye = *given.eye;
-        camera.target = *given.target;
-        camera.fov = given.fov;
+        camera = {*given.eye, *given.target, given.fov};
     } else {
         std::vector<CameraKey> keys;
         for (const SceneCameraKey& key : given.keys) {
