@@ -72,9 +72,8 @@ struct CameraMatrices {
     const glm::vec3 up = glm::cross(back, right);
     const float reach = 0.9F * std::tan(0.5F * glm::radians(fov));
     float distance = 0.0F;
-    for (int i = 0; i < 8; ++i) {
-        const glm::bvec3 high((i & 1) != 0, (i & 2) != 0, (i & 4) != 0);
-        const glm::vec3 corner = glm::mix(bounds.min, bounds.max, high) - target;
+    for (unsigned i = 0; i < 8; ++i) {
+        const glm::vec3 corner = bounds.corner(i) - target;
         const float across =
             std::fmax(std::abs(glm::dot(corner, right)) / aspect, std::abs(glm::dot(corner, up)));
         distance = std::fmax(distance, glm::dot(corner, back) + across / reach);

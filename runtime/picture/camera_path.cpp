@@ -45,9 +45,7 @@ Camera cameraAt(std::span<const CameraKey> keys, double time) {
     Camera camera;
     if (i + 1 == keys.size() || time <= keys.front().time) {
         const CameraKey& still = i + 1 == keys.size() ? keys.back() : keys.front();
-        camera.eye = still.eye;
-        camera.target = still.target;
-        camera.fov = still.fov;
+        camera = {still.eye, still.target, still.fov};
     } else {
         const auto s = static_cast<float>((time - keys[i].time) / (keys[i + 1].time - keys[i].time));
         camera.eye = between<glm::vec3>(keys, i, s, [](const CameraKey& k) { return k.eye; });

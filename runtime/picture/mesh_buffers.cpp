@@ -30,7 +30,7 @@ std::vector<Vertex> verticesOf(const PictureMesh& mesh) {
 Result<MeshBuffers> MeshBuffers::create(const PictureMesh& mesh) {
     RELIEF_TRY(checkMesh(mesh));
     if (mesh.triangles.size() > static_cast<std::size_t>(std::numeric_limits<GLsizei>::max())) {
-        return fail(ErrorCode::kInvalidInput, "a mesh has too many triangles for one draw");
+        return invalidInput("a mesh has too many triangles for one draw");
     }
     const PictureMesh made = mesh.normals.empty() ? withNormals(mesh) : PictureMesh{};
     const PictureMesh& full = mesh.normals.empty() ? made : mesh;

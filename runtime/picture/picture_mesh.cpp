@@ -134,29 +134,25 @@ std::vector<glm::uvec3> trianglesOf(const PictureMesh& mesh) {
 
 Result<void> checkMesh(const PictureMesh& mesh) {
     if (mesh.triangles.empty() || mesh.triangles.size() % 3 != 0) {
-        return fail(ErrorCode::kInvalidInput,
-                    "the number of a mesh's indices must be a positive multiple of 3");
+        return invalidInput("the number of a mesh's indices must be a positive multiple of 3");
     }
     if (!mesh.normals.empty() && mesh.normals.size() != mesh.positions.size()) {
-        return fail(ErrorCode::kInvalidInput, "a mesh has " + std::to_string(mesh.positions.size()) +
-                                                  " vertices but " + std::to_string(mesh.normals.size()) +
-                                                  " normals");
+        return invalidInput("a mesh has " + std::to_string(mesh.positions.size()) + " vertices but " +
+                            std::to_string(mesh.normals.size()) + " normals");
     }
     if (!mesh.colors.empty() && mesh.colors.size() != mesh.positions.size()) {
-        return fail(ErrorCode::kInvalidInput, "a mesh has " + std::to_string(mesh.positions.size()) +
-                                                  " vertices but " + std::to_string(mesh.colors.size()) +
-                                                  " colours");
+        return invalidInput("a mesh has " + std::to_string(mesh.positions.size()) + " vertices but " +
+                            std::to_string(mesh.colors.size()) + " colours");
     }
     for (const std::uint32_t v : mesh.triangles) {
         if (v >= mesh.positions.size()) {
-            return fail(ErrorCode::kInvalidInput, "a triangle has vertex index " + std::to_string(v) +
-                                                      ", but there are " +
-                                                      std::to_string(mesh.positions.size()) + " vertices");
+            return invalidInput("a triangle has vertex index " + std::to_string(v) + ", but there are " +
+                                std::to_string(mesh.positions.size()) + " vertices");
         }
     }
     for (const glm::vec3& p : mesh.positions) {
         if (!isFinite(p)) {
-            return fail(ErrorCode::kInvalidInput, "a vertex of the mesh is not finite");
+            return invalidInput("a vertex of the mesh is not finite");
         }
     }
     return {};

@@ -163,8 +163,13 @@ Result<void> Simulation::stepAs(std::uint64_t tag, float dt) {
     RELIEF_TRY(takeEvents(kStepsUnderWay));
     RELIEF_TRY(emitBirths(dt));
     const PassState state(PassState::Scope::kSequence);
-    RELIEF_TRY(moveColliders(particles_->time() + static_cast<double>(dt)));
-    RELIEF_TRY(stream());
+    const double end = particles_->time() + static_cast<double>(dt);
+    RELIEF_TRY(playClips(end));
+    if (poses_change_) {
+        setPoses(end);
+    }
+    RELIEF_TRY(showLive(end));
+    RELIEF_TRY(stream_ && !stream_waits_ ? stream_->update(streamPointsNow()) : load());
     RELIEF_TRY(particles_->setSweep(sweep_.lengthFor(dt, *scene_, warnings_)));
     RELIEF_TRY(particles_->step(dt));
     if (eventList(*particles_) != nullptr) {
@@ -284,12 +289,10 @@ Result<void> Simulation::change(std::optional<std::vector<Emitter>> emitters) {
 void Simulation::updateSurfaces(double dt) {
     for (std::size_t i = 0; i < emitters_.size(); ++i) {
         const SceneEmitter& from = scene_->emitters[i];
-        if (!from.followsShape() || !emitters_[i].isDue(dt)) {
-            continue;
-        }
-        MeshTrail* const trail = trailOf(*from.attach);
+        MeshTrail* const trail =
+            from.followsShape() && emitters_[i].isDue(dt) ? trailOf(*from.attach) : nullptr;
         if (trail == nullptr) {
-            continue;  // rigid in its collider's space
+            continue;  // not due, or rigid in its collider's space
         }
         trail->bend(emitters_[i]);
         if (stream_) {
@@ -310,14 +313,6 @@ Result<void> Simulation::emitBirths(float dt) {
     return {};
 }
 
-Result<void> Simulation::moveColliders(double time) {
-    RELIEF_TRY(playClips(time));
-    if (poses_change_) {
-        setPoses(time);
-    }
-    return showLive(time);
-}
-
 std::vector<PointOfInterest> Simulation::streamPointsNow() const {
     const double time = particles_->time();
     std::vector<PointOfInterest> points =
@@ -332,10 +327,6 @@ std::vector<PointOfInterest> Simulation::streamPointsNow() const {
 
 Result<void> Simulation::load() {
     return stream_ ? stream_->finish(streamPointsNow()) : Result<void>();
-}
-
-Result<void> Simulation::stream() {
-    return stream_ && !stream_waits_ ? stream_->update(streamPointsNow()) : load();
 }
 
 Result<void> Simulation::makeLive(const LoadedScene& loaded) {
@@ -401,11 +392,7 @@ Result<void> Simulation::playClips(double time) {
 
 void Simulation::setPoses(double time) {
     const auto upload = [&](const std::vector<Pose>& poses) {
-        if (stream_) {
-            stream_->setPoses(poses);
-        } else {
-            textures_->setPoses(poses);
-        }
+        stream_ ? stream_->setPoses(poses) : textures_->setPoses(poses);
     };
     std::vector<Pose> poses = posesNow(time);
     const bool jumps =

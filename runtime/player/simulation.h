@@ -143,7 +143,6 @@ class Simulation {
     [[nodiscard]] std::vector<Pose> posesNow(double time) const;
     /// Returns the points of interest of a streamed world for the next step.
     [[nodiscard]] std::vector<PointOfInterest> streamPointsNow() const;
-    [[nodiscard]] Result<void> stream();
     [[nodiscard]] Result<void> makeLive(const LoadedScene& loaded);
     /// Deforms all live colliders to their shapes at a time, in seconds, and draws their maps. Called before each step,
     /// with the time of its end.
@@ -154,7 +153,6 @@ class Simulation {
     [[nodiscard]] Result<void> prewarm(Watchdog* watchdog, const std::function<void()>& checkpoint);
     /// \param tag  of the events; 0: do not pass them on.
     [[nodiscard]] Result<void> stepAs(std::uint64_t tag, float dt);
-    [[nodiscard]] Result<void> moveColliders(double time);
     /// Records the events that [[spawn]] and the sink need, if any.
     [[nodiscard]] Result<void> setEvents();
     /// Returns one list for each [[spawn]], limited to the number of events that the [[spawn]] can use. Returns an

@@ -172,11 +172,6 @@ Result<void> checkOverlap(const LoadedScene& loaded) {
     for (const auto& collider : loaded.colliders) {
         boxes.push_back(insideBox(*collider));
     }
-    const auto contains = [&](std::size_t body, const glm::vec3& p) {
-        const std::optional<Bounds>& box = boxes[body];
-        const glm::vec3 q = toObject(loaded.scene.colliders[body].pose, p);
-        return !box || box->contains(q);
-    };
     constexpr std::size_t kTried = 64;
     for (std::size_t i = 0; i < kTried; ++i) {
         const std::size_t tried = (i * count / kTried + i) % count;  // odd and even indices
@@ -184,7 +179,8 @@ Result<void> checkOverlap(const LoadedScene& loaded) {
             toWorld(loaded.scene.colliders[tried].pose, loaded.colliders[tried]->bounds.center());
         std::size_t overlapping = 0;
         for (std::size_t body = 0; body < count; ++body) {
-            overlapping += contains(body, center) ? 1 : 0;
+            const glm::vec3 q = toObject(loaded.scene.colliders[body].pose, center);
+            overlapping += !boxes[body] || boxes[body]->contains(q) ? 1 : 0;
         }
         if (overlapping > kOverlapMax) {
             return fail(ErrorCode::kLimit, std::to_string(overlapping) + " bodies overlap at " +
@@ -197,8 +193,7 @@ Result<void> checkOverlap(const LoadedScene& loaded) {
 }
 
 Result<LoadedScene> loadAll(const fs::path& input, const SceneOverrides& overrides) {
-    auto scene = RELIEF_TRY(openScene(input, overrides.root));
-    return loadAll(std::move(scene), input, overrides);
+    return loadAll(RELIEF_TRY(openScene(input, overrides.root)), input, overrides);
 }
 
 Result<LoadedScene> loadAll(Scene scene, const fs::path& input, const SceneOverrides& overrides) {
@@ -255,9 +250,8 @@ Result<LoadedScene> loadAll(Scene scene, const fs::path& input, const SceneOverr
         const bool posed = from.posed || scene.colliders.size() > 1;
         const Bounds bounds = posed ? worldBounds(from, collider.bounds) : collider.bounds;
         if (!from.origin.empty() && withinLengths(collider.bounds) && !withinLengths(bounds)) {
-            return fail(ErrorCode::kInvalidInput,
-                        from.origin + ": its position and scale move the collider beyond " +
-                            numberText(kLengthMax) + "; place it nearer, or scale it less");
+            return invalidInput(from.origin + ": its position and scale move the collider beyond " +
+                                numberText(kLengthMax) + "; place it nearer, or scale it less");
         }
         if (loaded.colliders.empty()) {
             loaded.bounds = bounds;

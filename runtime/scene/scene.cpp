@@ -241,14 +241,10 @@ std::optional<FieldFault> check(Scene& scene, const GivenFields& given) {
                                   "; raise the capacity"};
         }
     }
-    if (auto fault = checkAirOf(scene, given)) {
-        return fault;
-    }
-    if (auto fault = checkFrames(scene)) {
-        return fault;
-    }
-    if (auto fault = checkMesh(scene)) {
-        return fault;
+    for (const auto& fault : {checkAirOf(scene, given), checkFrames(scene), checkMesh(scene)}) {
+        if (fault) {
+            return fault;
+        }
     }
     return completeTypes(scene, given);
 }
@@ -299,9 +295,8 @@ Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
     for (int i = 0; i < 3; ++i) {
         if (!(bounds.min[i] >= -kLengthMax && bounds.min[i] <= bounds.max[i] &&
               bounds.max[i] <= kLengthMax)) {
-            return fail(ErrorCode::kInvalidInput, "the collider's bounds are empty, or reach beyond " +
-                                                      numberText(kLengthMax) +
-                                                      "; scale the mesh and bake it again");
+            return invalidInput("the collider's bounds are empty, or reach beyond " + numberText(kLengthMax) +
+                                "; scale the mesh and bake it again");
         }
     }
     // If the collider has no extent, the scene still has a size that floats can resolve at its position.
@@ -315,11 +310,10 @@ Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
         // Without a world, the reader has already checked this.
         const std::uint32_t absent = type.collides_with & ~(bodiesOf(scene) | kCollidesWithGround);
         if (!scene.world.empty() && type.collides_with != kCollidesWithAll && absent != 0) {
-            return fail(
-                ErrorCode::kInvalidInput,
+            return invalidInput(
                 nth("type", i, ".collides_with") +
-                    " names a body that does not exist; the number of bodies, including the world's, is " +
-                    std::to_string(numbered(scene)) + "; the first is 0");
+                " names a body that does not exist; the number of bodies, including the world's, is " +
+                std::to_string(numbered(scene)) + "; the first is 0");
         }
         type.collides_with &= bodiesOf(scene);
     }
@@ -348,7 +342,7 @@ Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
     const char* const problem =
         scene.camera.eye ? cameraFault(*scene.camera.eye, *scene.camera.target) : nullptr;
     if (problem != nullptr) {
-        return fail(ErrorCode::kInvalidInput, std::string("camera.eye ") + problem);
+        return invalidInput(std::string("camera.eye ") + problem);
     }
     if (!scene.render.point_size) {
         scene.render.point_size = 0.0065F * scale;

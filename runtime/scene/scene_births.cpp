@@ -128,9 +128,8 @@ Result<std::vector<Emitter>> makeEmitters(std::span<const SceneEmitter> emitters
             const std::string key = emitter.points_origin + ": emitter.points";
             settings.points = RELIEF_TRY(withPrefix(key, loadPointList(emitter.points_file)));
             if (emitter.aim && !emitter.aim->direction && settings.points.normals.empty()) {
-                return fail(ErrorCode::kInvalidInput,
-                            key + ": " + quotedPath(emitter.points_file) +
-                                " has no normals; set emitter.direction, or add nx, ny and nz");
+                return invalidInput(key + ": " + quotedPath(emitter.points_file) +
+                                    " has no normals; set emitter.direction, or add nx, ny and nz");
             }
         }
         if (emitter.shape == EmitterShape::kSurface) {

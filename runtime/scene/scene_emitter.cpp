@@ -38,8 +38,7 @@ Result<void> distributeRates(std::span<SceneEmitter> emitters, double run, std::
         emitter.rate = seconds > 0.0 ? std::min(share / seconds, kRateMax) : 0.0;
         emitter.has_rate = true;
         if (seconds > 0.0 && emitter.rate == 0.0 && emitter.burst == 0) {
-            return fail(
-                ErrorCode::kInvalidInput,
+            return invalidInput(
                 "other emitters use up the capacity, so an emitter without a rate would emit nothing; "
                 "set its emitter.rate, or raise particles.capacity");
         }

@@ -39,8 +39,7 @@ Result<LiveMesh> loadLiveMesh(const SceneCollider& from) {
         box.add(p);
     }
     if (!(box.longestSide() > 0.0F)) {
-        return fail(ErrorCode::kInvalidInput,
-                    place + ": " + quotedPath(from.path) + " has no extent; use another mesh");
+        return invalidInput(place + ": " + quotedPath(from.path) + " has no extent; use another mesh");
     }
     const SceneLive& live = *from.live;
     out.wobble = {live.amplitude, live.frequency, glm::radians(live.phase),
@@ -49,7 +48,7 @@ Result<LiveMesh> loadLiveMesh(const SceneCollider& from) {
     box.max += std::abs(live.amplitude);
     auto frames = liveMaps(box, from.resolution);
     if (!frames) {
-        return fail(ErrorCode::kInvalidInput, place + ": " + frames.error().message);
+        return invalidInput(place + ": " + frames.error().message);
     }
     out.frames = std::move(*frames);
     return out;

@@ -16,14 +16,6 @@ namespace {
 /// Bodies of each node, in the order of the world.
 using BodiesOfNodes = std::map<std::string_view, std::vector<std::size_t>>;
 
-BodiesOfNodes bodiesOfNodes(const World& world) {
-    BodiesOfNodes nodes;
-    for (std::size_t i = 0; i < world.bodies.size(); ++i) {
-        nodes[world.bodies[i].node].push_back(i);
-    }
-    return nodes;
-}
-
 /// \return the numbers of the bodies, at least one, all with the same pose.
 Result<std::vector<std::size_t>> bodiesNamed(const Scene& scene, const World& world,
                                              const BodiesOfNodes& nodes, std::size_t collider) {
@@ -66,7 +58,10 @@ std::filesystem::path containerOf(const Scene& scene, const WorldFile& file) {
 }
 
 Result<void> placeBodies(Scene& scene, const World& world) {
-    const BodiesOfNodes nodes = bodiesOfNodes(world);
+    BodiesOfNodes nodes;
+    for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+        nodes[world.bodies[i].node].push_back(i);
+    }
     std::vector<bool> placed(world.bodies.size());
     std::vector<std::pair<std::size_t, std::size_t>> tiles;  // collider that names the node, and body
     for (std::size_t i = 0; i < scene.colliders.size(); ++i) {

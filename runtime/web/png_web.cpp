@@ -32,15 +32,14 @@ Result<RgbaPicture> decodePng(std::span<const std::byte> bytes, std::string_view
     int height = 0;
     int channels = 0;
     if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) {
-        return fail(ErrorCode::kInvalidInput,
-                    std::string(name) + " cannot be read as PNG: not a PNG, damaged, or larger than " +
-                        std::to_string(kPngReadSideMax) + " pixels per side");
+        return invalidInput(std::string(name) +
+                            " cannot be read as PNG: not a PNG, damaged, or larger than " +
+                            std::to_string(kPngReadSideMax) + " pixels per side");
     }
     const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
         stbi_load_from_memory(data, size, &width, &height, &channels, STBI_rgb_alpha), stbi_image_free);
     if (pixels == nullptr) {
-        return fail(ErrorCode::kInvalidInput,
-                    std::string(name) + " cannot be read as PNG: damaged or truncated");
+        return invalidInput(std::string(name) + " cannot be read as PNG: damaged or truncated");
     }
     RgbaPicture picture{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
     picture.rgba.assign(pixels.get(), pixels.get() + std::size_t{4} * picture.width * picture.height);
