@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>
-#include <string>
 
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"

@@ -5,7 +5,6 @@
 #include <array>
 #include <glm/glm.hpp>
 #include <optional>
-#include <string>
 
 #include "runtime/gl/compute_units.h"
 #include "runtime/gl/gl_capabilities.h"

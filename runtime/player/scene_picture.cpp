@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/player/scene_picture.h"
 
-#include <utility>
-
 #include "runtime/gl/gl_fault.h"
 #include "runtime/scene/scene_pictures.h"
 

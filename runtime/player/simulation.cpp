@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/player/simulation.h"
 #include "runtime/air/particle_air.h"
-#include "runtime/births/emitter_motion.h"
-#include "runtime/events/event_recorder.h"
 
 #include <algorithm>
 #include <limits>
-#include <memory>
-#include <span>
 #include <string>
-#include <utility>
 
 #include "formats/base/file_io.h"
-#include "formats/base/result.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/pass_state.h"
 #include "runtime/scene/scene_stream.h"

@@ -5,12 +5,9 @@
 #include <glm/vector_relational.hpp>
 #include <limits>
 #include <map>
-#include <memory>
-#include <string>
 
 #include "formats/animation/mesh_parts.h"
 #include "formats/base/file_io.h"
-#include "formats/base/result.h"
 #include "formats/base/text.h"
 #include "formats/config/toml_reader.h"
 #include "formats/container.h"

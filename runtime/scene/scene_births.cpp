@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/scene/scene_births.h"
-#include "runtime/births/emitter_surface.h"
 #include "runtime/births/point_list.h"
 
 #include <map>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "formats/animation/mesh_parts.h"
 #include "formats/base/file_io.h"

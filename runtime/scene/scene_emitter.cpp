@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/scene/scene_emitter.h"
-#include "runtime/births/emitter_motion.h"
 
 #include <algorithm>
 #include <cmath>
-
-#include "formats/base/result.h"
 
 namespace relief {
 namespace {

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "formats/base/file_io.h"
-#include "formats/base/result.h"
 #include "formats/base/text.h"
 #include "runtime/files/mesh_file.h"
 #include "runtime/live/animated_collider.h"

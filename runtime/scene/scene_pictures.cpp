@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "formats/base/file_io.h"
-#include "formats/base/result.h"
 #include "runtime/files/mesh_file.h"
 #include "runtime/files/png.h"
 #include "runtime/picture/camera_path.h"

@@ -6,9 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <map>
 #include <set>
-#include <span>
 #include <tuple>
 #include <utility>
 

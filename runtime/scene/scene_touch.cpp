@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/scene/scene_touch.h"
-#include "runtime/births/emitter_motion.h"
 
 #include <algorithm>
 #include <cmath>
