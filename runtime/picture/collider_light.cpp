@@ -142,19 +142,15 @@ Result<void> ColliderLight::update() {
         RELIEF_TRY(createTextures());
     }
     collider_.textures->bind(kColliderBinding);
-    drawSun();
+    drawInBands(coarse_program_, coarse_target_.name(), kSunSide / kCoarseStride, kSunSide / kCoarseStride);
+    useTexture(kInputUnit, coarse_);
+    drawInBands(sun_program_, sun_target_.name(), kSunSide, kSunSide);
     drawVolume(occupied_);
     useTexture3D(kInputUnit, occupied_.texture);
     drawVolume(sky_);
     revision_ = revision;
     ++updates_;
     return {};
-}
-
-void ColliderLight::drawSun() {
-    drawInBands(coarse_program_, coarse_target_.name(), kSunSide / kCoarseStride, kSunSide / kCoarseStride);
-    useTexture(kInputUnit, coarse_);
-    drawInBands(sun_program_, sun_target_.name(), kSunSide, kSunSide);
 }
 
 void ColliderLight::drawVolume(const Volume& volume) const {

@@ -64,7 +64,6 @@ class ColliderLight {
     void frameVolumes();
     [[nodiscard]] Result<void> createPrograms();
     [[nodiscard]] Result<void> createTextures();
-    void drawSun();
     void drawVolume(const Volume& volume) const;
 
     ColliderView collider_;

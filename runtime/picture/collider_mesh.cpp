@@ -21,10 +21,6 @@ Result<ColliderMesh> ColliderMesh::create(const PictureMesh& mesh) {
     return out;
 }
 
-void ColliderMesh::setVertices(const GlBuffer& buffer) {
-    buffers_.setVertices(buffer);
-}
-
 Result<ColliderMesh::View> ColliderMesh::view(const Camera& camera, GLsizei width, GLsizei height) const {
     const PassState state;
     RELIEF_TRY(checkTextureSize(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height),

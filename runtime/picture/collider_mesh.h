@@ -18,7 +18,7 @@ class ColliderMesh {
     [[nodiscard]] static Result<ColliderMesh> create(const PictureMesh& mesh);
 
     /// Calls MeshBuffers::setVertices().
-    void setVertices(const GlBuffer& buffer);
+    void setVertices(const GlBuffer& buffer) { buffers_.setVertices(buffer); }
 
     /// Normals and depths per pixel.
     struct View {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/picture/collider_renderer.h"
 
-#include <array>
 #include <string>
 
 #include "runtime/gl/gl_fault.h"
@@ -122,8 +121,7 @@ Result<void> ColliderRenderer::traceCoarse(GLsizei width, GLsizei height, GlText
     clearGlErrors();
     coarse = makeTexture2D(GL_R32F, coarse_width, coarse_height, GL_RED, GL_FLOAT);
     RELIEF_TRY(checkAllocated("the collider's coarse picture", kSmallerPicture));
-    const std::array<GLuint, 1> colors{coarse.name()};
-    const auto target = RELIEF_TRY(makeFramebuffer(colors));
+    const auto target = RELIEF_TRY(makeFramebuffer({coarse.name()}));
     drawInBands(coarse_program_, target.name(), coarse_width, coarse_height);
     return {};
 }

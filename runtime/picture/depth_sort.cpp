@@ -93,7 +93,6 @@ class RadixSort {
     };
 
     RadixSort() = default;
-    [[nodiscard]] Result<void> createPrograms(std::uint32_t width);
     static void dispatch(const GlProgram& program, const Partition& partition, std::uint32_t digit,
                          std::uint32_t groups);
 
@@ -128,22 +127,17 @@ Result<RadixSort> RadixSort::create(std::uint32_t capacity, std::uint32_t width)
     sort.counts_ = StorageUnits::make(GLsizeiptr{kDigits} * blocks * GLsizeiptr{sizeof(std::uint32_t)});
     sort.totals_ = StorageUnits::make(GLsizeiptr{kDigits} * GLsizeiptr{sizeof(std::uint32_t)});
     RELIEF_TRY(allocated());
-    RELIEF_TRY(sort.createPrograms(width));
-    return sort;
-}
-
-Result<void> RadixSort::createPrograms(std::uint32_t width) {
     const std::string last = "#define RELIEF_RADIX_LAST\n#define RELIEF_ORDER_WIDTH " +
                              std::to_string(width) + "\n#define RELIEF_RADIX_FORMAT " +
                              (isGles() ? "rgba32ui" : "rg32ui") + "\n";
-    keys_ = RELIEF_TRY(makeComputeProgram("picture/radix_count.comp", "#define RELIEF_RADIX_FIRST\n"));
-    count_ = RELIEF_TRY(makeComputeProgram("picture/radix_count.comp"));
-    scan_ = RELIEF_TRY(makeComputeProgram("picture/radix_scan.comp"));
-    move_ = RELIEF_TRY(makeComputeProgram("picture/radix_move.comp"));
-    place_ = RELIEF_TRY(makeComputeProgram("picture/radix_move.comp", last));
-    keys_.use();
-    keys_.set("u_position", kPositionUnit);
-    return {};
+    sort.keys_ = RELIEF_TRY(makeComputeProgram("picture/radix_count.comp", "#define RELIEF_RADIX_FIRST\n"));
+    sort.count_ = RELIEF_TRY(makeComputeProgram("picture/radix_count.comp"));
+    sort.scan_ = RELIEF_TRY(makeComputeProgram("picture/radix_scan.comp"));
+    sort.move_ = RELIEF_TRY(makeComputeProgram("picture/radix_move.comp"));
+    sort.place_ = RELIEF_TRY(makeComputeProgram("picture/radix_move.comp", last));
+    sort.keys_.use();
+    sort.keys_.set("u_position", kPositionUnit);
+    return sort;
 }
 
 void RadixSort::dispatch(const GlProgram& program, const Partition& partition, std::uint32_t digit,
@@ -217,12 +211,11 @@ Result<DepthSorter> DepthSorter::create(std::uint32_t capacity, StepPath path) {
         // OpenGL ES 3.1 guarantees only half the work group size that the radix sort needs, and storage blocks of 128
         // MiB.
     }
-    RELIEF_TRY(sorter.createTextures());
-    RELIEF_TRY(sorter.createPrograms());
+    RELIEF_TRY(sorter.createFragmentPath());
     return sorter;
 }
 
-Result<void> DepthSorter::createTextures() {
+Result<void> DepthSorter::createFragmentPath() {
     const std::uint32_t rows = std::max(regionFor(capacity_) / kWidth, 1U);
     clearGlErrors();
     for (int i = 0; i < 2; ++i) {
@@ -232,10 +225,6 @@ Result<void> DepthSorter::createTextures() {
                                   "choose a smaller capacity"));
         target_[i] = RELIEF_TRY(makeFramebuffer({order_[i].name()}));
     }
-    return {};
-}
-
-Result<void> DepthSorter::createPrograms() {
     const std::string defines = "#define RELIEF_ORDER_WIDTH " + std::to_string(kWidth) + "\n";
     keys_ = RELIEF_TRY(makeScreenProgram("picture/sort_keys.frag", defines));
     pass_ = RELIEF_TRY(makeScreenProgram("picture/sort_pass.frag", defines));

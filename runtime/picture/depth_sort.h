@@ -74,8 +74,7 @@ class DepthSorter {
 
   private:
     explicit DepthSorter(std::uint32_t capacity);
-    [[nodiscard]] Result<void> createTextures();
-    [[nodiscard]] Result<void> createPrograms();
+    [[nodiscard]] Result<void> createFragmentPath();
     void merge(const GlTexture& positions, std::uint32_t width, std::uint32_t extent, const glm::vec3& eye,
                std::uint32_t passes);
     void drawPass();

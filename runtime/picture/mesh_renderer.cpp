@@ -119,10 +119,6 @@ Result<void> MeshRenderer::setPositions(std::size_t mesh, std::span<const glm::v
     return {};
 }
 
-void MeshRenderer::setVertices(std::size_t mesh, const GlBuffer& buffer) {
-    meshes_[mesh].buffers.setVertices(buffer);
-}
-
 Result<void> MeshRenderer::resize(GLsizei width, GLsizei height) {
     if (width == width_ && height == height_) {
         return {};

@@ -54,7 +54,7 @@ class MeshRenderer {
     /// kLimit (out of memory). On error, the mesh is unchanged.
     [[nodiscard]] Result<void> setPositions(std::size_t mesh, std::span<const glm::vec3> positions);
     /// Calls MeshBuffers::setVertices(). \param mesh  must have been created with normals.
-    void setVertices(std::size_t mesh, const GlBuffer& buffer);
+    void setVertices(std::size_t mesh, const GlBuffer& buffer) { meshes_[mesh].buffers.setVertices(buffer); }
 
     /// Overwrites the target's colour and depth. Footprints persist between calls.
     /// \param around  region of shadows, exposure to rain and snow, and footprints; finite and not empty.

@@ -124,12 +124,10 @@ void ParticleRenderer::setSamplers(const GlProgram& program) const {
 }
 
 Result<const GlProgram*> ParticleRenderer::programFor(const ParticleStyle& style) {
-    const bool quads = style.sprite == Sprite::kQuad;
-    const bool cells = style.atlas != nullptr;
-    const bool stretched = quads && anyStretched(style);
-    GlProgram& program = programs_[(quads ? 1U : 0U) + (cells ? 2U : 0U) + (stretched ? 4U : 0U)];
+    const std::string defines = definesOf(style);
+    GlProgram& program = programs_[defines];
     if (!program) {
-        program = RELIEF_TRY(makeProgram("picture/point.vert", "picture/point.frag", definesOf(style)));
+        program = RELIEF_TRY(makeProgram("picture/point.vert", "picture/point.frag", defines));
         setSamplers(program);
     }
     return &program;

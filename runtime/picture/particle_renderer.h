@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -110,8 +111,8 @@ class ParticleRenderer {
 
     std::optional<ColliderLight> light_;
     std::optional<TilePainter> tiles_;
-    bool needs_tiles_ = false;           // fail if TilePainter does not compile
-    std::array<GlProgram, 8> programs_;  // index bits: quads, atlas, stretched
+    bool needs_tiles_ = false;                   // fail if TilePainter does not compile
+    std::map<std::string, GlProgram> programs_;  // by definesOf()
     GlVertexArray no_attributes_;
     GlTexture no_order_;
     GlTexture nothing_;  // placeholder for unused textures
