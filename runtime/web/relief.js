@@ -8,16 +8,6 @@ import { ParticleSystem } from "./particle_system.js";
 import { init } from "./wasm.js";
 import { World, loadWorld, streamWorld } from "./world.js";
 
-// One name per line, as tests/web/types_test.mjs reads them.
-export { init };
-export { load };
-export { loadWorld };
-export { streamWorld };
-export { Collider };
-export { GpuCollider };
-export { ParticleSystem };
-export { ReliefError };
-export { World };
-
+export { init, load, loadWorld, streamWorld, Collider, GpuCollider, ParticleSystem, ReliefError, World };
 export const Relief = { init, load, loadWorld, streamWorld, Collider, GpuCollider, ParticleSystem, ReliefError, World };
 export default Relief;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bodies of a scene: picking, names, facts and errors.
-import { bindTexture, drawScreen, kScreenVertex, program } from "./gl.js";
+import { bindTexture, drawScreen, kScreenVertex, program, texture } from "./gl.js";
 import { clamp, inverse, length, mix, shortNumber, sub, transform } from "./math.js";
 
 // Colours for percentages of wrong points. Their limits, 1 and 5, match the grades of the verdict.
@@ -30,10 +30,7 @@ class DepthReader {
     constructor(gl) {
         this.gl = gl;
         this.program = program(gl, kScreenVertex, kDepthFragment);
-        this.pixel = gl.createTexture();
-        gl.bindTexture(gl.TEXTURE_2D, this.pixel);
-        gl.texStorage2D(gl.TEXTURE_2D, 1, gl.R32F, 1, 1);
-        gl.bindTexture(gl.TEXTURE_2D, null);
+        this.pixel = texture(gl, gl.R32F, 1, 1, gl.RED, gl.FLOAT);
         this.target = gl.createFramebuffer();
         gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
         gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, this.pixel, 0);

@@ -11,14 +11,6 @@ const kDeep = 0.014;
 const kClearUnit = 3; // texture unit after those of the collider
 const kBoxSides = [0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5];
 
-/**
- * Returns the maximum number of ray steps in a map: each row and column is crossed once. finest: texels along the
- * longest side.
- */
-function stepsAcross({ projection, width, height }, finest) {
-    return projection === "local" ? 6 * finest : 2 * (width + height);
-}
-
 export class Body {
     constructor(gl, collider) {
         Object.assign(this, { gl, collider, programs: {} });
@@ -55,11 +47,14 @@ export class Body {
     draw(values) {
         const { gl, box, drawn } = this;
         const { maps, finest_texel: texel } = this.collider.info;
+        // A ray crosses each row and column of a map once; patches have up to `longest / texel` of them.
+        const steps = maps.reduce((sum, { projection, width, height }) =>
+            sum + (projection === "local" ? 6 * (box.longest / texel) : 2 * (width + height)), 256);
         this.use("surface").set({
             ...values, u_model: this.model, u_box_min: drawn.min, u_box_max: drawn.max,
             u_deep: kDeep * box.longest, u_tiny: Math.max(1e-3 * texel, 1e-6 * box.longest),
             u_clear: { int: kClearUnit }, u_cells_from: this.cells.from, u_cell: this.cells.side,
-            u_steps: { int: Math.min(maps.reduce((sum, map) => sum + stepsAcross(map, box.longest / texel), 256), 60000) },
+            u_steps: { int: Math.min(steps, 60000) },
         });
         bindTexture(gl, kClearUnit, this.clear, gl.TEXTURE_3D);
         gl.enable(gl.CULL_FACE);

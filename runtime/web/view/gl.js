@@ -83,10 +83,10 @@ export class Geometry {
     }
 }
 
-function texture(gl, internal, width, height, format, type) {
+export function texture(gl, internal, width, height, format, type, data = null) {
     const made = gl.createTexture();
     gl.bindTexture(gl.TEXTURE_2D, made);
-    gl.texImage2D(gl.TEXTURE_2D, 0, internal, width, height, 0, format, type, null);
+    gl.texImage2D(gl.TEXTURE_2D, 0, internal, width, height, 0, format, type, data);
     for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) {
         gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
     }

@@ -163,16 +163,6 @@ class App {
         }
     }
 
-    /** Updates the poses of moving bodies. */
-    #moveBodies(bodies) {
-        bodies.forEach(({ moves, deforms, matrix }, i) => {
-            if (moves || deforms) {
-                this.view.bodies[i].place(matrix);
-                this.view.dirty = true;
-            }
-        });
-    }
-
     /** Restarts the scene, which controls the camera again. */
     restart() {
         this.particles.restart();
@@ -238,7 +228,12 @@ class App {
         if (this.bodies && this.particles.steps !== this.movedAt) {
             this.movedAt = this.particles.steps; // the system stepped or restarted
             const { bodies, camera } = this.particles.system.info;
-            this.#moveBodies(bodies);
+            bodies.forEach(({ moves, deforms, matrix }, i) => {
+                if (moves || deforms) {
+                    this.view.bodies[i].place(matrix);
+                    this.view.dirty = true;
+                }
+            });
             this.#follow(camera);
             this.view.dirty ||= this.look.show === "picture"; // the weather changed
         }

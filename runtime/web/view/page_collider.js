@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The collider of a page without a scene: its uniform block, textures and GLSL (runtime/layout/gpu_image.h), and facts.
 // Implements the members of relief-particles' Collider and GpuCollider that the page uses.
+import { bindTexture, texture } from "./gl.js";
 import { damaged, fromBase64 } from "./page_data.js";
 
 const kMapBytes = 144; // per map in the uniform block, after a header of 16 bytes
@@ -98,15 +99,8 @@ class PageTextures {
                 throw new Error(`this collider has a ${width} × ${height} texture; this browser allows sides up to ${most}: ` +
                                 "bake it with a smaller --budget");
             }
-            const texture = gl.createTexture();
-            gl.bindTexture(gl.TEXTURE_2D, texture);
-            gl.texStorage2D(gl.TEXTURE_2D, 1, gl[internal], ...(texels ? [width, height] : [1, 1]));
-            gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, ...(texels ? [width, height] : [1, 1]), gl[format], gl[type], texels ?? new Words(4));
-            for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) {
-                gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
-            }
-            gl.bindTexture(gl.TEXTURE_2D, null);
-            return texture;
+            const size = texels ? [width, height] : [1, 1];
+            return texture(gl, gl[internal], ...size, gl[format], gl[type], texels ?? new Words(4));
         });
         this.block = gl.createBuffer();
         gl.bindBuffer(gl.UNIFORM_BUFFER, this.block);
@@ -129,10 +123,7 @@ class PageTextures {
 
     bind(unit = 0) {
         const { gl } = this;
-        this.textures.forEach((texture, i) => {
-            gl.activeTexture(gl.TEXTURE0 + unit + i);
-            gl.bindTexture(gl.TEXTURE_2D, texture);
-        });
+        this.textures.forEach((one, i) => bindTexture(gl, unit + i, one));
         gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, this.block);
     }
 }

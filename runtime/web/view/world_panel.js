@@ -31,7 +31,7 @@ export class WorldPanel {
         $("wrong").disabled = !bodies.measured;
         $("wrong").checked = Boolean(bodies.measured);
         $("wrong").onchange();
-        const { places } = data.check.accuracy;
+        const { accuracy: { places }, unit } = data.check;
         $("bodies-title").textContent = places.length ? "Worst bodies" : "No body has wrong points";
         $("bodies").replaceChildren(...places.map((place) => element("li", {},
             element("button", { onclick: () => this.#goTo(place), "aria-expanded": false },
@@ -40,12 +40,8 @@ export class WorldPanel {
                     element("img", { alt: `A slice through (${place.position.map(shortNumber).join(", ")})`,
                                      src: `data:image/png;base64,${place.picture}` }),
                     element("p", { class: "hint" }, `At (${place.position.map(shortNumber).join(", ")}): ` +
-                            `error ${this.#length(place.distance)}${place.texel > 0 ? `, texel ${this.#length(place.texel)}` : ""}.`),
+                            `error ${lengthText(place.distance, unit)}${place.texel > 0 ? `, texel ${lengthText(place.texel, unit)}` : ""}.`),
                     ...(place.advice ? [element("p", { class: "hint" }, `${place.advice[0].toUpperCase()}${place.advice.slice(1)}.`)] : [])))));
-    }
-
-    #length(v) {
-        return lengthText(v, this.app.data.check.unit);
     }
 
     #goTo(place) {
