@@ -120,16 +120,6 @@ class Run {
     std::vector<double> stretches_;  // ms per step
 };
 
-Result<std::unique_ptr<GlContext>> makeContext(const PlayerOptions& options) {
-    auto context = watched(options.watchdog, "creating the GL context", [&] {
-        return GlContext::create({options.gpu.api, options.gpu.device});
-    });
-    if (context && options.watchdog != nullptr) {
-        options.watchdog->setLimit(options.gpu.limit((*context)->software()));
-    }
-    return context;
-}
-
 }  // namespace
 
 Result<PlayerReport> play(const PlayerOptions& options) {
@@ -137,7 +127,12 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     RELIEF_TRY(checkOutputs(options, guard));
     auto loaded = RELIEF_TRY(loadAll(options.input, options.overrides));
     RELIEF_TRY(checkFrames(options, loaded, guard));
-    const auto context = RELIEF_TRY(makeContext(options));
+    const auto context = RELIEF_TRY(watched(options.watchdog, "creating the GL context", [&] {
+        return GlContext::create({options.gpu.api, options.gpu.device});
+    }));
+    if (options.watchdog != nullptr) {
+        options.watchdog->setLimit(options.gpu.limit(context->software()));
+    }
     auto simulation =
         RELIEF_TRY(Simulation::create(loaded, {.path = options.path, .watchdog = options.watchdog}));
     if (options.events.empty() && loaded.scene.time.steps > 0) {  // the list of hits changes the program

@@ -9,6 +9,7 @@
 #include "formats/base/file_io.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/pass_state.h"
+#include "runtime/scene/scene_pictures.h"
 #include "runtime/scene/scene_stream.h"
 #include "runtime/scene/scene_touch.h"
 
@@ -314,7 +315,7 @@ std::vector<PointOfInterest> Simulation::streamPointsNow() const {
     if (points_) {
         points.insert(points.end(), points_->begin(), points_->end());
     } else {
-        points.push_back(cameraPoint(*loaded_, time));
+        points.push_back({sceneCamera(*scene_, loaded_->bounds, time).eye, scene_->stream->radius});
     }
     return points;
 }

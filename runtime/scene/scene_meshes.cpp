@@ -22,15 +22,6 @@ namespace fs = std::filesystem;
 
 constexpr std::array<std::uint8_t, 4> kFloorColor{148, 150, 146, 255};  // sRGB
 
-/// Returns the mesh name of each container of the world.
-std::map<fs::path, std::string> namesOfWorld(const LoadedScene& loaded) {
-    std::map<fs::path, std::string> names;
-    for (const WorldCollider& collider : loaded.world.colliders) {
-        names[containerOf(loaded.scene, collider)] = collider.mesh;
-    }
-    return names;
-}
-
 Result<fs::path> fileOf(const fs::path& folder, const std::string& mesh) {
     if (mesh.empty()) {
         return invalidInput("a mesh of the world has no name; name it in the level");
@@ -58,7 +49,10 @@ std::string originOf(const Scene& scene) {
 /// Returns the drawn file of each collider; empty if there is none.
 std::vector<Result<fs::path>> findFiles(const LoadedScene& loaded) {
     const Scene& scene = loaded.scene;
-    const std::map<fs::path, std::string> of_world = namesOfWorld(loaded);
+    std::map<fs::path, std::string> of_world;  // mesh name of each container
+    for (const WorldCollider& collider : loaded.world.colliders) {
+        of_world[containerOf(scene, collider)] = collider.mesh;
+    }
     std::vector<Result<fs::path>> files(scene.colliders.size());
     for (std::size_t i = 0; i < files.size(); ++i) {
         const SceneCollider& collider = scene.colliders[i];

@@ -3,8 +3,6 @@
 
 #include <glm/geometric.hpp>
 
-#include "runtime/scene/scene_pictures.h"
-
 namespace relief {
 namespace {
 
@@ -71,10 +69,6 @@ std::vector<PointOfInterest> emitterPoints(std::span<const PointOfInterest> ball
         points.push_back({middle.position, balls[i].radius + radius});
     }
     return points;
-}
-
-PointOfInterest cameraPoint(const LoadedScene& loaded, double seconds) {
-    return {sceneCamera(loaded.scene, loaded.bounds, seconds).eye, loaded.scene.stream->radius};
 }
 
 }  // namespace relief

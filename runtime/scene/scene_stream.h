@@ -31,7 +31,5 @@ namespace relief {
 [[nodiscard]] std::vector<PointOfInterest> emitterPoints(std::span<const PointOfInterest> balls,
                                                          std::span<const EmitterMotion> motions, float radius,
                                                          double seconds);
-/// Returns a ball around the camera, with the radius of the [stream].
-[[nodiscard]] PointOfInterest cameraPoint(const LoadedScene& loaded, double seconds);
 
 }  // namespace relief
