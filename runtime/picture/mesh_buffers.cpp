@@ -65,10 +65,6 @@ Result<MeshBuffers> MeshBuffers::create(const PictureMesh& mesh) {
     return out;
 }
 
-void MeshBuffers::setVertices(const GlBuffer& buffer) const {
-    copyBuffer(buffer, vertices_, 0, vertex_bytes_);
-}
-
 void MeshBuffers::setVertices(const PictureMesh& mesh) const {
     const std::vector<Vertex> vertices = verticesOf(mesh);
     glBindBuffer(GL_ARRAY_BUFFER, vertices_.name());

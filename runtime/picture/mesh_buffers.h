@@ -19,7 +19,7 @@ class MeshBuffers {
 
     /// Replaces all vertices with the vertices in a GPU buffer (wobble_pass.h): 24 bytes each, position and normal as
     /// floats. Requires that the mesh passed to create() has normals.
-    void setVertices(const GlBuffer& buffer) const;
+    void setVertices(const GlBuffer& buffer) const { copyBuffer(buffer, vertices_, 0, vertex_bytes_); }
 
     /// Replaces all vertices. \param mesh  with normals and the same number of vertices.
     void setVertices(const PictureMesh& mesh) const;

@@ -150,10 +150,6 @@ Result<void> Simulation::prewarm(Watchdog* watchdog, const std::function<void()>
     return steps > 0 ? checkAllocated(kWhat, "choose a smaller capacity") : Result<void>{};
 }
 
-Result<void> Simulation::step(float dt) {
-    return stepAs(++steps_, dt);
-}
-
 Result<void> Simulation::stepAs(std::uint64_t tag, float dt) {
     RELIEF_TRY(takeEvents(kStepsUnderWay));
     RELIEF_TRY(emitBirths(dt));
@@ -318,10 +314,6 @@ std::vector<PointOfInterest> Simulation::streamPointsNow() const {
         points.push_back({sceneCamera(*scene_, loaded_->bounds, time).eye, scene_->stream->radius});
     }
     return points;
-}
-
-Result<void> Simulation::load() {
-    return stream_ ? stream_->finish(streamPointsNow()) : Result<void>();
 }
 
 Result<void> Simulation::makeLive(const LoadedScene& loaded) {

@@ -52,7 +52,7 @@ class Simulation {
     /// Errors: those of LiveCollider::update and ParticleSystem::step.
     [[nodiscard]] Result<void> step() { return step(scene_->time.dt); }
     /// \param dt  seconds, > 0, instead of time.dt.
-    [[nodiscard]] Result<void> step(float dt);
+    [[nodiscard]] Result<void> step(float dt) { return stepAs(++steps_, dt); }
 
     /// Applies changed forces, collision, types, air, ground, spawns and poses of the scene passed to create(), and
     /// keeps all particles. Capacity, integrator and colliders must be unchanged, except poses. A collider moves from
@@ -95,7 +95,9 @@ class Simulation {
     /// Uploads the colliders of a streamed world that the points of interest need, without a byte limit. Waits for
     /// colliders that are not loaded yet, if the source can wait. Call it before a step.
     /// Errors: those of WorldStream::finish().
-    [[nodiscard]] Result<void> load();
+    [[nodiscard]] Result<void> load() {
+        return stream_ ? stream_->finish(streamPointsNow()) : Result<void>();
+    }
     /// Returns nullopt if no world is streamed.
     [[nodiscard]] std::optional<StreamCounts> streamCounts() const {
         return stream_ ? std::optional(stream_->counts()) : std::nullopt;

@@ -250,11 +250,8 @@ Result<LoadedScene> loadAll(Scene scene, const fs::path& input, const SceneOverr
             return invalidInput(from.origin + ": its position and scale move the collider beyond " +
                                 numberText(kLengthMax) + "; place it nearer, or scale it less");
         }
-        if (loaded.colliders.empty()) {
-            loaded.bounds = bounds;
-        }
-        loaded.bounds.min = glm::min(loaded.bounds.min, bounds.min);
-        loaded.bounds.max = glm::max(loaded.bounds.max, bounds.max);
+        loaded.bounds.add(bounds.min);
+        loaded.bounds.add(bounds.max);
         loaded.colliders.push_back(std::move(read));
     }
     RELIEF_TRY(checkMaterials(scene, loaded));

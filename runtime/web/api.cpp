@@ -40,11 +40,6 @@ std::string lineOf(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// \param matrices  view matrix, then projection matrix, column-major.
-CameraMatrices cameraOf(const float* matrices) {
-    return {glm::make_mat4(matrices), glm::make_mat4(matrices + 16)};
-}
-
 /// Writes numbers and vectors as floats, and moves `out` behind them.
 template <class... Values>
 void writeRow(float*& out, const Values&... values) {
@@ -272,9 +267,9 @@ EMSCRIPTEN_KEEPALIVE int relief_player_spawn(Player* player, const float* births
 EMSCRIPTEN_KEEPALIVE int relief_player_draw(Player* player, int meshes, const float* matrices,
                                             int framebuffer, int width, int height, int srgb) {
     const RenderTarget target{static_cast<GLuint>(framebuffer), width, height, srgb != 0};
-    return inPass(__func__, -1, [&] {
-        return (meshes != 0 ? drawPlayerMeshes : drawPlayer)(*player, cameraOf(matrices), target);
-    });
+    const CameraMatrices camera(glm::make_mat4(matrices), glm::make_mat4(matrices + 16));
+    return inPass(__func__, -1,
+                  [&] { return (meshes != 0 ? drawPlayerMeshes : drawPlayer)(*player, camera, target); });
 }
 
 /// Returns JSON.

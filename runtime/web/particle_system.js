@@ -77,8 +77,12 @@ export class ParticleSystem {
                 if (this.#fetches) {
                     const { radius, memory } = options.world.stream;
                     scene.stream = { radius, memory, ...scene.stream };
-                } else if (scene.stream) {
-                    this.#checkCoarse(options.world);
+                } else if (scene.stream) { // a world from loadWorld() lacks coarse containers
+                    const { colliders, files: given } = options.world;
+                    const missing = colliders.find(({ coarse }) => coarse && !(coarse.file in given));
+                    check(!missing,
+                          `the scene has 'stream', but its world lacks '${missing?.coarse.file}'; ` +
+                          "remove 'stream', or use streamWorld()");
                 }
             } else if (!scene.collider && !scene.world) {
                 throw new ReliefError("a ParticleSystem needs the option 'collider' or 'world', or a scene that names its colliders");
@@ -116,14 +120,6 @@ export class ParticleSystem {
         if (this.#onHits) {
             callChecked("relief_player_list_hits", this.#handle, this.#minHitSpeed);
         }
-    }
-
-    /** Throws if the world lacks coarse containers, as a world from loadWorld() does. */
-    #checkCoarse({ colliders, files }) {
-        const missing = colliders.find(({ coarse }) => coarse && !(coarse.file in files));
-        check(!missing,
-              `the scene has 'stream', but its world lacks '${missing?.coarse.file}'; ` +
-              "remove 'stream', or use streamWorld()");
     }
 
     get handle() {

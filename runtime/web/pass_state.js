@@ -51,14 +51,13 @@ export function withPassState(gl) {
             return buffer === null ? [null, 0, 0] : [buffer, query("START"), query("SIZE")];
         };
     }
-    const write = (piece, values) => writers[piece](values);
     const set = (piece, values) => {
         if (levels.length > 0) {
             const before = known[piece] ?? readers[piece]();
             levels.forEach(({ kept }) => (kept[piece] ??= before));
             known[piece] = values;
         }
-        write(piece, values);
+        writers[piece](values);
     };
     // Sets a value that a pass requires, unless the pass has already set that state.
     const need = (piece, values) => known[piece] ?? set(piece, values);
@@ -162,7 +161,7 @@ export function withPassState(gl) {
     own.restorePassState = () => {
         const { kept, undo } = levels.pop();
         // Restored before the bindings, because binding a uniform block also binds a buffer.
-        Object.entries(kept).forEach(([piece, values]) => write(piece, known[piece] = values));
+        Object.entries(kept).forEach(([piece, values]) => writers[piece](known[piece] = values));
         undo.forEach((put) => put());
     };
     return own;
