@@ -244,7 +244,7 @@ test("the page draws a scene from its meshes or its maps", { timeout: 300_000 },
     delete made.files["meshes/block.obj"];
     const broken = await open(withData(path.join(folder, "made.html"), made), { viewport: { width: 480, height: 300 } });
     await broken.page.waitForFunction("document.querySelector('#message p').textContent !== ''");
-    assert.match(await broken.page.locator("#message p").textContent(), /render\.meshes: .*has no 'block\.ply' or \.obj/);
+    assert.match(await broken.page.locator("#message p").textContent(), /render\.meshes: .*has no mesh 'block\.ply' or 'block\.obj'/);
     assert.equal(await broken.page.evaluate("reliefView.look.show"), "surface");
     writeFileSync(path.join(folder, "meshes/block.obj"), "v 0 0\n");
     assert.throws(() => run("relief-sim", path.join(folder, "scene.toml"), "-q", "--page", path.join(folder, "other.html")), /block\.obj/);
