@@ -172,15 +172,7 @@ bool EventList::request(const Step& step) {
         glClearBufferfv(GL_COLOR, 0, zero.data());
         return true;
     }
-    if (!request.buffer) {
-        request.buffer = makeBuffer();
-    }
-    glBindBuffer(GL_PIXEL_PACK_BUFFER, request.buffer.name());
-    if (request.room < request.floats) {  // collect() has read the previous lists, so their memory is free
-        request.room = request.floats;
-        glBufferData(GL_PIXEL_PACK_BUFFER, static_cast<GLsizeiptr>(request.room * sizeof(float)), nullptr,
-                     GL_STREAM_READ);
-    }
+    bindPackBuffer(request.buffer, static_cast<GLsizeiptr>(request.floats * sizeof(float)));
     count(step);
     makeLists(step, request, rows);
     read(rows);

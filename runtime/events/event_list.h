@@ -88,7 +88,6 @@ class EventList {
         double begin = 0.0;
         double end = 0.0;
         std::size_t floats = 0;  // 0: nothing to wait for
-        std::size_t room = 0;    // floats in the buffer
         std::array<std::uint32_t, kEventLists> first_row{};
         GlBuffer buffer;
         GlFence fence;

@@ -91,6 +91,13 @@ GlFramebuffer makeFramebuffer() {
 GlBuffer makeBuffer() {
     return GlBuffer(generate([](GLsizei n, GLuint* out) { glGenBuffers(n, out); }));
 }
+void bindPackBuffer(GlBuffer& buffer, GLsizeiptr bytes) {
+    if (!buffer) {
+        buffer = makeBuffer();
+    }
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, buffer.name());
+    glBufferData(GL_PIXEL_PACK_BUFFER, bytes, nullptr, GL_STREAM_READ);
+}
 GlVertexArray makeVertexArray() {
     return GlVertexArray(generate([](GLsizei n, GLuint* out) { glGenVertexArrays(n, out); }));
 }

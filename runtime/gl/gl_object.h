@@ -106,6 +106,8 @@ struct StartedProgram {
 
 [[nodiscard]] GlFramebuffer makeFramebuffer();
 [[nodiscard]] GlBuffer makeBuffer();
+/// Binds the buffer as GL_PIXEL_PACK_BUFFER, with new memory for one read-back; creates it if empty.
+void bindPackBuffer(GlBuffer& buffer, GLsizeiptr bytes);
 [[nodiscard]] GlVertexArray makeVertexArray();
 /// Returns a sampler with nearest filter, clamping and no comparison, to read a caller's texture unmodified.
 [[nodiscard]] GlSampler makeSampler();
