@@ -151,6 +151,9 @@ def test_checks_match_the_tool(bake, arguments, mesh, tmp_path):
         accuracy = relief.check(relief.load(tmp_path / "a.relief"), mesh, **arguments)
     assert accuracy.wrong_percent == pytest.approx(said["verdict"]["wrong_percent"], abs=1e-12)
     assert (accuracy.grade, accuracy.lost_parts) == (said["verdict"]["grade"], said["verdict"]["lost_parts"])
+    measured = (said["repaired"] or said)["accuracy"]
+    assert accuracy.distance_error_mean == pytest.approx(measured["distance_error"]["mean"])
+    assert accuracy.normal_error_mean == pytest.approx(measured["normal_error_degrees"]["mean"])
     ignored = said["verdict"]["ignored_parts"]
     assert accuracy.ignored_parts == ignored["lost"] + ignored["thickened"]
     assert (accuracy.proven_depth or 0) == pytest.approx(said["depth_proof"]["depth"] or 0, rel=1e-6)
