@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import relief
+from lift import lift
 
 BIN = pathlib.Path(os.environ["RELIEF_BIN"])
 
@@ -113,6 +114,28 @@ def test_height_maps_match_the_tool(mesh, tmp_path):
         relief.bake(mesh, heights=words + ",width=7")
     with pytest.raises(relief.UsageError, match="read from a file"):
         relief.bake(np.eye(3), np.array([[0, 1, 2]]), heights=words)
+
+
+def test_animated_bake_matches_the_tool_and_plays(tmp_path):
+    (tmp_path / "lift.gltf").write_text(lift({"rise": (0, 1, 0)}))
+    (tmp_path / "more.gltf").write_text(lift({"slide": (2, 0, 0)}))
+    done = tool("bake", tmp_path / "lift.gltf", "--animated", "--clips", tmp_path / "more.gltf", "-q", "-o", tmp_path / "tool.relief")
+    assert done.returncode == 0, done.stderr
+    baked = relief.bake(tmp_path / "lift.gltf", animated=True, clips=str(tmp_path / "more.gltf"))
+    assert baked.to_bytes() == (tmp_path / "tool.relief").read_bytes()
+    # A particle that falls onto the lift rises with it.
+    (tmp_path / "scene.toml").write_text("""
+time = { dt = 0.015625 }
+particles = { capacity = 2048 }
+forces = { gravity = [0, -2, 0], drag = 0 }
+ground = { enabled = false }
+collider = { file = "tool.relief", play = { clip = "rise", loop = false, resolution = 128 } }
+emitter = { box_min = [-0.8, 1.1, -0.8], box_max = [0.8, 1.6, 0.8], burst = 1000, rate = 0, lifetime = 50, velocity = [0, 0, 0], velocity_spread = [0, 0, 0] }
+""")
+    with relief.Simulation(tmp_path / "scene.toml") as simulation:
+        simulation.step(48)
+        assert (simulation.positions[:, 1] > 1 + simulation.time - 0.03).sum() == simulation.alive == 1000
+        assert (simulation.collisions > 0).sum() > 900
 
 
 def test_arrays_match_their_file(mesh):
