@@ -57,6 +57,15 @@ double deepestOf(const MeshQuery& query, const Collider& collider, int count) {
     return deepest;
 }
 
+/// Index of the first root that is inside and has no heights.
+std::uint32_t firstInside(PatchTexels texels) {
+    std::uint32_t leaf = 1;
+    while (patchTexel(texels, leaf).kind() != PatchRecord::Kind::kInside) {
+        ++leaf;
+    }
+    return leaf;
+}
+
 void expectErrorAt(const MeshQuery& query, const Collider& collider, const DepthProof& proof) {
     EXPECT_NE(evaluateInside(collider, proof.place).inside, query.inside(proof.place));
     EXPECT_NEAR(query.closest(proof.place).distance, proof.deepest, 1e-6);
@@ -100,12 +109,7 @@ TEST(DepthProof, FindsACellOfTheWrongSide) {
     // The first leaf without heights changes its side, in one bit.
     Collider damaged = sound;
     std::vector<std::byte>& texels = damaged.maps[0].texels;
-    const glm::uvec3 roots = patchTreeSize(texels).roots;
-    std::uint32_t leaf = 1;
-    while (patchTexel(texels, leaf).kind() != PatchRecord::Kind::kInside) {
-        ASSERT_LE(++leaf, roots.x * roots.y * roots.z);
-    }
-    texels[std::size_t{leaf} * kPatchTexelBytes] ^= std::byte{1};
+    texels[std::size_t{firstInside(texels)} * kPatchTexelBytes] ^= std::byte{1};
     ASSERT_TRUE(validateTexels(damaged.maps[0]));
     const DepthProof after = proveDepth(query, damaged, kFew);
     EXPECT_GT(after.deepest, before.depth);
@@ -151,7 +155,7 @@ TEST(DepthProof, HoldsForEveryFrameAndPair) {
     }
 }
 
-TEST(DepthProof, EndsEarlyWithALargerBound) {
+TEST(DepthProof, EndsEarlyWithALargerBoundAndOnAnyThreads) {
     const MeshQuery query = queryOf(makeIcosphere({0, 0, 0}, 1.0, 4));
     const Collider collider = bakedOf(query, 32'768);
     const DepthProof whole = proveDepth(query, collider, kFew);
@@ -159,16 +163,10 @@ TEST(DepthProof, EndsEarlyWithALargerBound) {
     EXPECT_LT(early.boxes, whole.boxes);
     EXPECT_GT(early.depth, whole.depth);
     EXPECT_LE(early.deepest, whole.deepest);
-}
-
-TEST(DepthProof, DoesNotDependOnThreads) {
-    const MeshQuery query = queryOf(makeIcosphere({0, 0, 0}, 1.0, 3));
-    const Collider collider = bakedOf(query, 16'384);
-    const DepthProof all = proveDepth(query, collider, kFew);
     const DepthProof one = onThreads(1, [&] { return proveDepth(query, collider, kFew); });
-    EXPECT_EQ(one.depth, all.depth);
-    EXPECT_EQ(one.deepest, all.deepest);
-    EXPECT_EQ(one.boxes, all.boxes);
+    EXPECT_EQ(one.depth, whole.depth);
+    EXPECT_EQ(one.deepest, whole.deepest);
+    EXPECT_EQ(one.boxes, whole.boxes);
 }
 
 TEST(DepthProof, RejectsDistancesThatOverflow) {
@@ -176,10 +174,7 @@ TEST(DepthProof, RejectsDistancesThatOverflow) {
     const MeshQuery query = queryOf(makeIcosphere({0, 0, 0}, 1.0, 3));
     Collider collider = bakedOf(query, 16'384);
     std::vector<std::byte>& texels = collider.maps[0].texels;
-    std::uint32_t leaf = 1;
-    while (patchTexel(texels, leaf).kind() != PatchRecord::Kind::kInside) {
-        ++leaf;
-    }
+    const std::uint32_t leaf = firstInside(texels);
     PatchRecord record = patchTexel(texels, leaf);
     record.high = std::bit_cast<std::uint32_t>(-std::numeric_limits<float>::max());
     std::memcpy(&texels[std::size_t{leaf} * kPatchTexelBytes], &record, kPatchTexelBytes);
@@ -187,19 +182,15 @@ TEST(DepthProof, RejectsDistancesThatOverflow) {
     EXPECT_EQ(proveDepth(query, collider).unproven, "the map has coordinates or distances out of range");
 }
 
-TEST(DepthProof, RejectsTreesThatAreTooLargeForMemory) {
+TEST(DepthProof, NamesWhatItCannotProve) {
+    const TriangleMesh ball = makeIcosphere({0, 0, 0}, 1.0, 3);
+    const MeshQuery query = queryOf(ball);
     // Ten bytes of a file may stand for millions of cells.
-    const MeshQuery query = queryOf(makeIcosphere({0, 0, 0}, 1.0, 3));
     const std::vector<PatchRecord> roots(std::size_t{100} * 100 * 100,
                                          PatchRecord::split(0, 255, 1'000'001, {0, 0, 1}, 0.0F));
     const Collider collider = colliderOf(query, patchesOf({{100, 100, 100}, 1}, roots));
     ASSERT_TRUE(validateTexels(collider.maps[0]));
     EXPECT_EQ(proveDepth(query, collider).unproven, "the map has too many cells");
-}
-
-TEST(DepthProof, NamesWhatItCannotProve) {
-    const TriangleMesh ball = makeIcosphere({0, 0, 0}, 1.0, 3);
-    const MeshQuery query = queryOf(ball);
     const Collider named = bakeSpecs(ball, {"float:dir=+z,size=16x16"});
     EXPECT_EQ(proveDepth(query, named).unproven, "the collider is not one map of patches");
     const Collider patches = bakedOf(query, 4096);
