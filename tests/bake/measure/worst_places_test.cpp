@@ -16,6 +16,7 @@
 #include "tests/bake/meshes.h"
 #include "tests/bake/points.h"
 #include "tests/bake/threads.h"
+#include "tests/formats/random_patches.h"
 
 namespace relief::test {
 namespace {
@@ -253,30 +254,24 @@ constexpr glm::vec3 kUp(0.0F, 0.0F, 1.0F);
 /// Two roots along x, each 4 object units wide, from the origin. The first is split: octant 1 is a patch of 3² heights,
 /// 6 is split and contains a patch of 5², the others have no record. The second root is outside.
 DepthMap handMade() {
-    PatchHeights five{.side = 5};
-    PatchHeights three{.side = 3};
-    DepthMap map;
-    map.format = MapFormat::kPatches;
-    map.decode = Decode::kPlane;
+    const PatchFrame frame = patchFrames()[0];
+    const std::uint32_t records = 6;
+    std::vector<PatchRecord> texels = {
+        PatchRecord::split(0b0100'0010U, 0, 3, kUp, 0.0F), PatchRecord::flat(false, kUp, 1.0F),
+        PatchRecord::patch(frame, false, {.side = 3}, records),
+        PatchRecord::split(0b0000'0001U, 0, 5, kUp, 0.0F),
+        PatchRecord::patch(frame, false, {.side = 5}, records + heightTexels(3))};
+    for (const PatchHeights& heights : {PatchHeights{.side = 3}, PatchHeights{.side = 5}}) {
+        for (std::uint32_t i = 0; i < heightTexels(heights.side); ++i) {
+            texels.push_back(heights.texel(i));
+        }
+    }
+    DepthMap map = patchesOf({{2, 1, 1}, 2}, texels);
     for (int i = 0; i < 3; ++i) {
         map.object_to_map.row[i] = glm::vec4(0.0F);
         map.object_to_map.row[i][i] = 0.25F;
     }
     map.object_per_map = glm::vec3(4.0F);
-    const PatchFrame frame = patchFrames()[0];
-    const std::uint32_t records = 6;
-    appendPatchTexel(map.texels, {2U | 1U << 16U, 1U | 2U << 16U});
-    appendPatchTexel(map.texels, PatchRecord::split(0b0100'0010U, 0, 3, kUp, 0.0F));
-    appendPatchTexel(map.texels, PatchRecord::flat(false, kUp, 1.0F));
-    appendPatchTexel(map.texels, PatchRecord::patch(frame, false, three, records));
-    appendPatchTexel(map.texels, PatchRecord::split(0b0000'0001U, 0, 5, kUp, 0.0F));
-    appendPatchTexel(map.texels, PatchRecord::patch(frame, false, five, records + heightTexels(3)));
-    for (std::uint32_t i = 0; i < heightTexels(3); ++i) {
-        appendPatchTexel(map.texels, three.texel(i));
-    }
-    for (std::uint32_t i = 0; i < heightTexels(5); ++i) {
-        appendPatchTexel(map.texels, five.texel(i));
-    }
     EXPECT_TRUE(validatePatches(map.texels));
     return map;
 }
@@ -289,10 +284,7 @@ TEST(PatchCells, CountsCellsWithHeights) {
         byte = std::byte{3};
     }
     EXPECT_EQ(patchCount(map), 2U);
-    map.texels.clear();
-    appendPatchTexel(map.texels, {1U | 1U << 16U, 1U});
-    appendPatchTexel(map.texels, PatchRecord::flat(true, kUp, -1.0F));
-    EXPECT_EQ(patchCount(map), 0U);
+    EXPECT_EQ(patchCount(patchesOf({{1, 1, 1}, 0}, {PatchRecord::flat(true, kUp, -1.0F)})), 0U);
 }
 
 TEST(PatchCells, SpacingDependsOnTheLeaf) {
