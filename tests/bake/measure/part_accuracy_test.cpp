@@ -3,8 +3,8 @@
 // that is too thick.
 #include "bake/measure/part_accuracy.h"
 
+#include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 
 #include "bake/verdict/parts_report.h"
 #include "tests/bake/meshes.h"
@@ -25,13 +25,24 @@ PartsAccuracy measured(const ShapedMesh& shape, const Field& field, const PartOp
 /// A field that is inside in any of the boxes.
 Field fieldOfBoxes(const std::vector<Bounds>& boxes) {
     return [boxes](const glm::vec3& p) -> std::optional<FieldValue> {
-        for (const Bounds& box : boxes) {
-            if (glm::max(p, box.min) == p && glm::min(p, box.max) == p) {
-                return FieldValue{-1.0F, glm::vec3(0.0F)};
-            }
-        }
-        return FieldValue{1.0F, glm::vec3(0.0F)};
+        const bool inside = std::ranges::any_of(boxes, [&](const Bounds& box) { return box.contains(p); });
+        return FieldValue{inside ? -1.0F : 1.0F, glm::vec3(0.0F)};
     };
+}
+
+/// The bounds extended by `by` on all sides.
+Bounds grown(const Bounds& bounds, const glm::vec3& by) {
+    return {bounds.min - by, bounds.max + by};
+}
+
+/// `count` boxes in a row, with the half sides half(i).
+template <class Half>
+std::vector<TriangleMesh> boxesInARow(int count, const Half& half) {
+    std::vector<TriangleMesh> boxes;
+    for (int i = 0; i < count; ++i) {
+        boxes.push_back(makeBoxMesh({3.0 * i, 0.0, 0.0}, glm::dvec3(half(i))));
+    }
+    return boxes;
 }
 
 /// A slab of 5 km with a pillar of 2 × 9 × 2 m.
@@ -62,9 +73,7 @@ TEST(PartAccuracy, MissingPillarIsLostDespiteItsSmallArea) {
     EXPECT_EQ(worst.wrong.false_inside, 0.0);
     EXPECT_NEAR(worst.sigma, 0.005 * 9.0, 1e-6);
 
-    PartOptions options;
-    options.min_part = 9.5;
-    const PartsAccuracy coarse = measured(shape, fieldOfBoxes({slab.bounds}), options);
+    const PartsAccuracy coarse = measured(shape, fieldOfBoxes({slab.bounds}), {.min_part = 9.5});
     EXPECT_EQ(coarse.countOf(PartVerdict::kLost), 0U) << "smaller than `min_part`";
     EXPECT_EQ(coarse.countOf(PartVerdict::kMinor), 1U);
     EXPECT_EQ(coarse.ignored.lost, 1U);
@@ -74,17 +83,14 @@ TEST(PartAccuracy, MissingPillarIsLostDespiteItsSmallArea) {
     EXPECT_DOUBLE_EQ(defaultMinPart(shape.parts, "m", 100.0), 0.001);
 
     // Filled as by a texel of 20 m.
-    Bounds swollen = pillar.bounds;
-    swollen.min -= glm::vec3(10.0F, 0.0F, 10.0F);
-    swollen.max += glm::vec3(10.0F, 10.0F, 10.0F);
+    Bounds swollen = grown(pillar.bounds, {10.0F, 0.0F, 10.0F});
+    swollen.max.y += 10.0F;
     const PartsAccuracy filled = measured(shape, fieldOfBoxes({slab.bounds, swollen}));
     EXPECT_EQ(filled.countOf(PartVerdict::kLost), 1U);
     EXPECT_GT(filled.parts.front().wrong.false_inside, 40.0);
 }
 
-PartOptions fewPoints() {
-    return {.points = 100};
-}
+constexpr PartOptions kFewPoints{.points = 100};
 
 /// A slab of 200 with 60 boxes, all of which are missing in the field.
 PartsAccuracy measuredWithoutBoxes(double side, const std::string& unit) {
@@ -96,7 +102,7 @@ PartsAccuracy measuredWithoutBoxes(double side, const std::string& unit) {
     }
     TriangleMesh mesh = joined(all);
     mesh.unit = unit;
-    return measured(shaped(mesh), fieldOfBoxes({slab.bounds}), fewPoints());
+    return measured(shaped(mesh), fieldOfBoxes({slab.bounds}), kFewPoints);
 }
 
 TEST(PartAccuracy, SmallLostPartsAreCountedButIgnored) {
@@ -127,17 +133,17 @@ TEST(PartAccuracy, ManySmallLostPartsMatter) {
     }
     const ShapedMesh shape = shaped(joined(cubes));
     EXPECT_GT(defaultMinPart(shape.parts, ""), 0.08);
-    EXPECT_EQ(measured(shape, fieldOfBoxes({}), fewPoints()).countOf(PartVerdict::kLost), 200U);
+    EXPECT_EQ(measured(shape, fieldOfBoxes({}), kFewPoints).countOf(PartVerdict::kLost), 200U);
     // A hundredth of the surface is missing, and half of the points near it are wrong.
     std::vector<Bounds> most;
     for (std::size_t i = 2; i < cubes.size(); ++i) {
         most.push_back(cubes[i].bounds);
     }
-    const PartsAccuracy few = measured(shape, fieldOfBoxes(most), fewPoints());
+    const PartsAccuracy few = measured(shape, fieldOfBoxes(most), kFewPoints);
     EXPECT_EQ(few.countOf(PartVerdict::kLost), 0U);
     EXPECT_EQ(few.ignored.lost, 2U);
     // An explicit `min_part` overrides the default.
-    PartOptions options = fewPoints();
+    PartOptions options = kFewPoints;
     options.min_part = 0.1;
     EXPECT_EQ(measured(shape, fieldOfBoxes({}), options).ignored.lost, 200U);
     options.min_part = 0.05;
@@ -166,9 +172,7 @@ TEST(PartAccuracy, ExcessCountsAtTheScaleOfTheAsset) {
     const TriangleMesh plate = makeBoxMesh({0, 8, 0}, {0.2, 0.01, 0.2});
     const ShapedMesh shape = shaped(joined({cube, plate}));
     for (const auto& [excess, lost] : {std::pair{0.01F, 0U}, {0.1F, 1U}}) {
-        Bounds thick = plate.bounds;
-        thick.min -= glm::vec3(excess);
-        thick.max += glm::vec3(excess);
+        const Bounds thick = grown(plate.bounds, glm::vec3(excess));
         const PartsAccuracy found = measured(shape, fieldOfBoxes({cube.bounds, thick}));
         EXPECT_EQ(found.countOf(PartVerdict::kLost), lost) << excess;
         EXPECT_EQ(found.ignored.lost, 0U) << excess;
@@ -183,17 +187,12 @@ TEST(PartAccuracy, ExcessCountsAtTheScaleOfTheAsset) {
 TEST(PartAccuracy, LostPartsAreConfirmedWithMorePoints) {
     // Boxes too large by half the distance of their points: about 20 % of the points are wrong. With few points, the
     // measured fraction is sometimes 25 %.
-    std::vector<TriangleMesh> boxes;
+    const std::vector<TriangleMesh> boxes = boxesInARow(40, [](int) { return 1.0; });
     std::vector<Bounds> bounds;
-    for (int i = 0; i < 40; ++i) {
-        boxes.push_back(makeBoxMesh({3.0 * i, 0.0, 0.0}, glm::dvec3(1.0)));
-        bounds.push_back(boxes.back().bounds);
-        bounds.back().min -= glm::vec3(0.005F);
-        bounds.back().max += glm::vec3(0.005F);
+    for (const TriangleMesh& box : boxes) {
+        bounds.push_back(grown(box.bounds, glm::vec3(0.005F)));
     }
-    PartOptions options;
-    options.points = 64;
-    const PartsAccuracy found = measured(shaped(joined(boxes)), fieldOfBoxes(bounds), options);
+    const PartsAccuracy found = measured(shaped(joined(boxes)), fieldOfBoxes(bounds), {.points = 64});
     EXPECT_EQ(found.countOf(PartVerdict::kLost), 0U);
     EXPECT_EQ(found.countOf(PartVerdict::kCoarse), 40U);
 }
@@ -203,9 +202,7 @@ TEST(PartAccuracy, CoarsePartsCountByArea) {
     for (const double side : {10.0, 0.5}) {
         const TriangleMesh other = makeBoxMesh({0, 0, 0}, glm::dvec3(5.0));
         const TriangleMesh cube = makeBoxMesh({0, 12, 0}, glm::dvec3(0.5 * side));
-        Bounds less = cube.bounds;
-        less.min += glm::vec3(static_cast<float>(0.0025 * side));
-        less.max -= glm::vec3(static_cast<float>(0.0025 * side));
+        const Bounds less = grown(cube.bounds, glm::vec3(static_cast<float>(-0.0025 * side)));
         const PartsAccuracy found =
             measured(shaped(joined({other, cube})), fieldOfBoxes({other.bounds, less}));
         EXPECT_EQ(found.countOf(PartVerdict::kCoarse), 1U);
@@ -214,11 +211,8 @@ TEST(PartAccuracy, CoarsePartsCountByArea) {
 }
 
 TEST(PartAccuracy, SmallestOfTooManyPartsAreOnlyCounted) {
-    std::vector<TriangleMesh> boxes;
-    for (int i = 0; i < 60; ++i) {
-        boxes.push_back(makeBoxMesh({3.0 * i, 0.0, 0.0}, glm::dvec3(1.0)));
-    }
-    const PartsAccuracy found = measured(shaped(joined(boxes)), fieldOfBoxes({}), {.parts_max = 50});
+    const ShapedMesh shape = shaped(joined(boxesInARow(60, [](int) { return 1.0; })));
+    const PartsAccuracy found = measured(shape, fieldOfBoxes({}), {.parts_max = 50});
     EXPECT_EQ(found.ignored.unmeasured, 10U);
     EXPECT_NE(verdictOf(0.0, found, "").text.find("10 parts are not measured"), std::string::npos);
 }
@@ -243,8 +237,7 @@ TEST(PartAccuracy, ShellIsWrongBeyondItsThickness) {
     shell.max.y = 8.0F + static_cast<float>(0.5 * kThick);
     const Field baked = fieldOfBoxes({body.bounds, shell});
 
-    PartOptions fine;
-    fine.min_part = 0.01;
+    const PartOptions fine{.min_part = 0.01};
     const PartsAccuracy asked = measured(shaped(mesh, {ShapeAs::kAuto, kThick, {}}), baked, fine);
     EXPECT_EQ(asked.countOf(PartVerdict::kKept), 2U);
 
@@ -306,10 +299,7 @@ TEST(PartAccuracy, NodesAndMaterialsWeightPartsByArea) {
 }
 
 TEST(PartAccuracy, IsDeterministic) {
-    std::vector<TriangleMesh> boxes;
-    for (int i = 0; i < 40; ++i) {
-        boxes.push_back(makeBoxMesh({3.0 * i, 0.0, 0.0}, glm::dvec3(0.1 + 0.03 * i)));
-    }
+    const std::vector<TriangleMesh> boxes = boxesInARow(40, [](int i) { return 0.1 + 0.03 * i; });
     const ShapedMesh shape = shaped(joined(boxes));
     const auto measure = [&] {
         return measured(shape, fieldOfBoxes({boxes[5].bounds, boxes[30].bounds}),
