@@ -84,32 +84,6 @@ double hills(double x, double z) {
     return 0.15 * std::sin(3.0 * x) * std::cos(2.0 * z);
 }
 
-/// Compares a shell with the distance to the open mesh. Points within `skip` of the border are ignored: the shell has
-/// flat ends there.
-template <class AtBorder>
-void expectShell(const TriangleMesh& sheet, const ShapedMesh& shape, const AtBorder& at_border) {
-    const MeshQuery open = queryOf(sheet);
-    const MeshQuery shell = queryOf(shape.mesh);
-    EXPECT_TRUE(shell.watertight());
-    int inside = 0;
-    int outside = 0;
-    for (const glm::vec3& p : pointsIn(sheet.bounds, 200'000)) {
-        const double distance = open.closest(p).distance;
-        if (at_border(p)) {
-            continue;
-        }
-        if (distance < 0.48 * kThickness) {
-            ++inside;
-            ASSERT_TRUE(shell.inside(p)) << p.x << ' ' << p.y << ' ' << p.z << ": " << distance;
-        } else if (distance > 0.5 * std::numbers::sqrt3 * kThickness + 1e-4) {  // the mitre at a corner
-            ++outside;
-            ASSERT_FALSE(shell.inside(p)) << p.x << ' ' << p.y << ' ' << p.z << ": " << distance;
-        }
-    }
-    EXPECT_GT(inside, 1000);
-    EXPECT_GT(outside, 10'000);
-}
-
 struct ShellCount {
     int near = 0;
     int hollow = 0;  ///< near but outside
@@ -202,56 +176,71 @@ TEST(Shape, BodyOpenBelowIsSolidButVesselIsNot) {
     EXPECT_EQ(shaped(joined({makeOpenBox(), scaled(makePlane(-1.0F, 2), 9.0)})).report.closable_sheets, 0U);
 }
 
-/// Mugs, bowls, lampshades and pipes of two open shells with separate rims, as radii and heights.
+/// Two open shells with separate rims, and points in the space that they enclose and in the wall between them.
+struct Wall {
+    TriangleMesh outer;
+    TriangleMesh inner;
+    std::vector<glm::dvec3> free;
+    std::vector<glm::dvec3> full;
+};
+
+/// Expects one solid in the place of the shells, turned about z, and returns it.
+MeshQuery expectWall(const Wall& wall, double degrees = 0.0) {
+    const ShapedMesh shape = shaped(turned(joined({wall.outer, wall.inner}), {0, 0, 1}, degrees));
+    expectKinds(shape.report, 0, 1, 0, 0);
+    MeshQuery query = queryOf(shape.mesh);
+    const auto inside = [&](const glm::dvec3& p) {
+        return query.inside(glm::vec3(rotation(glm::dvec3(0, 0, 1), degrees) * p));
+    };
+    EXPECT_TRUE(std::ranges::none_of(wall.free, inside));
+    EXPECT_TRUE(std::ranges::all_of(wall.full, inside));
+    EXPECT_FALSE(inside({2.0, 0.5, 0.0}));
+    return query;
+}
+
+/// Mugs, bowls, lampshades and pipes, as radii and heights.
 TEST(Shape, ShellsWithFacingRimsFormAWall) {
-    struct Wall {
-        TriangleMesh outer;
-        TriangleMesh inner;
+    struct Profiles {
+        std::vector<glm::dvec2> outer;
+        std::vector<glm::dvec2> inner;
         std::vector<glm::dvec3> free;
         std::vector<glm::dvec3> full;
     };
-    const std::vector<Wall> walls = {{makeTurned({{0.0, 0.0}, {0.35, 0.0}, {0.5, 1.2}}),
-                                      makeTurned({{0.0, 0.02}, {0.33, 0.02}, {0.48, 1.2}}),
-                                      {{0, 0.6, 0}, {0, 1.19, 0.4}, {0.3, 0.03, 0}},
-                                      {{0, 0.01, 0.3}, {0.4926, 1.19, 0}, {0.0, 0.6, 0.415}}},
-                                     {makeTurned({{0.0, 0.0}, {0.5, 0.05}, {0.8, 0.4}, {0.85, 0.9}}),
-                                      makeTurned({{0.0, 0.05}, {0.47, 0.1}, {0.76, 0.42}, {0.81, 0.92}}),
-                                      {{0, 0.1, 0}, {0.5, 0.4, 0}, {0, 0.9, 0.79}},
-                                      {{0.0, 0.03, 0.05}, {0.0, 0.4, 0.78}, {0.82, 0.88, 0}}},
-                                     {makeTurned({{0.5, 0.0}, {0.3, 1.0}}),
-                                      makeTurned({{0.48, 0.0}, {0.28, 1.0}}),
-                                      {{0, 0.5, 0}, {0, 0.01, 0}, {0, 0.99, 0.2}},
-                                      {{0.391, 0.5, 0.0}, {0.0, 0.1, 0.47}}},
-                                     {makeTurned({{0.5, 0.0}, {0.5, 4.0}}),
-                                      makeTurned({{0.45, 0.0}, {0.45, 4.01}}),
-                                      {{0, 2, 0}, {0.4, 0.01, 0}, {0, 3.99, 0.4}},
-                                      {{0.475, 2, 0}, {0, 3.9, 0.475}}},
-                                     // Many rays escape through the gap between the rims.
-                                     {makeTurned({{0.37, 0.0}, {0.33, 1.0}}),
-                                      makeTurned({{0.31, 0.0}, {0.27, 1.0}}),
-                                      {{0, 0.5, 0}, {0.25, 0.98, 0}, {0, 0.02, 0.28}},
-                                      {{0.32, 0.5, 0}, {0, 0.9, 0.305}}},
-                                     {makeTurned({{0.5, 0.0}, {0.5, 0.3}}),
-                                      makeTurned({{0.44, 0.0}, {0.44, 0.3}}),
-                                      {{0, 0.15, 0}, {0.4, 0.02, 0}, {0, 0.28, 0.4}},
-                                      {{0.47, 0.15, 0}, {0, 0.28, 0.47}}},
-                                     {makeTurned({{0.0, 0.0}, {1.0, 0.5}}),
-                                      makeTurned({{0.0, 0.05}, {0.95, 0.52}}),
-                                      {{0, 0.2, 0}, {0.5, 0.35, 0}, {0, 0.48, 0.8}},
-                                      {{0.0, 0.025, 0.01}, {0.5, 0.28, 0}, {0, 0.49, 0.95}}}};
+    const std::vector<Profiles> walls = {{{{0.0, 0.0}, {0.35, 0.0}, {0.5, 1.2}},
+                                          {{0.0, 0.02}, {0.33, 0.02}, {0.48, 1.2}},
+                                          {{0, 0.6, 0}, {0, 1.19, 0.4}, {0.3, 0.03, 0}},
+                                          {{0, 0.01, 0.3}, {0.4926, 1.19, 0}, {0.0, 0.6, 0.415}}},
+                                         {{{0.0, 0.0}, {0.5, 0.05}, {0.8, 0.4}, {0.85, 0.9}},
+                                          {{0.0, 0.05}, {0.47, 0.1}, {0.76, 0.42}, {0.81, 0.92}},
+                                          {{0, 0.1, 0}, {0.5, 0.4, 0}, {0, 0.9, 0.79}},
+                                          {{0.0, 0.03, 0.05}, {0.0, 0.4, 0.78}, {0.82, 0.88, 0}}},
+                                         {{{0.5, 0.0}, {0.3, 1.0}},
+                                          {{0.48, 0.0}, {0.28, 1.0}},
+                                          {{0, 0.5, 0}, {0, 0.01, 0}, {0, 0.99, 0.2}},
+                                          {{0.391, 0.5, 0.0}, {0.0, 0.1, 0.47}}},
+                                         {{{0.5, 0.0}, {0.5, 4.0}},
+                                          {{0.45, 0.0}, {0.45, 4.01}},
+                                          {{0, 2, 0}, {0.4, 0.01, 0}, {0, 3.99, 0.4}},
+                                          {{0.475, 2, 0}, {0, 3.9, 0.475}}},
+                                         // Many rays escape through the gap between the rims.
+                                         {{{0.37, 0.0}, {0.33, 1.0}},
+                                          {{0.31, 0.0}, {0.27, 1.0}},
+                                          {{0, 0.5, 0}, {0.25, 0.98, 0}, {0, 0.02, 0.28}},
+                                          {{0.32, 0.5, 0}, {0, 0.9, 0.305}}},
+                                         {{{0.5, 0.0}, {0.5, 0.3}},
+                                          {{0.44, 0.0}, {0.44, 0.3}},
+                                          {{0, 0.15, 0}, {0.4, 0.02, 0}, {0, 0.28, 0.4}},
+                                          {{0.47, 0.15, 0}, {0, 0.28, 0.47}}},
+                                         {{{0.0, 0.0}, {1.0, 0.5}},
+                                          {{0.0, 0.05}, {0.95, 0.52}},
+                                          {{0, 0.2, 0}, {0.5, 0.35, 0}, {0, 0.48, 0.8}},
+                                          {{0.0, 0.025, 0.01}, {0.5, 0.28, 0}, {0, 0.49, 0.95}}}};
     for (std::size_t i = 0; i < walls.size(); ++i) {
-        for (const TriangleMesh& inner : {walls[i].inner, reversed(walls[i].inner)}) {
-            SCOPED_TRACE(i);
-            const ShapedMesh shape = shaped(turned(joined({walls[i].outer, inner}), {0, 0, 1}, 90.0));
-            expectKinds(shape.report, 0, 1, 0, 0);
-            const MeshQuery query = queryOf(shape.mesh);
-            EXPECT_TRUE(query.watertight());
-            const auto inside = [&](const glm::dvec3& p) {
-                return query.inside(glm::vec3(rotation(glm::dvec3(0, 0, 1), 90.0) * p));
-            };
-            EXPECT_TRUE(std::ranges::none_of(walls[i].free, inside));
-            EXPECT_TRUE(std::ranges::all_of(walls[i].full, inside));
-            EXPECT_FALSE(inside({2.0, 0.5, 0.0}));
+        SCOPED_TRACE(i);
+        const TriangleMesh inner = makeTurned(walls[i].inner);
+        for (const TriangleMesh& either : {inner, reversed(inner)}) {
+            const Wall wall{makeTurned(walls[i].outer), either, walls[i].free, walls[i].full};
+            EXPECT_TRUE(expectWall(wall, 90.0).watertight());
         }
     }
     // Two open boxes side by side do not form a wall.
@@ -260,12 +249,6 @@ TEST(Shape, ShellsWithFacingRimsFormAWall) {
 
 /// Vessels with a narrow mouth, a flared, thick, square or eccentric rim, or a missing triangle, as radii and heights.
 TEST(Shape, ShellsWithUnlikeRimsFormAWall) {
-    struct Wall {
-        TriangleMesh outer;
-        TriangleMesh inner;
-        glm::dvec3 free;
-        glm::dvec3 full;
-    };
     const auto turn = [](const std::vector<glm::dvec2>& profile) { return makeTurned(profile, 16); };
     const auto lessOne = [](const TriangleMesh& mesh) {
         const std::size_t middle = mesh.triangles.size() / 2;
@@ -308,36 +291,32 @@ TEST(Shape, ShellsWithUnlikeRimsFormAWall) {
     const TriangleMesh vase = turn({{0.0, 0.0}, {0.5, 0.0}, {0.6, 0.5}, {0.15, 1.2}});
     const TriangleMesh in_vase = turn({{0.0, 0.03}, {0.47, 0.03}, {0.57, 0.5}, {0.12, 1.2}});
     const std::vector<Wall> walls = {
-        {vase, in_vase, {0, 0.5, 0}, {0.58, 0.5, 0}},
-        {vase, turn({{0.0, 0.06}, {0.44, 0.06}, {0.54, 0.5}, {0.08, 1.2}}), {0, 0.5, 0}, {0.1, 0.03, 0}},
+        {vase, in_vase, {{0, 0.5, 0}}, {{0.58, 0.5, 0}}},
+        {vase, turn({{0.0, 0.06}, {0.44, 0.06}, {0.54, 0.5}, {0.08, 1.2}}), {{0, 0.5, 0}}, {{0.1, 0.03, 0}}},
         {turn({{0.0, 0.0}, {0.4, 0.0}, {0.4, 1.0}, {0.12, 1.3}, {0.12, 1.7}}),
          turn({{0.0, 0.02}, {0.38, 0.02}, {0.38, 1.0}, {0.1, 1.3}, {0.1, 1.7}}),
-         {0, 0.5, 0},
-         {0.39, 0.5, 0}},
+         {{0, 0.5, 0}},
+         {{0.39, 0.5, 0}}},
         {turn({{0.0, 0.0}, {0.5, 0.0}, {0.4, 1.0}, {0.55, 1.2}}),
          turn({{0.0, 0.03}, {0.47, 0.03}, {0.37, 1.0}}),
-         {0, 0.5, 0},
-         {0.1, 0.015, 0}},
-        {mug, turn({{0.0, 0.2}, {0.35, 0.2}, {0.35, 1.2}}), {0, 0.6, 0}, {0.42, 0.6, 0}},
-        {mug, makeTurned({{0.0, 0.05}, {0.45, 0.05}, {0.45, 1.2}}, 4), {0, 0.6, 0}, {0.1, 0.02, 0}},
+         {{0, 0.5, 0}},
+         {{0.1, 0.015, 0}}},
+        {mug, turn({{0.0, 0.2}, {0.35, 0.2}, {0.35, 1.2}}), {{0, 0.6, 0}}, {{0.42, 0.6, 0}}},
+        {mug, makeTurned({{0.0, 0.05}, {0.45, 0.05}, {0.45, 1.2}}, 4), {{0, 0.6, 0}}, {{0.1, 0.02, 0}}},
         {mug,
          scaled(turn({{0.0, 0.03}, {0.4, 0.03}, {0.4, 1.2}}), 1.0, {0.08, 0, 0}),
-         {0, 0.6, 0},
-         {-0.4, 0.6, 0}},
-        {mug, lessOne(liner), {0, 0.6, 0}, {0.1, 0.01, 0}},
-        {lessOne(mug), liner, {0, 0.6, 0}, {0.1, 0.01, 0}},
-        {mug, lessOneAtRim(liner), {0, 0.6, 0}, {0.1, 0.01, 0}},
-        {lessOneAtRim(mug), liner, {0, 0.6, 0}, {0.1, 0.01, 0}},
-        {lessOneAtRim(mug), lessOneAtRim(liner), {0, 0.6, 0}, {0.1, 0.01, 0}},
-        {withTeeth(mug, 1, 0.4F), liner, {0, 0.6, 0}, {0.4791, 1.35, 0.0953}},
-        {withTeeth(mug, 16, 0.4F), withTeeth(liner, 16, 0.4F), {0.485, 1.4, 0}, {0.471, 1.3, 0.094}}};
+         {{0, 0.6, 0}},
+         {{-0.4, 0.6, 0}}},
+        {mug, lessOne(liner), {{0, 0.6, 0}}, {{0.1, 0.01, 0}}},
+        {lessOne(mug), liner, {{0, 0.6, 0}}, {{0.1, 0.01, 0}}},
+        {mug, lessOneAtRim(liner), {{0, 0.6, 0}}, {{0.1, 0.01, 0}}},
+        {lessOneAtRim(mug), liner, {{0, 0.6, 0}}, {{0.1, 0.01, 0}}},
+        {lessOneAtRim(mug), lessOneAtRim(liner), {{0, 0.6, 0}}, {{0.1, 0.01, 0}}},
+        {withTeeth(mug, 1, 0.4F), liner, {{0, 0.6, 0}}, {{0.4791, 1.35, 0.0953}}},
+        {withTeeth(mug, 16, 0.4F), withTeeth(liner, 16, 0.4F), {{0.485, 1.4, 0}}, {{0.471, 1.3, 0.094}}}};
     for (std::size_t i = 0; i < walls.size(); ++i) {
         SCOPED_TRACE(i);
-        const ShapedMesh shape = shaped(joined({walls[i].outer, walls[i].inner}));
-        expectKinds(shape.report, 0, 1, 0, 0);
-        const MeshQuery query = queryOf(shape.mesh);
-        EXPECT_FALSE(query.inside(glm::vec3(walls[i].free)));
-        EXPECT_TRUE(query.inside(glm::vec3(walls[i].full)));
+        expectWall(walls[i]);
     }
     // A small vessel in a large scene.
     const ShapedMesh scene = shaped(joined({vase, in_vase, scaled(makePlane(-1.0F, 2), 9.0)}));
@@ -409,7 +388,26 @@ TEST(Shape, ShellContainsAllPointsNearItsSheet) {
         std::swap(mixed.triangles[i].y, mixed.triangles[i].z);
     }
     for (const TriangleMesh& sheet : {mixed, makeCup()}) {
-        expectShell(sheet, shaped(sheet), [](const glm::vec3& p) { return p.y > 0.95F; });
+        const MeshQuery open = queryOf(sheet);
+        const MeshQuery shell = queryOf(shaped(sheet).mesh);
+        EXPECT_TRUE(shell.watertight());
+        int inside = 0;
+        int outside = 0;
+        for (const glm::vec3& p : pointsIn(sheet.bounds, 200'000)) {
+            const double distance = open.closest(p).distance;
+            if (p.y > 0.95F) {
+                continue;  // the shell has flat ends at the border
+            }
+            if (distance < 0.48 * kThickness) {
+                ++inside;
+                ASSERT_TRUE(shell.inside(p)) << p.x << ' ' << p.y << ' ' << p.z << ": " << distance;
+            } else if (distance > 0.5 * std::numbers::sqrt3 * kThickness + 1e-4) {  // the mitre at a corner
+                ++outside;
+                ASSERT_FALSE(shell.inside(p)) << p.x << ' ' << p.y << ' ' << p.z << ": " << distance;
+            }
+        }
+        EXPECT_GT(inside, 1000);
+        EXPECT_GT(outside, 10'000);
     }
 }
 
