@@ -185,13 +185,10 @@ TEST(BudgetShares, UnplannableMeshGetsAnEvenShare) {
 
 TEST(BudgetShares, TooFewBytesAreRejectedWithTheMinimum) {
     std::vector<BudgetShare> shares(100);
-    const Result<void> shared = shareByArea(819'199, shares);
-    ASSERT_FALSE(shared);
-    EXPECT_EQ(shared.error().code, ErrorCode::kUsage);
-    EXPECT_NE(shared.error().message.find("at least 819200"), std::string::npos) << shared.error().message;
-    EXPECT_TRUE(shareByArea(819'200, shares));
     const PlanErrors none = [](std::size_t, std::uint64_t) { return ErrorCurve(); };
-    EXPECT_EQ(shareByErrors(819'199, shares, none).error().message, shared.error().message);
+    expectError(shareByArea(819'199, shares), ErrorCode::kUsage, "at least 819200");
+    expectError(shareByErrors(819'199, shares, none), ErrorCode::kUsage, "at least 819200");
+    EXPECT_TRUE(shareByArea(819'200, shares));
     EXPECT_TRUE(shareByErrors(819'200, shares, none));
 }
 
@@ -230,11 +227,8 @@ TEST(ErrorCurves, LinksAreNotFollowed) {
     EXPECT_FALSE(loadErrorCurves(folder.path() / "w"));
     ASSERT_TRUE(saveErrorCurves(folder.path() / "w", {}));
     EXPECT_TRUE(loadErrorCurves(folder.path() / "w")->empty());
-    const auto kept = readFile(elsewhere);
-    EXPECT_EQ(kept->size(), errorCurvesText(kCurves).size());
+    EXPECT_EQ(readFile(elsewhere)->size(), errorCurvesText(kCurves).size());
 }
-
-namespace fs = std::filesystem;
 
 constexpr std::uint64_t kLevelBudget = 160'000;
 
@@ -317,15 +311,12 @@ TEST_F(LevelShares, SecondRunPlansAndBakesOnlyChanges) {
     std::map<std::string, std::uint64_t> alike = sharesOf(bake("w"));
     EXPECT_EQ(alike["box"], alike["ball"]);
     // Missing or invalid curves are planned again, with equal results.
-    for (const char* text : {"", "{}"}) {
-        if (*text == '\0') {
-            fs::remove(folder_.path() / "w" / kErrorCurvesName);
-        } else {
-            folder_.write(std::string("w/") + kErrorCurvesName, text);
-        }
+    for (const bool missing : {true, false}) {
+        const fs::path file = folder_.write(std::string("w/") + kErrorCurvesName, "{}");
+        EXPECT_TRUE(!missing || fs::remove(file));
         const WorldBakeResult again = bake("w");
         EXPECT_EQ(sharesOf(again), shares);
-        EXPECT_EQ(again.warnings.empty(), *text == '\0');
+        EXPECT_EQ(again.warnings.empty(), missing);
         EXPECT_TRUE(filesOf("w")[kErrorCurvesName] == files.at(kErrorCurvesName));
     }
     // A changed mesh is baked again, and few others.

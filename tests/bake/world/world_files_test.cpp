@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Manual edits of a world.json survive the next bake; worlds with lost thin parts; and coarse colliders.
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <glm/geometric.hpp>
@@ -40,9 +41,7 @@ class WrittenByHand : public LevelBakes {
             objects.push_back({name, makeBoxMesh(glm::dvec3(0.5), glm::dvec3(0.5)), {x, 0.0F, 0.0F}});
         }
         write(objects, [&](const Object& object, std::size_t) {
-            return std::find_if(cubes.begin(), cubes.end(),
-                                [&](const auto& cube) { return cube[0] == object.name; })
-                ->at(1);
+            return std::ranges::find(cubes, object.name, [](const auto& cube) { return cube[0]; })->at(1);
         });
     }
 
@@ -54,6 +53,12 @@ class WrittenByHand : public LevelBakes {
         change(world);
         const std::string text = worldText(world);
         ASSERT_TRUE(writeFile(worldFile(), std::as_bytes(std::span(text))));
+    }
+
+    /// Returns the warnings.
+    [[nodiscard]] std::vector<std::string> replace(World& world) const {
+        fs::create_directories(worldFile().parent_path());
+        return required(replaceWorld(worldFile().parent_path(), world, {}, "level")).warnings;
     }
 
     [[nodiscard]] std::vector<std::byte> bytes() const { return *readFile(worldFile()); }
@@ -112,10 +117,6 @@ TEST_F(WrittenByHand, MaterialResponsesAreKeptByName) {
 }
 
 TEST_F(WrittenByHand, BodyResponsesAreKeptByNode) {
-    fs::create_directories(worldFile().parent_path());
-    const auto replace = [&](World& world) {
-        return required(replaceWorld(worldFile().parent_path(), world, {}, "level")).warnings;
-    };
     World world = placed({{"door"}, {"gate"}, {"gate"}, {"floor"}});
     EXPECT_TRUE(replace(world).empty());
     edit([](World& edited) {
@@ -151,10 +152,8 @@ TEST_F(WrittenByHand, BodyResponsesAreKeptByNode) {
 
 // Each list of nodes replaces the first one, whose frictions were edited.
 TEST_F(WrittenByHand, ResponsesFollowTheMatchingBody) {
-    fs::create_directories(worldFile().parent_path());
     const std::vector<Node> before = {
         {"gate", 0, 1}, {"gate", 5, 1}, {"gate", 9, 1}, {"door", 2, 3}, {"", 4, 2}};
-    const std::string gate = "'gate'";
     struct Case {
         const char* what;
         std::vector<Node> nodes;
@@ -169,11 +168,11 @@ TEST_F(WrittenByHand, ResponsesFollowTheMatchingBody) {
         {"removed, and another one added",
          {{"gate", 0, 1}, {"gate", 7, 1}, {"gate", 9, 1}, {"door", 2, 3}, {"", 4, 2}},
          {0.0F, 0.0F, 0.375F, 0.5F, 0.625F},
-         gate},
+         "'gate'"},
         {"removed",
          {{"gate", 0, 1}, {"gate", 9, 1}, {"door", 2, 3}, {"", 4, 2}},
          {0.0F, 0.375F, 0.5F, 0.625F},
-         gate},
+         "'gate'"},
         {"renamed",
          {{"gate", 0, 1}, {"gate.1", 5, 1}, {"gate", 9, 1}, {"portal", 2, 3}, {"", 4, 2}},
          {0.0F, 0.25F, 0.375F, 0.5F, 0.625F},
@@ -192,23 +191,21 @@ TEST_F(WrittenByHand, ResponsesFollowTheMatchingBody) {
         SCOPED_TRACE(one.what);
         fs::remove(worldFile());
         World world = placed(before);
-        ASSERT_TRUE(replaceWorld(worldFile().parent_path(), world, {}, "level"));
+        EXPECT_TRUE(replace(world).empty());
         edit([](World& edited) {
-            const float friction[] = {0.0F, 0.25F, 0.375F, 0.5F, 0.625F};
-            for (std::size_t i = 0; i < edited.bodies.size(); ++i) {
-                edited.bodies[i].friction = friction[i];
+            for (std::size_t i = 1; i < edited.bodies.size(); ++i) {
+                edited.bodies[i].friction = 0.125F * static_cast<float>(i + 1);
             }
         });
         world = placed(one.nodes);
-        const auto replaced = required(replaceWorld(worldFile().parent_path(), world, {}, "level"));
+        const std::vector<std::string> warnings = replace(world);
         std::vector<float> friction;
         for (const WorldBody& body : world.bodies) {
             friction.push_back(body.friction);
         }
         EXPECT_EQ(friction, one.friction);
-        ASSERT_EQ(replaced.warnings.size(), one.gone.empty() ? 0U : 1U);
-        EXPECT_TRUE(one.gone.empty() || replaced.warnings[0].find(one.gone) != std::string::npos)
-            << replaced.warnings[0];
+        ASSERT_EQ(warnings.size(), one.gone.empty() ? 0U : 1U);
+        EXPECT_TRUE(one.gone.empty() || warnings[0].find(one.gone) != std::string::npos) << warnings[0];
     }
 }
 
