@@ -14,7 +14,7 @@
 #include "tests/bake/meshes.h"
 #include "tests/bake/threads.h"
 
-namespace relief {
+namespace relief::test {
 namespace {
 
 constexpr glm::dvec3 kCenter(0.31, -0.2, 0.13);
@@ -24,19 +24,15 @@ constexpr double kVoxel = 2.0 * kRadius / kVoxels;
 
 const Collider& sphere() {
     static const Collider baked =
-        test::bakeSpecs(test::makeIcosphere(kCenter, kRadius, 6),
-                        {"front-back:dir=+x,decode=plane", "front-back:dir=+y,decode=plane",
-                         "front-back:dir=+z,decode=plane"},
-                        256);
+        bakeSpecs(makeIcosphere(kCenter, kRadius, 6),
+                  {"front-back:dir=+x,decode=plane", "front-back:dir=+y,decode=plane",
+                   "front-back:dir=+z,decode=plane"},
+                  256);
     return baked;
 }
 
 Result<std::vector<std::byte>> levelSetOf(const Collider& collider, std::uint32_t voxels) {
     return RELIEF_TRY(encodeGrids(collider, {voxels, true, false})).level_set;
-}
-
-Result<std::vector<std::byte>> meshOf(const Collider& collider, std::uint32_t voxels) {
-    return RELIEF_TRY(encodeGrids(collider, {voxels, false, true})).surface;
 }
 
 openvdb::FloatGrid::Ptr gridOf(const std::vector<std::byte>& bytes) {
@@ -53,9 +49,7 @@ double fromSphere(const openvdb::Vec3d& p) {
 
 // Distances, volume and area of a sphere have closed forms.
 TEST(LevelSet, MatchesASphere) {
-    const auto bytes = levelSetOf(sphere(), kVoxels);
-    ASSERT_TRUE(bytes.has_value()) << bytes.error().message;
-    const auto grid = gridOf(*bytes);
+    const auto grid = gridOf(required(levelSetOf(sphere(), kVoxels)));
     ASSERT_NE(grid, nullptr);
     EXPECT_EQ(grid->getName(), "surface");
     EXPECT_EQ(grid->getGridClass(), openvdb::GRID_LEVEL_SET);
@@ -100,12 +94,11 @@ TEST(LevelSet, MatchesASphere) {
 }
 
 TEST(LevelSet, IsDeterministic) {
-    const Collider& collider = sphere();
-    const auto bytes = levelSetOf(collider, kVoxels);
-    ASSERT_TRUE(bytes.has_value());
-    EXPECT_EQ(*bytes, *levelSetOf(collider, kVoxels));
-    EXPECT_EQ(*bytes, test::onThreads(1, [&] { return *levelSetOf(collider, kVoxels); }));
-    EXPECT_NE(*bytes, *levelSetOf(collider, kVoxels + 1));
+    const auto bytes = [](std::uint32_t voxels) { return required(levelSetOf(sphere(), voxels)); };
+    const std::vector<std::byte> first = bytes(kVoxels);
+    EXPECT_EQ(first, bytes(kVoxels));
+    EXPECT_EQ(first, onThreads(1, [&] { return bytes(kVoxels); }));
+    EXPECT_NE(first, bytes(kVoxels + 1));
 }
 
 /// Vertices and faces of the PLY written by encodeGrids().
@@ -143,9 +136,7 @@ Surface surfaceOf(const std::vector<std::byte>& bytes) {
 }
 
 TEST(SurfaceMesh, SphereIsClosedAndFacesOutward) {
-    const auto bytes = meshOf(sphere(), kVoxels);
-    ASSERT_TRUE(bytes.has_value()) << bytes.error().message;
-    const Surface surface = surfaceOf(*bytes);
+    const Surface surface = surfaceOf(required(encodeGrids(sphere(), {kVoxels, false, true})).surface);
     double volume = 0.0;
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
     for (const auto& face : surface.faces) {
@@ -176,25 +167,21 @@ TEST(SurfaceMesh, SphereIsClosedAndFacesOutward) {
 }
 
 TEST(LevelSet, SheetThinnerThanAVoxelIsRejected) {
-    const PreparedMesh mesh(test::makeBoxMesh({0.0, 0.002, 0.0}, {1.0, 1e-4, 1.0}));
-    const Collider sheet = test::bakeSpecs(mesh, {"front-back:dir=+y"}, 32);
+    const PreparedMesh mesh(makeBoxMesh({0.0, 0.002, 0.0}, {1.0, 1e-4, 1.0}));
+    const Collider sheet = bakeSpecs(mesh, {"front-back:dir=+y"}, 32);
     EXPECT_FALSE(levelSetOf(sheet, 16));
     EXPECT_EQ(levelSetOf(sheet, 4).error().code, ErrorCode::kLimit);
 }
 
 // A thick box, and a plate that contains no voxel centre: only the box remains, and the missing fraction is reported.
 TEST(LevelSet, WarnsOfMissingThinParts) {
-    const Collider collider = test::bakeSpecs(
-        test::joined({test::makeBoxMesh({0.0, -0.25, 0.0}, {0.2, 0.25, 0.2}),
-                      test::makeBoxMesh({0.0, 0.26, 0.0}, {0.5, 5e-3, 0.5})}),
+    const Collider collider = bakeSpecs(
+        joined({makeBoxMesh({0.0, -0.25, 0.0}, {0.2, 0.25, 0.2}),
+                makeBoxMesh({0.0, 0.26, 0.0}, {0.5, 5e-3, 0.5})}),
         {"front-back:dir=+y,decode=plane", "front-back:dir=+x,decode=plane", "front-back:dir=+z"}, 128);
-    const auto coarse = encodeGrids(collider, {20});
-    ASSERT_TRUE(coarse.has_value()) << coarse.error().message;
-    EXPECT_GT(coarse->missing, 0.3);
-    const auto fine = encodeGrids(collider, {128, false, false});
-    ASSERT_TRUE(fine.has_value()) << fine.error().message;
-    EXPECT_LT(fine->missing, 1e-3);
-    EXPECT_LT(encodeGrids(sphere(), {kVoxels})->missing, 1e-5);
+    EXPECT_GT(required(encodeGrids(collider, {20})).missing, 0.3);
+    EXPECT_LT(required(encodeGrids(collider, {128, false, false})).missing, 1e-3);
+    EXPECT_LT(required(encodeGrids(sphere(), {kVoxels})).missing, 1e-5);
 }
 
 // The bounds are those of the mesh. The inside can extend beyond them, as for ground.
@@ -208,8 +195,8 @@ TEST(LevelSet, CoversAllInsidePoints) {
 }
 
 TEST(LevelSet, UnboundedInsideIsRejected) {
-    const PreparedMesh mesh(test::makeBoxMesh({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}));
-    Collider collider = test::bakeSpecs(mesh, {"float:dir=1/1/1,compare=less"}, 32);
+    const PreparedMesh mesh(makeBoxMesh({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}));
+    Collider collider = bakeSpecs(mesh, {"float:dir=1/1/1,compare=less"}, 32);
     collider.maps[0].encloses = false;
     collider.bounds.min *= 0.5F;
     collider.bounds.max *= 0.5F;
@@ -224,4 +211,4 @@ TEST(LevelSet, CoordinatesTooLargeForVoxelsAreRejected) {
 }
 
 }  // namespace
-}  // namespace relief
+}  // namespace relief::test
