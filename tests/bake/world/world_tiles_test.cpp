@@ -103,8 +103,7 @@ TEST_F(WorldTiles, HillsKeepPlaceMaterialsAndBudget) {
         coarse_bytes += tile.coarse ? tile.coarse->gpu_bytes : 0;
         const Bounds outer = solidBox(coarse.colliderOf(i));
         const Bounds inner = solidBox(fine.colliderOf(i));
-        EXPECT_TRUE(glm::all(glm::lessThanEqual(outer.min, inner.min)) &&
-                    glm::all(glm::greaterThanEqual(outer.max, inner.max)));
+        EXPECT_TRUE(outer.contains(inner.min) && outer.contains(inner.max));
     }
     EXPECT_GT(coarse_bytes, 0U);
     EXPECT_LT(coarse_bytes, result.gpuBytes() / 8);
