@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/bake/meshes.h"
 
+#include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <map>
 #include <utility>
 
 namespace relief::test {
+
+double boxDistance(const glm::dvec3& p, const glm::dvec3& half) {
+    const glm::dvec3 q = glm::abs(p) - half;
+    return glm::length(glm::max(q, 0.0)) + std::min(std::max({q.x, q.y, q.z}), 0.0);
+}
 
 TriangleMesh finished(std::vector<glm::vec3> positions, std::vector<glm::uvec3> triangles) {
     TriangleMesh mesh;
@@ -196,9 +203,9 @@ MeshQuery queryOf(PreparedMesh mesh) {
     return required(MeshQuery::build(std::move(mesh)));
 }
 
-TriangleMesh reversed(TriangleMesh mesh) {
-    for (glm::uvec3& t : mesh.triangles) {
-        std::swap(t.y, t.z);
+TriangleMesh reversed(TriangleMesh mesh, std::size_t step) {
+    for (std::size_t i = 0; i < mesh.triangles.size(); i += step) {
+        std::swap(mesh.triangles[i].y, mesh.triangles[i].z);
     }
     return mesh;
 }

@@ -20,6 +20,9 @@
 
 namespace relief::test {
 
+/// Distance from the surface of a box around the origin, negative inside.
+[[nodiscard]] double boxDistance(const glm::dvec3& p, const glm::dvec3& half);
+
 [[nodiscard]] TriangleMesh finished(std::vector<glm::vec3> positions, std::vector<glm::uvec3> triangles);
 
 /// Columns of `axes` are the box's axes.
@@ -44,7 +47,8 @@ inline constexpr float kHillsHalf = 100.0F;  ///< half the extent of the hills a
 /// square window of side `window`.
 [[nodiscard]] TriangleMesh makeRooms(double window = 0.0);
 
-[[nodiscard]] TriangleMesh reversed(TriangleMesh mesh);
+/// Reverses every `step`-th triangle, beginning with the first.
+[[nodiscard]] TriangleMesh reversed(TriangleMesh mesh, std::size_t step = 1);
 /// Merges meshes into one.
 [[nodiscard]] TriangleMesh joined(const std::vector<TriangleMesh>& meshes);
 

@@ -22,11 +22,6 @@
 namespace relief::test {
 namespace {
 
-double boxDistance(const glm::dvec3& p, const glm::dvec3& half) {
-    const glm::dvec3 q = glm::abs(p) - half;
-    return glm::length(glm::max(q, 0.0)) + std::min(std::max({q.x, q.y, q.z}), 0.0);
-}
-
 // --- truth ---
 
 TEST(MeshQuery, BoxDistancesMatchTheFormula) {

@@ -309,10 +309,6 @@ TEST(PatchTexel, ThinHandleOfALargePlateIsPreserved) {
     struct Box {
         glm::dvec3 center;
         glm::dvec3 half;
-        [[nodiscard]] double distance(const glm::dvec3& p) const {
-            const glm::dvec3 d = glm::abs(p - center) - half;
-            return glm::length(glm::max(d, 0.0)) + std::min(0.0, std::max({d.x, d.y, d.z}));
-        }
     };
     const Box boxes[] = {{{0, -0.05, 0}, {6, 0.05, 6}},
                          {{2.37, 0.05, 1.21}, {0.06, 0.01, 0.01}},
@@ -330,7 +326,7 @@ TEST(PatchTexel, ThinHandleOfALargePlateIsPreserved) {
         const glm::dvec3 p = glm::dvec3(2.37, 0.035, 1.21) + glm::dvec3(0.1, 0.05, 0.05) * inCube(random);
         double distance = 1.0;
         for (const Box& box : boxes) {
-            distance = std::min(distance, box.distance(p));
+            distance = std::min(distance, boxDistance(p - box.center, box.half));
         }
         if (std::abs(distance) > 0.5 * kTexel) {
             ASSERT_EQ(vote(map, glm::vec3(p))->distance < 0.0F, distance < 0.0)

@@ -85,11 +85,10 @@ TEST(SealedVoid, IsFilled) {
     for (const glm::vec3& p : pointsIn(makeBoxMesh(glm::dvec3(0.0), glm::dvec3(0.4)).bounds, 20'000)) {
         ASSERT_LT(vote(map, p)->distance, 0.0F);
     }
-    int wrong = 0;
-    for (const TruthPoint& point : sampleNear(query, {.samples = 20'000})) {
-        wrong += (vote(map, point.position)->distance < 0.0F) != point.inside() ? 1 : 0;
-    }
-    EXPECT_LT(wrong, 60);
+    const auto isWrong = [&](const TruthPoint& point) {
+        return (vote(map, point.position)->distance < 0.0F) != point.inside();
+    };
+    EXPECT_LT(std::ranges::count_if(sampleNear(query, {.samples = 20'000}), isWrong), 60);
 }
 
 TEST(SealedVoid, HasNoWindowAndCanStayHollow) {

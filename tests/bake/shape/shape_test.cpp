@@ -342,10 +342,7 @@ TEST(Shape, WallThatMayBeAClothedBodyIsReported) {
     const auto turn = [](const std::vector<glm::dvec2>& profile) { return makeTurned(profile, 24); };
     const TriangleMesh torso = turn({{0.3, 0.0}, {0.34, 0.5}, {0.3, 0.9}, {0.12, 1.0}});
     const TriangleMesh jacket = turn({{0.36, -0.05}, {0.4, 0.5}, {0.36, 0.92}, {0.16, 1.0}});
-    TriangleMesh mixed = reversed(torso);
-    for (std::size_t i = 0; i < mixed.triangles.size(); i += 3) {
-        std::swap(mixed.triangles[i].y, mixed.triangles[i].z);
-    }
+    const TriangleMesh mixed = reversed(reversed(torso), 3);
     const TriangleMesh ball = makeIcosphere({2.0, 0.5, 0.0}, 0.2, 1);
     const auto unclear = [&](const TriangleMesh& outer, const TriangleMesh& inner) {
         // Duplicates restart the classification.
@@ -368,11 +365,7 @@ TEST(Shape, WallThatMayBeAClothedBodyIsReported) {
 }
 
 TEST(Shape, ShellContainsAllPointsNearItsSheet) {
-    TriangleMesh mixed = makeOpenBox();
-    for (std::size_t i = 0; i < mixed.triangles.size(); i += 2) {
-        std::swap(mixed.triangles[i].y, mixed.triangles[i].z);
-    }
-    for (const TriangleMesh& sheet : {mixed, makeCup()}) {
+    for (const TriangleMesh& sheet : {reversed(makeOpenBox(), 2), makeCup()}) {
         const MeshQuery open = queryOf(sheet);
         const MeshQuery shell = queryOf(shaped(sheet).mesh);
         EXPECT_TRUE(shell.watertight());
