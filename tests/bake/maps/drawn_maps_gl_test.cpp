@@ -190,10 +190,9 @@ INSTANTIATE_TEST_SUITE_P(Meshes, DrawnMapsGlTest,
 class HybridGlTest : public GlTest {};
 
 TEST_P(HybridGlTest, PatchesBesideOtherMapsMatchTheCpu) {
-    const glm::dmat3 turn = test::rotation({1, 2, 3}, 40.0);
-    const TriangleMesh mesh =
-        test::joined({test::makeTorusMesh(1.0, 0.35, 96, 48), test::makeIcosphere({0, 0, 0.9}, 0.3, 4),
-                      test::makeBoxMesh({0.1, 0.2, -0.9}, {0.9, 0.3, 0.2}, turn)});
+    const glm::dmat3 turn = rotation({1, 2, 3}, 40.0);
+    const TriangleMesh mesh = joined({makeTorusMesh(1.0, 0.35, 96, 48), makeIcosphere({0, 0, 0.9}, 0.3, 4),
+                                      makeBoxMesh({0.1, 0.2, -0.9}, {0.9, 0.3, 0.2}, turn)});
     const std::vector<std::vector<std::string>> bakes = {
         {"patches:budget=60kB", "front-back:dir=-z,size=64"},
         {"cube:size=32", "patches:budget=200kB"},
@@ -202,7 +201,7 @@ TEST_P(HybridGlTest, PatchesBesideOtherMapsMatchTheCpu) {
     };
     for (const std::vector<std::string>& specs : bakes) {
         SCOPED_TRACE(specs[0]);
-        const Collider collider = test::bakeSpecs(mesh, specs);
+        const Collider collider = bakeSpecs(mesh, specs);
         std::mt19937 random(3);
         std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
         std::vector<glm::vec3> points(100'000);
