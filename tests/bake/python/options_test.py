@@ -82,8 +82,7 @@ def test_every_option_matches_the_tool(arguments, words, mesh, tmp_path):
     done = tool("bake", mesh, "--warnings-only", "-o", tmp_path / "tool.relief", *words,
                 *(["--no-check"] if arguments.get("no_check") else []))
     assert done.returncode == 0, done.stderr
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
+    with warnings.catch_warnings(record=True, action="always") as caught:
         collider = relief.bake(mesh, **arguments)
     assert collider.to_bytes() == (tmp_path / "tool.relief").read_bytes()
     assert [issubclass(one.category, relief.ReliefWarning) for one in caught] == [True] * done.stderr.count("warning: ")
@@ -165,12 +164,10 @@ def test_checks_match_the_tool(bake, arguments, mesh, tmp_path):
     words = [f"--{name.replace('_', '-')}={value if isinstance(value, str) else format(value, 'g')}"
              for name, value in arguments.items()]
     size = {} if "resolution" in bake else {"budget": "60kB"}
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
+    with warnings.catch_warnings(action="ignore"):
         relief.bake(mesh, no_check=True, **size, **bake, **frame).save(tmp_path / "a.relief")
     said = json.loads(tool("check", tmp_path / "a.relief", "--mesh", mesh, "--json", *words).stdout)
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
+    with warnings.catch_warnings(record=True, action="always") as caught:
         accuracy = relief.check(relief.load(tmp_path / "a.relief"), mesh, **arguments)
     assert accuracy.wrong_percent == pytest.approx(said["verdict"]["wrong_percent"], abs=1e-12)
     assert (accuracy.grade, accuracy.lost_parts) == (said["verdict"]["grade"], said["verdict"]["lost_parts"])
