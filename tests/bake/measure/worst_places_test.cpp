@@ -21,7 +21,7 @@
 namespace relief::test {
 namespace {
 
-constexpr const char* kPlanes = ",decode=plane,depth=unorm16";
+const std::string kPlanes = ",decode=plane,depth=unorm16";
 
 struct Measured {
     std::vector<WorstPlace> places;
@@ -36,11 +36,8 @@ Measured measuredPlaces(const TriangleMesh& mesh, const Collider& collider, std:
 }
 
 std::vector<std::string> threeViews(const std::string& size) {
-    std::vector<std::string> specs;
-    for (const char* axis : {"x", "y", "z"}) {
-        specs.push_back(std::string("front-back:dir=-") + axis + ",size=" + size + kPlanes);
-    }
-    return specs;
+    const std::string rest = ",size=" + size + kPlanes;
+    return {"front-back:dir=-x" + rest, "front-back:dir=-y" + rest, "front-back:dir=-z" + rest};
 }
 
 TEST(WorstPlaces, AreWhereAMapIsCorrupted) {
@@ -119,7 +116,7 @@ TEST(WorstPlaces, UnseenCavityIsFixedByACube) {
         EXPECT_GT(place.false_inside_percent, 60.0);
         EXPECT_NEAR(double{glm::length(place.position - glm::vec3(0.2F, 0.0F, 0.0F))}, 0.5, 0.05);
     }
-    specs.push_back(std::string("cube:compare=less,size=64,box=-0.4/-0.6/-0.6/0.8/0.6/0.6,decode=plane"));
+    specs.emplace_back("cube:compare=less,size=64,box=-0.4/-0.6/-0.6/0.8/0.6/0.6,decode=plane");
     const Measured cured = measuredPlaces(mesh, bakeSpecs(mesh, specs));
     const std::uint64_t left = cured.places.empty() ? 0 : cured.places[0].points;
     EXPECT_LT(left, found.places[0].points / 10);
@@ -131,9 +128,8 @@ TEST(WorstPlaces, PlateCausesSilhouetteErrors) {
     // texel of 0.25 contains the gap.
     const TriangleMesh mesh =
         joined({makeBoxMesh({0, -0.5, 0}, {1, 0.5, 1}), makeBoxMesh({0, 0.07, 0}, {1, 0.05, 1})});
-    const Measured found =
-        measuredPlaces(mesh, bakeSpecs(mesh, {std::string("front-back:dir=-y,size=64") + kPlanes,
-                                              std::string("front-back:dir=-x,size=10") + kPlanes}));
+    const Measured found = measuredPlaces(mesh, bakeSpecs(mesh, {"front-back:dir=-y,size=64" + kPlanes,
+                                                                 "front-back:dir=-x,size=10" + kPlanes}));
     ASSERT_FALSE(found.places.empty());
     EXPECT_EQ(found.places[0].cause, WrongCause::kSilhouette) << wordOf(found.places[0].cause);
     EXPECT_EQ(found.places[0].map, 0);
@@ -145,8 +141,7 @@ TEST(WorstPlaces, OpenShellIsNamed) {
     // A sphere without its cap: most rays still find its inside, but the view from above looks into it.
     const TriangleMesh sphere =
         without(makeIcosphere({0, 0, 0}, 1.0, 4), [](const glm::dvec3& p) { return p.y > 0.8; });
-    const Measured open =
-        measuredPlaces(sphere, bakeSpecs(sphere, {std::string("front-back:dir=-y,size=64") + kPlanes}));
+    const Measured open = measuredPlaces(sphere, bakeSpecs(sphere, {"front-back:dir=-y,size=64" + kPlanes}));
     ASSERT_FALSE(open.places.empty());
     EXPECT_EQ(open.places[0].cause, WrongCause::kOpen) << wordOf(open.places[0].cause);
     EXPECT_EQ(open.places[0].map, 0);
@@ -155,7 +150,7 @@ TEST(WorstPlaces, OpenShellIsNamed) {
 TEST(Sights, WallParallelToTheViewIsUnseen) {
     // Four of the six faces are parallel to the only view.
     const TriangleMesh box = makeBoxMesh({0, 0, 0}, {1, 1, 1});
-    for (const std::string& decode : {std::string(kPlanes), std::string()}) {
+    for (const std::string& decode : {kPlanes, std::string()}) {
         EXPECT_NEAR(
             measuredPlaces(box, bakeSpecs(box, {"front-back:dir=-z,size=32" + decode})).unseen_percent,
             100.0 * 4.0 / 6.0, 1.0);
