@@ -11,8 +11,6 @@
 namespace relief::test {
 namespace {
 
-const char* const kDirections[] = {"+x", "-x", "+y", "-y", "+z", "-z"};
-
 /// Half a quantization step at `depth`, plus float errors of the transform and the ray.
 double depthTolerance(MapFormat format, double depth) {
     constexpr double kFloats = 5e-7;
@@ -117,7 +115,7 @@ void checkBoxMap(const DepthMap& map, const glm::dmat3& axes = glm::dmat3(1.0)) 
 
 TEST(BakeBox, OrthographicMapsAreExact) {
     const TriangleMesh mesh = makeBoxMesh(kBoxCenter, kBoxHalf);
-    for (const std::string direction : kDirections) {
+    for (const std::string direction : {"+x", "-x", "+y", "-y", "+z", "-z"}) {
         for (const std::string head :
              {"float:compare=less,dir=", "float:compare=greater,dir=", "fixed8:compare=less,dir=",
               "fixed8:compare=greater,dir=", "front-back:dir="}) {

@@ -458,11 +458,9 @@ TEST(Shape, ShellsHaveALeastThickness) {
     const TriangleMesh far = joined(
         {plane, moved(plane, [&](const glm::dvec3& p) { return p + glm::dvec3(100.0 * side, 0.0, 0.0); })});
     for (const auto& [mesh, thickness] : {std::pair(plane, 0.99e-4), {far, 3.9e-4}}) {
-        const Result<ShapedMesh> shape = shapeMesh(PreparedMesh(mesh), {ShapeAs::kShell, thickness * side});
-        ASSERT_FALSE(shape) << thickness;
-        EXPECT_EQ(shape.error().code, ErrorCode::kUsage);
-        EXPECT_NE(shape.error().message.find("thick; increase it"), std::string::npos)
-            << shape.error().message;
+        SCOPED_TRACE(thickness);
+        expectError(shapeMesh(PreparedMesh(mesh), {ShapeAs::kShell, thickness * side}), ErrorCode::kUsage,
+                    "thick; increase it");
     }
 }
 
