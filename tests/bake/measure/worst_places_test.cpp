@@ -29,7 +29,7 @@ struct Measured {
 };
 
 Measured measuredPlaces(const TriangleMesh& mesh, const Collider& collider, std::uint32_t samples = 40'000) {
-    const MeshQuery query = required(MeshQuery::build(mesh));
+    const MeshQuery query = queryOf(mesh);
     const TruthSamples truth = sampleTruth(query, {.samples = samples});
     const Sights sights(collider.maps, query);
     return {worstPlaces(truth, query, sights, collider), sights.unseenPercent(truth.surface)};

@@ -43,13 +43,10 @@ TEST(AreaTable, FindsTrianglesByAreaFraction) {
 }
 
 // As many meshes at once as a level can have. With one Embree device per mesh, the thousandth would fail.
-
 TEST(EmbreeMesh, ThousandsCoexist) {
     std::vector<MeshQuery> queries;
     for (int i = 0; i < 2500; ++i) {
-        MeshQuery query =
-            required(MeshQuery::build(PreparedMesh(makeIcosphere(glm::dvec3(double(i), 0.0, 0.0), 1.0, 0))));
-        queries.push_back(std::move(query));
+        queries.push_back(queryOf(makeIcosphere(glm::dvec3(double(i), 0.0, 0.0), 1.0, 0)));
     }
     EXPECT_TRUE(queries[0].inside(glm::vec3(0.0F)));
     EXPECT_TRUE(queries[2499].inside(glm::vec3(2499.0F, 0.0F, 0.0F)));
@@ -93,8 +90,7 @@ TEST(RayCost, FanCountsMostTriangles) {
 
 SurfacePart part(const glm::vec3& low, const glm::vec3& high, double area) {
     SurfacePart made;
-    made.bounds.add(low);
-    made.bounds.add(high);
+    made.bounds = {low, high};
     made.area = area;
     made.triangles = 1;
     return made;

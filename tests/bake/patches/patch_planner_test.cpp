@@ -59,33 +59,27 @@ void expectColumnsAgree(const MeshQuery& query, int wrong_max) {
             const LineGrid grid(frame, kAcross);
             const auto place = [](unsigned at) { return (at + LineGrid::kOffset) / kAcross; };
             const CellColumns columns(query, one, unitTriangles(query.mesh(), one), grid);
+            const glm::dvec3 zero = frame.across(glm::dvec3(0.0));
+            const glm::dmat3 back = glm::inverse(glm::dmat3(frame.across(glm::dvec3(1, 0, 0)) - zero,
+                                                            frame.across(glm::dvec3(0, 1, 0)) - zero,
+                                                            frame.across(glm::dvec3(0, 0, 1)) - zero));
             for (unsigned i = 0; i < kAcross * kAcross; ++i) {
                 const std::uint32_t line = grid.lineAt(i % kAcross, i / kAcross);
                 if (grid.lines()[line].misses()) {
                     continue;
                 }
                 const CellColumn column = columns[line];
+                std::vector<double> ends(column.turns.begin(), column.turns.end());
+                ends.push_back(column.leaves);
                 bool inside = column.inside;
                 double from = column.enters;
-                const auto check = [&](double to) {
-                    // The middle of the interval; inverts across().
-                    const glm::dvec3 zero = frame.across(glm::dvec3(0.0));
-                    const glm::dmat3 across(frame.across(glm::dvec3(1, 0, 0)) - zero,
-                                            frame.across(glm::dvec3(0, 1, 0)) - zero,
-                                            frame.across(glm::dvec3(0, 0, 1)) - zero);
-                    const glm::dvec3 p =
-                        glm::inverse(across) *
-                        (glm::dvec3(place(i % kAcross), place(i / kAcross), 0.5 * (from + to)) - zero);
-                    if (to - from > 1e-4) {
-                        wrong += query.inside(glm::vec3(one.low + one.size * p)) != inside ? 1 : 0;
-                    }
+                for (const double to : ends) {
+                    const glm::dvec3 middle(place(i % kAcross), place(i / kAcross), 0.5 * (from + to));
+                    const glm::vec3 p(one.low + one.size * (back * (middle - zero)));
+                    wrong += to - from > 1e-4 && query.inside(p) != inside ? 1 : 0;
                     from = to;
                     inside = !inside;
-                };
-                for (const double turn : column.turns) {
-                    check(turn);
                 }
-                check(column.leaves);
             }
         }
     }
@@ -177,9 +171,8 @@ TEST(PatchPlanner, BoxFacesAreExactToQuantization) {
 
 TEST(PatchPlanner, FlatShapesUseOnlyTheBytesTheyNeed) {
     // A small box beside a large one is judged at its own size.
-    std::vector<TriangleMesh> parts = {makeBoxMesh({0, 0, 0}, {1, 1, 1}),
-                                       makeBoxMesh({1.5, 0, 0}, {0.01, 0.01, 0.01})};
-    const MeshQuery query = queryOf(joined(parts));
+    const MeshQuery query =
+        queryOf(joined({makeBoxMesh({0, 0, 0}, {1, 1, 1}), makeBoxMesh({1.5, 0, 0}, {0.01, 0.01, 0.01})}));
     const DepthMap map = checked(query, 4'000'000);
     EXPECT_LT(map.texels.size(), 1'500'000);
     EXPECT_EQ(wrongPercent(query, map, 20'000), 0.0);
@@ -238,11 +231,11 @@ TEST(PatchPlanner, ThinWallsAndNarrowGapsArePreserved) {
     // Both sides of the wall are in one cell. The wall's volume is too small to justify smaller cells.
     const glm::dmat3 axes = rotation({1, 2, 0}, 35.0);
     for (const double half : {0.01, 0.001}) {
-        const TriangleMesh plates[] = {
-            makeBoxMesh(axes * glm::dvec3(0, 0.2, 0), {1, half, 1}, axes),
-            makeBoxMesh(axes * glm::dvec3(0, -0.2, 0), {1, 0.1, 1}, axes),
-            makeBoxMesh(axes * glm::dvec3(0, -0.4 - 2.0 * half, 0), {1, 0.1, 1}, axes)};
-        const MeshQuery query = queryOf(joined({plates[0], plates[1], plates[2]}));
+        const auto plate = [&](double y, double thick) {
+            return makeBoxMesh(axes * glm::dvec3(0, y, 0), {1, thick, 1}, axes);
+        };
+        const MeshQuery query =
+            queryOf(joined({plate(0.2, half), plate(-0.2, 0.1), plate(-0.4 - 2.0 * half, 0.1)}));
         const DepthMap map = checked(query, 150'000);
         int holes = 0;
         MersenneRandom random(4);
