@@ -241,8 +241,7 @@ View aimedAt(const glm::dvec3& at, const glm::dvec3& d) {
     view.compare = Compare::kBoth;
     view.width = view.height = 8;
     const glm::dvec3 other = std::abs(d.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-    glm::dvec3 r = cross(d, other);
-    r = r / std::sqrt(dot(r, r));
+    const glm::dvec3 r = glm::normalize(cross(d, other));
     const glm::dvec3 u = cross(r, d);
     view.axis[0] = 8.0 * texel * r;
     view.axis[1] = 8.0 * texel * u;
@@ -266,7 +265,7 @@ TEST(Pinholes, RaysAtVerticesAndEdgesHit) {
                     d = glm::dvec3(0.0);
                     d[k / 2] = k % 2 == 0 ? 1.0 : -1.0;
                 }
-                d = d / std::sqrt(dot(d, d));
+                d = glm::normalize(d);
                 for (std::size_t i = 0; i < 1000; ++i) {
                     glm::dvec3 p = ball.positions[i / 2 % ball.positions.size()];
                     if (i % 2 == 1) {
@@ -321,8 +320,8 @@ double cosineAt(const DepthMap& map, const FieldSample& sample, const glm::vec3&
     const glm::dvec3 along = map.projection() == Projection::kOrthographic
                                  ? glm::dvec3(rows.row[2].x, rows.row[2].y, rows.row[2].z)
                                  : q * glm::dvec3(map.object_per_map);
-    const double lengths = length(along) * length(glm::dvec3(sample.normal));
-    const double cosine = std::abs(dot(along, glm::dvec3(sample.normal))) / lengths;
+    const glm::dvec3 normal(sample.normal);
+    const double cosine = std::abs(dot(along, normal)) / (length(along) * length(normal));
     return map.decode == Decode::kPlane ? cosine : 1.0;
 }
 
