@@ -169,22 +169,18 @@ TEST(DepthProof, EndsEarlyWithALargerBoundAndOnAnyThreads) {
     EXPECT_EQ(one.boxes, whole.boxes);
 }
 
-TEST(DepthProof, RejectsDistancesThatOverflow) {
+TEST(DepthProof, NamesWhatItCannotProve) {
+    const TriangleMesh ball = makeIcosphere({0, 0, 0}, 1.0, 3);
+    const MeshQuery query = queryOf(ball);
     // A vote of −(largest float) or less is no vote: the cell would be outside.
-    const MeshQuery query = queryOf(makeIcosphere({0, 0, 0}, 1.0, 3));
-    Collider collider = bakedOf(query, 16'384);
-    std::vector<std::byte>& texels = collider.maps[0].texels;
+    Collider distant = bakedOf(query, 16'384);
+    std::vector<std::byte>& texels = distant.maps[0].texels;
     const std::uint32_t leaf = firstInside(texels);
     PatchRecord record = patchTexel(texels, leaf);
     record.high = std::bit_cast<std::uint32_t>(-std::numeric_limits<float>::max());
     std::memcpy(&texels[std::size_t{leaf} * kPatchTexelBytes], &record, kPatchTexelBytes);
-    ASSERT_TRUE(validateTexels(collider.maps[0]));
-    EXPECT_EQ(proveDepth(query, collider).unproven, "the map has coordinates or distances out of range");
-}
-
-TEST(DepthProof, NamesWhatItCannotProve) {
-    const TriangleMesh ball = makeIcosphere({0, 0, 0}, 1.0, 3);
-    const MeshQuery query = queryOf(ball);
+    ASSERT_TRUE(validateTexels(distant.maps[0]));
+    EXPECT_EQ(proveDepth(query, distant).unproven, "the map has coordinates or distances out of range");
     // Ten bytes of a file may stand for millions of cells.
     const std::vector<PatchRecord> roots(std::size_t{100} * 100 * 100,
                                          PatchRecord::split(0, 255, 1'000'001, {0, 0, 1}, 0.0F));
