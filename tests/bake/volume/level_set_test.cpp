@@ -19,6 +19,8 @@ namespace {
 
 constexpr glm::dvec3 kCenter(0.31, -0.2, 0.13);
 constexpr double kRadius = 0.7;
+constexpr double kVolume = 4.0 / 3.0 * std::numbers::pi * kRadius * kRadius * kRadius;
+constexpr double kArea = 4.0 * std::numbers::pi * kRadius * kRadius;
 constexpr std::uint32_t kVoxels = 64;
 constexpr double kVoxel = 2.0 * kRadius / kVoxels;
 
@@ -82,15 +84,13 @@ TEST(LevelSet, MatchesASphere) {
     EXPECT_EQ(torn, 0U);
     const auto wanted = static_cast<double>(grid->activeVoxelCount());
     // The band is six voxels thick.
-    EXPECT_NEAR(wanted * kVoxel * kVoxel * kVoxel, 4.0 * std::numbers::pi * kRadius * kRadius * 6.0 * kVoxel,
-                0.03 * 4.0 * std::numbers::pi * kRadius * kRadius * 6.0 * kVoxel);
+    EXPECT_NEAR(wanted * kVoxel * kVoxel * kVoxel, kArea * 6.0 * kVoxel, 0.03 * kArea * 6.0 * kVoxel);
     const auto at = grid->getConstAccessor();
     EXPECT_FLOAT_EQ(at.getValue(openvdb::Coord::round(grid->worldToIndex({kCenter.x, kCenter.y, kCenter.z}))),
                     -grid->background());
     EXPECT_FLOAT_EQ(at.getValue(openvdb::Coord(10000, 0, 0)), grid->background());
-    EXPECT_NEAR(openvdb::tools::levelSetVolume(*grid), 4.0 / 3.0 * std::numbers::pi * std::pow(kRadius, 3),
-                0.01);
-    EXPECT_NEAR(openvdb::tools::levelSetArea(*grid), 4.0 * std::numbers::pi * std::pow(kRadius, 2), 0.05);
+    EXPECT_NEAR(openvdb::tools::levelSetVolume(*grid), kVolume, 0.01);
+    EXPECT_NEAR(openvdb::tools::levelSetArea(*grid), kArea, 0.05);
 }
 
 TEST(LevelSet, IsDeterministic) {
@@ -158,7 +158,7 @@ TEST(SurfaceMesh, SphereIsClosedAndFacesOutward) {
     EXPECT_EQ(static_cast<long>(surface.vertices.size()) - static_cast<long>(edges.size() / 2) +
                   static_cast<long>(surface.faces.size()),
               2);
-    EXPECT_NEAR(volume, 4.0 / 3.0 * std::numbers::pi * std::pow(kRadius, 3), 0.01);
+    EXPECT_NEAR(volume, kVolume, 0.01);
     double worst = 0.0;
     for (const glm::vec3& vertex : surface.vertices) {
         worst = std::max(worst, std::abs(fromSphere({vertex.x, vertex.y, vertex.z})));
@@ -187,11 +187,10 @@ TEST(LevelSet, WarnsOfMissingThinParts) {
 // The bounds are those of the mesh. The inside can extend beyond them, as for ground.
 TEST(LevelSet, CoversAllInsidePoints) {
     Collider collider = sphere();
-    collider.bounds.max.y =
-        static_cast<float>(kCenter.y);  // the voxel size is unchanged: x and z are equally long
+    // The voxel size is unchanged: x and z are equally long.
+    collider.bounds.max.y = static_cast<float>(kCenter.y);
     const auto grid = gridOf(*levelSetOf(collider, kVoxels));
-    EXPECT_NEAR(openvdb::tools::levelSetVolume(*grid), 4.0 / 3.0 * std::numbers::pi * std::pow(kRadius, 3),
-                0.01);
+    EXPECT_NEAR(openvdb::tools::levelSetVolume(*grid), kVolume, 0.01);
 }
 
 TEST(LevelSet, UnboundedInsideIsRejected) {
