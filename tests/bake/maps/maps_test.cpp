@@ -14,6 +14,7 @@
 #include "bake/named_maps/ray_probe.h"
 #include "bake/named_maps/scan_convert.h"
 #include "formats/container.h"
+#include "formats/nearest_surface.h"
 #include "tests/bake/meshes.h"
 #include "tests/bake/shaped.h"
 #include "tests/bake/voxels.h"
@@ -192,6 +193,37 @@ TEST(BakeBunny, DefaultMapsClassifyPoints) {
     EXPECT_GT(std::ranges::count_if(truth.uniform, &TruthPoint::inside), 400);
     EXPECT_LE(measureField(truth, fieldOf(collider)).uniform.total(), 2.0)
         << "only concavities that no map sees are wrongly inside";
+}
+
+/// The search on three maps of planes, at 0.5 % of the longest side from the surface (one texel) and at 5 %.
+TEST(BakeBunny, NearestSurfaceIsTheNearestTriangle) {
+    const MeshQuery query = queryOf(bunny());
+    const Collider collider = bakeSpecs(
+        query.prepared(),
+        {"front-back:dir=-x,decode=plane,depth=unorm16", "front-back:dir=-y,decode=plane,depth=unorm16",
+         "front-back:dir=-z,decode=plane,depth=unorm16"},
+        240);
+    for (const double sigma : {0.005, 0.05}) {
+        const TruthSamples samples = sampleTruth(query, {.samples = 20'000, .sigma_fraction = sigma});
+        const double off = sigma * samples.longest_side;
+        const FieldAccuracy votes = measureField(samples, fieldOf(collider));
+        const FieldAccuracy found = measureField(samples, nearestFieldOf(collider));
+        EXPECT_EQ(found.near.total(), votes.near.total());
+        EXPECT_EQ(found.far_percent, 0.0);
+        EXPECT_LT(found.distance_mean, 0.05 * off) << "of " << off;
+        EXPECT_LT(found.distance_p99, 0.5 * off);
+        int astray = 0;
+        for (const TruthPoint& point : samples.near) {
+            const SurfaceSample nearest = nearestSurface(collider, point.position);
+            // The point found is on the mesh. Deep inside, another surface can be equally near.
+            if (std::abs(double{nearest.distance} - double{point.distance}) < 0.01 * off) {
+                const double from_mesh = query.closest(nearest.point).distance;
+                ASSERT_LT(from_mesh, 0.2 * off);
+                astray += from_mesh > 0.1 * off ? 1 : 0;
+            }
+        }
+        EXPECT_LT(astray, 10) << "out of 20,000";
+    }
 }
 
 TEST(BakeBunny, PatchesPreferASide) {
