@@ -40,16 +40,12 @@ PictureMesh sphereMesh(std::uint32_t around, std::uint32_t rings) {
             const double b = kPi * j / rings;
             mesh.positions.emplace_back(kRadius * std::sin(b) * std::cos(a), kRadius * std::cos(b),
                                         -kRadius * std::sin(b) * std::sin(a));
-        }
-    }
-    for (std::uint32_t j = 0; j < rings; ++j) {
-        for (std::uint32_t i = 0; i < around; ++i) {
-            const std::uint32_t right = (i + 1) % around;
-            const std::uint32_t a = j * around + i;
-            const std::uint32_t b = j * around + right;
-            const std::uint32_t c = a + around;
-            const std::uint32_t d = b + around;
-            mesh.triangles.insert(mesh.triangles.end(), {a, c, d, a, d, b});
+            if (j < rings) {
+                const std::uint32_t at = j * around + i;
+                const std::uint32_t right = j * around + (i + 1) % around;
+                mesh.triangles.insert(mesh.triangles.end(),
+                                      {at, at + around, right + around, at, right + around, right});
+            }
         }
     }
     return mesh;
@@ -89,11 +85,7 @@ class ColliderMeshGlTest : public GlTest {
                static_cast<std::size_t>(x);
     }
     static Camera cameraAt(const glm::vec3& eye) {
-        Camera camera;
-        camera.eye = eye;
-        camera.near_plane = 0.5F;
-        camera.far_plane = 50.0F;
-        return camera;
+        return {.eye = eye, .near_plane = 0.5F, .far_plane = 50.0F};
     }
 
     const Collider collider_ = analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, kRadius), 128);
@@ -334,9 +326,7 @@ TEST_P(ColliderLightGlTest, SurfacesDoNotShadeThemselves) {
 // An infinite plate at height h blocks rays steeper than h / reach, and so hides 1 - (h / reach)² of the
 // cosine-weighted sky.
 TEST_P(ColliderLightGlTest, NoLightLeaksThroughAThinSheet) {
-    const Collider sheet =
-        analytic::frontBackCollider(analytic::box({-1.0, -0.00125, -1.0}, {1.0, 0.0, 1.0}), 256);
-    use(sheet);
+    use(analytic::frontBackCollider(analytic::box({-1.0, -0.00125, -1.0}, {1.0, 0.0, 1.0}), 256));
     EXPECT_NEAR(light_->voxel(), 0.05F, 1e-6F);
     std::vector<glm::vec3> points;
     const float behind = light_->sunBias() / sunDirection().y + 0.01F;
@@ -369,12 +359,9 @@ TEST_P(ColliderLightGlTest, NoLightLeaksThroughAThinSheet) {
 
 TEST_P(ColliderLightGlTest, LightFollowsMovingBodies) {
     const Collider ball = analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, 0.25), 64);
-    ColliderBody body;
-    body.collider = &ball;
-    Bounds bounds;
-    bounds.add(glm::vec3(-1.5F, -0.5F, -0.5F));
-    bounds.add(glm::vec3(1.5F, 0.5F, 0.5F));
-    use(required(WorldTextures::create(std::span(&body, 1))), bounds, finestTexel(ball));
+    const ColliderBody body{&ball, {}};
+    use(required(WorldTextures::create(std::span(&body, 1))), {{-1.5F, -0.5F, -0.5F}, {1.5F, 0.5F, 0.5F}},
+        finestTexel(ball));
     // Behind each position of the ball as seen from the sun, and directly below it.
     const auto lightUnder = [&](float x) {
         const glm::vec3 place(x, 0.0F, 0.0F);
@@ -384,8 +371,7 @@ TEST_P(ColliderLightGlTest, LightFollowsMovingBodies) {
     EXPECT_LT(lightUnder(0.0F).sky, 0.8F);
     EXPECT_EQ(light_->updates(), 1U) << "a resting body causes no update";
     for (const float x : {1.0F, -1.0F, 0.0F}) {
-        Pose pose;
-        pose.position = {x, 0.0F, 0.0F};
+        const Pose pose{.position = {x, 0.0F, 0.0F}};
         textures_->setPoses(std::span(&pose, 1));
         for (const float other : {-1.0F, 0.0F, 1.0F}) {
             const Light light = lightUnder(other);
@@ -399,14 +385,10 @@ TEST_P(ColliderLightGlTest, LightFollowsMovingBodies) {
 TEST_P(ColliderLightGlTest, LightFollowsDeformingBodies) {
     // A slab that grows on both sides.
     const auto slab = [](float half) { return movingBox({half, 0.1F, 0.5F}); };
-    Bounds box;
-    box.add(glm::vec3(-1.2F, -0.3F, -0.7F));
-    box.add(glm::vec3(1.2F, 0.3F, 0.7F));
+    const Bounds box{{-1.2F, -0.3F, -0.7F}, {1.2F, 0.3F, 0.7F}};
     LiveCollider live = required(
         LiveCollider::create(slab(0.3F).positions, slab(0.3F).triangles, required(liveMaps(box, 128))));
-    ColliderBody body;
-    body.collider = &live.frames();
-    body.live = true;
+    const ColliderBody body{.collider = &live.frames(), .live = true};
     use(required(WorldTextures::create(std::span(&body, 1))), box, finestTexel(live.frames()));
     ASSERT_TRUE(live.update(*textures_, 0));
     const glm::vec3 behind = glm::vec3(0.8F, 0.0F, 0.0F) - 0.5F * sunDirection();

@@ -37,13 +37,11 @@ bool before(const Element& a, const Element& b) {
 
 std::vector<Element> readOrder(const DepthSorter& sorter) {
     const PassState state;
-    const std::array<GLuint, 1> textures{sorter.order().name()};
-    const auto target = makeFramebuffer(textures);
-    EXPECT_TRUE(target);
+    const GlFramebuffer target = required(makeFramebuffer({sorter.order().name()}));
     const std::uint32_t width = std::min(sorter.count(), DepthSorter::kWidth);
     const std::uint32_t rows = (sorter.count() + DepthSorter::kWidth - 1) / DepthSorter::kWidth;
     std::vector<std::uint32_t> words(std::size_t{4} * width * rows);
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, target->name());
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, target.name());
     glReadBuffer(GL_COLOR_ATTACHMENT0);
     glReadPixels(0, 0, static_cast<GLsizei>(width), static_cast<GLsizei>(rows), GL_RGBA_INTEGER,
                  GL_UNSIGNED_INT, words.data());
@@ -100,10 +98,8 @@ Cloud latticeCloud(std::uint32_t count, std::uint32_t levels, Pcg32& random) {
 
 const glm::vec3 kEye{1.5F, -2.25F, 7.0F};
 
-/// Index order with the keys of a lattice cloud.
-/// \param count  number of ranks.
-std::vector<Element> latticeElements(const Cloud& cloud, std::uint32_t count) {
-    std::vector<Element> elements(count);
+std::vector<Element> stablySorted(const Cloud& cloud, std::uint32_t ranks) {
+    std::vector<Element> elements(ranks);
     for (std::uint32_t i = 0; i < elements.size(); ++i) {
         elements[i].index = i;
         if (i < cloud.extent() && cloud.particles[i].w >= 0.0F) {
@@ -111,14 +107,8 @@ std::vector<Element> latticeElements(const Cloud& cloud, std::uint32_t count) {
             elements[i].key = std::max(std::bit_cast<std::uint32_t>(glm::dot(away, away)), 1U);
         }
     }
+    std::ranges::stable_sort(elements, std::greater(), &Element::key);
     return elements;
-}
-
-std::vector<Element> stablySorted(const Cloud& cloud, std::uint32_t ranks) {
-    std::vector<Element> sorted = latticeElements(cloud, ranks);
-    std::stable_sort(sorted.begin(), sorted.end(),
-                     [](const Element& a, const Element& b) { return a.key > b.key; });
-    return sorted;
 }
 
 /// One sorter on the path of the case.
@@ -130,8 +120,7 @@ class DepthSorterTest : public StepGlTest {
         return exact() || extent == 0 ? extent : std::bit_ceil(extent);
     }
     void make(std::uint32_t capacity) {
-        auto sorter = required(DepthSorter::create(capacity, GetParam().path));
-        sorter_ = std::make_unique<DepthSorter>(std::move(sorter));
+        sorter_ = std::make_unique<DepthSorter>(required(DepthSorter::create(capacity, GetParam().path)));
     }
     void update(const Cloud& cloud, std::uint32_t passes, const glm::vec3& eye = kEye) {
         sorter_->update(cloud.texture, cloud.width, cloud.extent(), eye, passes);
@@ -141,6 +130,7 @@ class DepthSorterTest : public StepGlTest {
 
 class DepthSortGlTest : public DepthSorterTest {};
 class DepthSortNetworkGlTest : public DepthSorterTest {};  // only fragments
+class DepthSortMotionGlTest : public DepthSorterTest {};
 
 // In compute, a row is 256 elements. A block is one row, or two for more than 512 rows: one sorter sees both in turn.
 TEST_P(DepthSortGlTest, WholeSequencesAreStableSorts) {
@@ -260,8 +250,6 @@ TEST_P(DepthSortGlTest, InvalidCapacitiesAreErrorsAndLargerExtentsAreIgnored) {
         EXPECT_TRUE(element.index < 100 || element.key == 0);
     }
 }
-
-class DepthSortMotionGlTest : public DepthSorterTest {};
 
 TEST_P(DepthSortMotionGlTest, IsAPermutationForChangingExtents) {
     constexpr std::uint32_t kCapacity = 5000;

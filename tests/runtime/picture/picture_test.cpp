@@ -36,7 +36,7 @@ TEST(Png, LibpngReadsTheFileBack) {
             rgba.push_back(255);
         }
     }
-    const std::vector<std::byte> bytes = encodePng(rgb, kWidth, kHeight).value();
+    const std::vector<std::byte> bytes = required(encodePng(rgb, kWidth, kHeight));
     EXPECT_EQ(*encodePng(rgb, kWidth, kHeight), bytes) << "the same pixels must give the same bytes";
     const auto picture = required(decodePng(bytes, "'a.png'"));
     EXPECT_EQ(picture.width, kWidth);
@@ -149,11 +149,10 @@ TEST(ParticleLook, TracksHaveTheirOwnAges) {
         look.rotation.push_back({age(0.5F), 1.0F});
         look.color.push_back({age(0.75F), glm::vec3(1.0F)});
     }
-    const auto texels = packLooks(std::vector<ParticleLook>{look}, {});
-    ASSERT_TRUE(texels) << texels.error().message;
-    EXPECT_EQ(texels->texels[1].w, 4.0F * kLookKeysMax);
-    EXPECT_EQ(texels->texels.back(), glm::vec4(1.0F, 1.0F, 1.0F, 0.0F)) << "the row is full";
-    EXPECT_LE(texels->width, 2048U) << "larger than OpenGL ES 3.0 guarantees";
+    const auto packed = required(packLooks(std::vector<ParticleLook>{look}, {}));
+    EXPECT_EQ(packed.texels[1].w, 4.0F * kLookKeysMax);
+    EXPECT_EQ(packed.texels.back(), glm::vec4(1.0F, 1.0F, 1.0F, 0.0F)) << "the row is full";
+    EXPECT_LE(packed.width, 2048U) << "larger than OpenGL ES 3.0 guarantees";
 }
 
 TEST(ParticleLook, InvalidTracksAreRejected) {
