@@ -283,12 +283,7 @@ class GlFaultTest : public GlTest {
     }
     /// The particle fills the centre of the picture.
     Result<void> drawParticles(const std::optional<ColliderView>& collider, StepPath path) {
-        glBindFramebuffer(GL_FRAMEBUFFER, frame_.target().framebuffer);
-        const std::array<GLfloat, 4> black{0.0F, 0.0F, 0.0F, 1.0F};
-        const GLfloat far = 1.0F;
-        glClearBufferfv(GL_COLOR, 0, black.data());
-        glClearBufferfv(GL_DEPTH, 0, &far);
-        glBindFramebuffer(GL_FRAMEBUFFER, 0);
+        clearPicture(frame_.target().framebuffer, {0.0F, 0.0F, 0.0F, 1.0F});
         auto renderer = RELIEF_TRY(ParticleRenderer::create(collider, path));
         const Camera camera{.eye = {0.0F, 2.0F, 4.0F}, .target = {0.0F, 2.0F, 0.0F}};
         const ParticleStyle style{.diameter = 1.0F, .fade_in = 0.0F, .sprite = Sprite::kQuad};

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <glm/vec4.hpp>
 #include <map>
 #include <memory>
 #include <stdexcept>
@@ -24,6 +25,15 @@ inline std::string glApiTestName(const testing::TestParamInfo<GlApi>& info) {
 
 inline GlApi apiOf(GlApi api) {
     return api;
+}
+
+/// Sets a picture's colour, and its depth to far. Binds the default framebuffer.
+inline void clearPicture(GLuint framebuffer, const glm::vec4& color) {
+    const GLfloat far = 1.0F;
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glClearBufferfv(GL_COLOR, 0, &color.x);
+    glClearBufferfv(GL_DEPTH, 0, &far);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
 /// The contexts shared by a program's tests, one per API, so that drivers start and compile only once.

@@ -65,12 +65,7 @@ class SpriteGlTest : public GlTest {
     }
     void draw(const GlTexture* order = nullptr, const GlTexture* behind = nullptr) {
         const ParticleOrder ranks{order, order_count_};
-        glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
-        const std::array<GLfloat, 4> black{};
-        const GLfloat far = 1.0F;
-        glClearBufferfv(GL_COLOR, 0, black.data());
-        glClearBufferfv(GL_DEPTH, 0, &far);
-        glBindFramebuffer(GL_FRAMEBUFFER, 0);
+        clearPicture(framebuffer_.name(), glm::vec4(0.0F));
         const auto drawn =
             renderer_.draw(*particles_, camera_, style_, {framebuffer_.name(), kSide, kSide}, ranks, behind);
         ASSERT_TRUE(drawn) << drawn.error().message;

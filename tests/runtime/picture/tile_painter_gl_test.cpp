@@ -63,12 +63,7 @@ class TilePainterGlTest : public GlTest {
     }
 
     std::vector<float> draw(ParticleRenderer& renderer, bool ordered, bool among_collider) {
-        glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
-        const std::array<GLfloat, 4> blue{0.1F, 0.2F, 0.4F, 1.0F};
-        const GLfloat far = 1.0F;
-        glClearBufferfv(GL_COLOR, 0, blue.data());
-        glClearBufferfv(GL_DEPTH, 0, &far);
-        glBindFramebuffer(GL_FRAMEBUFFER, 0);
+        clearPicture(framebuffer_.name(), {0.1F, 0.2F, 0.4F, 1.0F});
         if (among_collider) {
             EXPECT_TRUE(collider_renderer_.draw(camera_, ColliderStyle{}, target()));
         }
