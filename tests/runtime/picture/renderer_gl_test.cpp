@@ -32,13 +32,6 @@ struct Rgb {
 
 class RendererGlTest : public GlTest {
   protected:
-    RendererGlTest() {
-        camera_.eye = {0.0F, 0.0F, 3.0F};
-        camera_.target = {0.0F, 0.0F, 0.0F};
-        camera_.fov = 30.0F;
-        camera_.near_plane = 0.5F;
-        camera_.far_plane = 50.0F;
-    }
     [[nodiscard]] ColliderView view() const { return {&textures_, collider_.bounds, finestTexel(collider_)}; }
 
     void drawCollider() {
@@ -63,7 +56,7 @@ class RendererGlTest : public GlTest {
 
     const Collider collider_ = analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, 0.5), 128);
     WorldTextures textures_ = required(WorldTextures::create(collider_));
-    Camera camera_;
+    Camera camera_{.eye = {0.0F, 0.0F, 3.0F}, .near_plane = 0.5F, .far_plane = 50.0F};
     ColliderStyle style_;
     Frame frame_ = required(Frame::create(kWidth, kHeight));
     ColliderRenderer collider_renderer_ = required(ColliderRenderer::create(view()));
@@ -177,9 +170,7 @@ TEST_P(RendererGlTest, FrameSizesAreValidated) {
     EXPECT_EQ(Frame::create(5, 0).error().code, ErrorCode::kUsage);
     EXPECT_EQ(Frame::create(1000000, 5).error().code, ErrorCode::kLimit);
     EXPECT_EQ(Frame::create(0xffffffffU, 0xffffffffU).error().code, ErrorCode::kLimit);
-    const auto frame = Frame::create(1, 1);
-    ASSERT_TRUE(frame);
-    EXPECT_EQ(frame->read().size(), 3U);
+    EXPECT_EQ(required(Frame::create(1, 1)).read().size(), 3U);
 }
 
 // Pictures do not depend on the caller's state, which is kept. The maps are uploaded in that state as well: its unpack
@@ -250,9 +241,8 @@ constexpr float kRoofHeight = 2.0F;
 
 PictureMesh box(const glm::vec3& low, const glm::vec3& high, const std::array<std::uint8_t, 4>& color) {
     PictureMesh mesh;
-    for (int i = 0; i < 8; ++i) {
-        mesh.positions.emplace_back((i & 1) != 0 ? high.x : low.x, (i & 2) != 0 ? high.y : low.y,
-                                    (i & 4) != 0 ? high.z : low.z);
+    for (unsigned i = 0; i < 8; ++i) {
+        mesh.positions.push_back(Bounds{low, high}.corner(i));
         mesh.colors.push_back(color);
     }
     mesh.triangles = {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
@@ -270,13 +260,6 @@ struct MeanRgb {
 
 class MeshRendererGlTest : public GlTest {
   protected:
-    MeshRendererGlTest() {
-        camera_.eye = {0.0F, 5.0F, 11.0F};
-        camera_.target = {0.0F, 0.5F, 0.0F};
-        camera_.fov = 40.0F;
-        camera_.far_plane = 200.0F;
-    }
-
     void draw(const MeshStyle& style, const std::vector<MeshInstance>& places) {
         const auto drawn =
             renderer_.draw({camera_, frame_.target().aspect()}, style, places, around_, frame_.target());
@@ -291,21 +274,17 @@ class MeshRendererGlTest : public GlTest {
                                camera_.view() * glm::vec4(p, 1.0F);
         const auto x = static_cast<int>((0.5F + 0.5F * clip.x / clip.w) * float{kMeadowWidth});
         const auto y = static_cast<int>((0.5F - 0.5F * clip.y / clip.w) * float{kMeadowHeight});
-        std::array<float, 3> sum{};
-        for (int dy = -1; dy <= 1; ++dy) {
-            for (int dx = -1; dx <= 1; ++dx) {
-                for (std::size_t k = 0; k < 3; ++k) {
-                    sum[k] += rgb_.at(3 * (static_cast<std::size_t>(y + dy) * kMeadowWidth +
-                                           static_cast<std::size_t>(x + dx)) +
-                                      k);
-                }
-            }
+        glm::vec3 sum(0.0F);
+        for (int i = 0; i < 9; ++i) {
+            const auto at = 3 * static_cast<std::size_t>((y + i / 3 - 1) * int{kMeadowWidth} + x + i % 3 - 1);
+            sum += glm::vec3(rgb_.at(at), rgb_.at(at + 1), rgb_.at(at + 2));
         }
-        return {sum[0] / 9, sum[1] / 9, sum[2] / 9};
+        return {sum.x / 9, sum.y / 9, sum.z / 9};
     }
 
     const Bounds around_{{-8.0F, -1.0F, -8.0F}, {8.0F, 3.0F, 8.0F}};
-    Camera camera_;
+    Camera camera_{
+        .eye = {0.0F, 5.0F, 11.0F}, .target = {0.0F, 0.5F, 0.0F}, .fov = 40.0F, .far_plane = 200.0F};
     MeshRenderer renderer_ = required(MeshRenderer::create(
         std::vector<PictureMesh>{box({-8, -1, -8}, {8, 0, 8}, kMeadowGreen),
                                  box({-1, kRoofHeight, -1}, {1, kRoofHeight + 0.1F, 1}, kRoofRed),

@@ -22,17 +22,6 @@ constexpr float kHalf = 1.0F / 1024.0F;
 
 class SpriteGlTest : public GlTest {
   protected:
-    SpriteGlTest() {
-        // At the origin, one unit is half the picture's height: 32 pixels.
-        camera_.eye = {0.0F, 0.0F, 3.0F};
-        camera_.fov = glm::degrees(2.0F * std::atan(1.0F / 3.0F));
-        camera_.near_plane = 0.5F;
-        camera_.far_plane = 50.0F;
-        style_.fade_in = 0.0F;
-        style_.fade_out = 0.0F;
-        style_.sprite = Sprite::kQuad;
-    }
-
     /// A sprite of each type at the origin, with lifetime 8 and this age in seconds.
     void spawnTypes(const std::vector<std::uint32_t>& types, float age) {
         std::vector<Birth> births;
@@ -109,8 +98,12 @@ class SpriteGlTest : public GlTest {
     const GlTexture color_ = makeTexture2D(GL_RGBA16F, kSide, kSide, GL_RGBA, GL_HALF_FLOAT);
     const GlTexture depth_ = makeTexture2D(GL_DEPTH_COMPONENT32F, kSide, kSide, GL_DEPTH_COMPONENT, GL_FLOAT);
     const GlFramebuffer framebuffer_ = required(makeFramebuffer({color_.name()}, depth_.name()));
-    Camera camera_;
-    ParticleStyle style_;
+    // At the origin, one unit is half the picture's height: 32 pixels.
+    Camera camera_{.eye = {0.0F, 0.0F, 3.0F},
+                   .fov = glm::degrees(2.0F * std::atan(1.0F / 3.0F)),
+                   .near_plane = 0.5F,
+                   .far_plane = 50.0F};
+    ParticleStyle style_{.fade_in = 0.0F, .fade_out = 0.0F, .sprite = Sprite::kQuad};
     std::optional<SpriteAtlas> atlas_;
     ParticleRenderer renderer_ = required(ParticleRenderer::create(std::nullopt));
     std::optional<ParticleSystem> particles_;

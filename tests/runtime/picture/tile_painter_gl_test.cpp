@@ -30,14 +30,6 @@ class TilePainterGlTest : public GlTest {
         for (const StepPath path : {StepPath::kFragment, StepPath::kCompute}) {
             renderers_.push_back(required(ParticleRenderer::create(view(), path)));
         }
-        camera_.eye = {0.3F, 0.4F, 3.0F};
-        camera_.fov = 30.0F;
-        camera_.near_plane = 0.5F;
-        camera_.far_plane = 50.0F;
-        style_.fade_in = 0.0F;
-        style_.fade_out = 0.0F;
-        style_.diameter = 0.05F;
-        style_.opacity = 0.6F;
     }
 
     [[nodiscard]] ColliderView view() const { return {&textures_, collider_.bounds, finestTexel(collider_)}; }
@@ -54,8 +46,7 @@ class TilePainterGlTest : public GlTest {
             const float x = random.between(-reach, reach);
             const float y = random.between(-reach, reach);
             const float z = random.between(-reach, reach);
-            const glm::vec3 velocity = 0.2F * glm::vec3(z, x, y);
-            births.push_back({{x, y, z}, velocity, i % 9 == 0 ? 0.1F : 8.0F, i % 3});
+            births.push_back({{x, y, z}, 0.2F * glm::vec3(z, x, y), i % 9 == 0 ? 0.1F : 8.0F, i % 3});
         }
         particles_->spawn(births);
         particles_->step(1.0F);
@@ -124,8 +115,8 @@ class TilePainterGlTest : public GlTest {
 
     bool srgb_ = false;
     const Collider collider_ = analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, 0.5), 64);
-    Camera camera_;
-    ParticleStyle style_;
+    Camera camera_{.eye = {0.3F, 0.4F, 3.0F}, .near_plane = 0.5F, .far_plane = 50.0F};
+    ParticleStyle style_{.diameter = 0.05F, .opacity = 0.6F, .fade_in = 0.0F, .fade_out = 0.0F};
     WorldTextures textures_ = required(WorldTextures::create(collider_));
     ColliderRenderer collider_renderer_ = required(ColliderRenderer::create(view()));
     std::vector<ParticleRenderer> renderers_;
