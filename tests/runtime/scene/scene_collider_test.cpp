@@ -163,7 +163,7 @@ TEST(SceneLive, MapsContainTheMotionOfTheMesh) {
     collider.path = folder.path() / "none.obj";
     EXPECT_TRUE(loadLiveMesh(collider).error().message.starts_with("scene.toml:2:8: collider.mesh: "));
     collider.path = folder.write("point.obj", "v 1 1 1\nf 1 1 1\n");
-    expectErrorOf(loadLiveMesh(collider), "scene.toml:2:8", "");
+    expectErrorOf(loadLiveMesh(collider), "scene.toml:2:8");
 }
 
 const std::string kHead = "[[collider]]\nfile = \"box.relief\"\n";
@@ -203,7 +203,7 @@ TEST(SceneMaterial, UnknownNamesAreErrors) {
          {std::pair("[[material]]\nname = \"stave\"\n", "scene.toml:4:8: material[0].name = 'stave'"),
           {"[[spawn]]\non = \"collision\"\nmaterial = \"ice\"\n",
            "scene.toml:5:12: spawn[0].material = 'ice'"}}) {
-        expectErrorOf(loadAll(folder.write("scene.toml", kHead + more), {}), what, "");
+        expectErrorOf(loadAll(folder.write("scene.toml", kHead + more), {}), what);
         // Another scene that replaces this one during play.
         const auto plays = loadAll(folder.write("plays.toml", kHead), {});
         const auto changed = parseScene(kHead + more, "scene.toml");
@@ -435,8 +435,7 @@ TEST(SceneWorld, NodesHaveOnePlaceInTheWorld) {
     }
     const std::string door = "[[collider]]\nnode = \"door\"\n";
     Scene twice = goodScene("world = \"w.json\"\n" + door + door);
-    expectErrorOf(placeBodies(twice, test::threeBodies()), "dir/scene.toml:5:8: collider[1].node = 'door'",
-                  "");
+    expectErrorOf(placeBodies(twice, test::threeBodies()), "dir/scene.toml:5:8: collider[1].node = 'door'");
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "runtime/scene/scene.h"
+#include "tests/results.h"
 
 namespace relief {
 
@@ -20,12 +21,8 @@ inline Result<Scene> sceneOf(const std::string& text) {
 
 /// The scene of a text that must be valid.
 inline Scene goodScene(const std::string& text) {
-    const auto scene = sceneOf(text);
-    EXPECT_TRUE(scene) << text << "\n" << scene.error().message;
-    Scene none;
-    none.colliders.resize(1);
-    none.emitters.resize(1);
-    return scene.value_or(none);
+    SCOPED_TRACE(text);
+    return required(sceneOf(text));
 }
 
 /// The scene of one collider and these lines.
@@ -34,21 +31,14 @@ inline Scene sceneWith(const std::string& more) {
 }
 
 inline Bounds unitBounds() {
-    Bounds bounds;
-    bounds.add({-1.0F, 0.0F, -0.5F});
-    bounds.add({1.0F, 1.0F, 0.5F});
-    return bounds;
+    return {{-1.0F, 0.0F, -0.5F}, {1.0F, 1.0F, 0.5F}};
 }
 
 /// \param names  the key, or other text that identifies the error at its position.
 template <class T>
-void expectErrorOf(const Result<T>& result, const std::string& place, const std::string& names) {
-    ASSERT_FALSE(result) << place << " " << names;
-    const std::string& message = result.error().message;
-    EXPECT_EQ(result.error().code, ErrorCode::kInvalidInput);
-    EXPECT_NE(message.find(place), std::string::npos) << message;
-    EXPECT_NE(message.find(names), std::string::npos) << message;
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+void expectErrorOf(const Result<T>& result, const std::string& place, const std::string& names = "") {
+    expectError(result, ErrorCode::kInvalidInput, place);
+    expectError(result, ErrorCode::kInvalidInput, names);
 }
 
 struct SceneError {

@@ -274,7 +274,7 @@ TEST_F(SceneTouch, DroppedBirthsUseNoCapacity) {
 TEST_F(SceneTouch, UnknownMaterialsAreErrors) {
     expectErrorOf(
         load(kBoxCollider + kFoot + "[emitter.touching]\nwithin = 1\nmaterial = [\"oak\",\n  \"erth\"]\n"),
-        "scene.toml:11:3: emitter[0].touching.material = 'erth'", "");
+        "scene.toml:11:3: emitter[0].touching.material = 'erth'");
 }
 
 }  // namespace
