@@ -142,11 +142,9 @@ TEST(SceneEmitter, EmittersSpawn) {
     const test::TemporaryFolder folder;
     folder.write("points.csv", "1,2,3\n");
     const auto make = [&](const std::string& keys) {
-        auto complete = withDefaults(
-            required(parseScene(kSceneHead + "[emitter]\n" + keys, folder.path() / "scene.toml")),
-            unitBounds());
-        EXPECT_TRUE(complete);
-        return makeEmitters(complete->emitters, SceneMeshes{});
+        const Scene scene =
+            required(parseScene(kSceneHead + "[emitter]\n" + keys, folder.path() / "scene.toml"));
+        return makeEmitters(required(withDefaults(scene, unitBounds())).emitters, SceneMeshes{});
     };
     auto made =
         required(make("points = \"points.csv\"\nburst = 3\nrate = 0\nvelocity_spread = [0, 0, 0]\n"
@@ -190,9 +188,7 @@ class SceneSurface : public testing::Test {
         return loadAll(folder_.write("scene.toml", text), {});
     }
     double area(const std::string& text) {
-        const auto loaded = load(text);
-        EXPECT_TRUE(loaded) << loaded.error().message;
-        return loaded ? loaded->emitters.at(0).settings().surface->area() : 0.0;
+        return required(load(text)).emitters.at(0).settings().surface->area();
     }
     void expectRefused(const std::string& text, const std::string& place, const std::string& words) {
         expectErrorOf(load(text), "scene.toml:" + place + ": ", words);
@@ -239,10 +235,8 @@ TEST_F(SceneSurface, MayBeAMeshFile) {
     expectRefused(head + "group = \"floor\"\n", "6:9", "'shell', 'lid top'");
     expectRefused(head + "material = \"glass\"\n", "6:12", "'wood', 'iron'");
     expectRefused(head + "material = \"wood\"\ngroup = \"lid top\"\n", "3:1", "no area");
-    const auto loaded = load(head);
-    ASSERT_TRUE(loaded);
-    const auto files = filesOf(loaded->scene);
-    EXPECT_NE(std::find(files.begin(), files.end(), folder_.path() / "cube.obj"), files.end());
+    const auto files = filesOf(required(load(head)).scene);
+    EXPECT_NE(std::ranges::find(files, folder_.path() / "cube.obj"), files.end());
 }
 
 TEST_F(SceneSurface, CollidersWithoutAMeshGiveASurface) {
@@ -290,14 +284,12 @@ class DrawnMeshesTest : public testing::Test {
 
     /// A scene with a world, like the result of loadAll(), but without its containers.
     [[nodiscard]] LoadedScene loaded(const World& world, const std::string& tables = {}) const {
-        auto scene = parseScene(tables + "[ground]\nenabled = false\n[render]\nmeshes = \"" +
-                                    folder_.path().filename().string() + "\"\n",
-                                folder_.path().parent_path() / "scene.toml");
-        EXPECT_TRUE(scene) << scene.error().message;
-        scene->world = folder_.path().parent_path() / "world.json";
-        EXPECT_TRUE(placeBodies(*scene, world));
         LoadedScene loaded;
-        loaded.scene = std::move(*scene);
+        loaded.scene = required(parseScene("world = \"world.json\"\n" + tables +
+                                               "[ground]\nenabled = false\n[render]\nmeshes = \"" +
+                                               folder_.path().filename().string() + "\"\n",
+                                           folder_.path().parent_path() / "scene.toml"));
+        EXPECT_TRUE(placeBodies(loaded.scene, world));
         loaded.world = world;
         loaded.live.resize(loaded.scene.colliders.size());
         loaded.played.resize(loaded.scene.colliders.size());
@@ -315,18 +307,17 @@ World namedWorld() {
 }
 
 TEST_F(DrawnMeshesTest, MeshesAreReadOnceAndDrawnForEachBody) {
-    const LoadedScene scene = loaded(
-        namedWorld(), "world = \"world.json\"\n[[collider]]\nfile = \"own.relief\"\nposition = [0, 5, 0]\n");
-    const auto meshes = loadDrawnMeshes(scene);
-    ASSERT_TRUE(meshes) << meshes.error().message;
-    EXPECT_EQ(meshes->meshes.size(), 3U);
+    const LoadedScene scene =
+        loaded(namedWorld(), "[[collider]]\nfile = \"own.relief\"\nposition = [0, 5, 0]\n");
+    const auto meshes = required(loadDrawnMeshes(scene));
+    EXPECT_EQ(meshes.meshes.size(), 3U);
     EXPECT_EQ(*drawnFiles(scene),
               (std::vector<fs::path>{folder_.path() / "door.ply", folder_.path() / "floor.obj",
                                      folder_.path() / "own.obj"}));
-    ASSERT_EQ(meshes->places.size(), 4U);
-    EXPECT_FALSE(meshes->floor) << "the scene has no ground";
-    EXPECT_EQ(meshes->places[2].mesh, meshes->places[3].mesh) << "door and gate share a mesh";
-    const std::vector<MeshInstance> places = meshPlaces(scene, *meshes, 0.0);
+    ASSERT_EQ(meshes.places.size(), 4U);
+    EXPECT_FALSE(meshes.floor) << "the scene has no ground";
+    EXPECT_EQ(meshes.places[2].mesh, meshes.places[3].mesh) << "door and gate share a mesh";
+    const std::vector<MeshInstance> places = meshPlaces(scene, meshes, 0.0);
     EXPECT_EQ(places[0].pose.position, glm::vec3(0.0F, 5.0F, 0.0F));
     EXPECT_EQ(places[2].pose, scene.scene.colliders[2].pose);
     EXPECT_FALSE(places[2].moves);
@@ -337,9 +328,7 @@ TEST_F(DrawnMeshesTest, MeshFilesAreNamedAsInTheContainer) {
         folder_.write("props_chair.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
         World world = namedWorld();
         world.colliders[1].mesh = name;
-        const LoadedScene scene = loaded(world, "world = \"world.json\"\n");
-        const auto files = required(drawnFiles(scene));
-        EXPECT_EQ(files.back(), folder_.path() / "props_chair.obj");
+        EXPECT_EQ(required(drawnFiles(loaded(world))).back(), folder_.path() / "props_chair.obj");
     }
 }
 
@@ -347,14 +336,14 @@ TEST_F(DrawnMeshesTest, LinksOutOfTheFolderAreNotRead) {
     const test::TemporaryFolder elsewhere;
     fs::rename(folder_.path() / "floor.obj", folder_.path() / "stored");
     fs::create_symlink("stored", folder_.path() / "floor.obj");
-    const LoadedScene scene = loaded(namedWorld(), "world = \"world.json\"\n");
+    const LoadedScene scene = loaded(namedWorld());
     EXPECT_TRUE(drawnFiles(scene)) << "a link that stays inside";
     const fs::path secret = elsewhere.write("secret.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     fs::remove(folder_.path() / "floor.obj");
     fs::create_symlink(secret, folder_.path() / "floor.obj");
-    expectErrorOf(drawnFiles(scene), "scene.toml:5:", "floor.obj' is a link to a file outside its folder");
-    expectErrorOf(loadDrawnMeshes(scene),
-                  "scene.toml:5:", "floor.obj' is a link to a file outside its folder");
+    const std::string words = "floor.obj' is a link to a file outside its folder";
+    expectErrorOf(drawnFiles(scene), "scene.toml:5:", words);
+    expectErrorOf(loadDrawnMeshes(scene), "scene.toml:5:", words);
 }
 
 TEST_F(DrawnMeshesTest, AllFilesCoverEveryRun) {
@@ -367,28 +356,27 @@ TEST_F(DrawnMeshesTest, AllFilesCoverEveryRun) {
     for (const WorldCollider& collider : world.colliders) {
         wanted.insert(folder / collider.file);
     }
-    const std::vector<fs::path> files = allFilesOf(loaded(world, "world = \"world.json\"\n"));
+    const std::vector<fs::path> files = allFilesOf(loaded(world));
     EXPECT_EQ(std::set(files.begin(), files.end()), wanted);
 }
 
 TEST_F(DrawnMeshesTest, TilesOfAMeshAreDrawnOnce) {
     World world = namedWorld();
     test::addTile(world, 0, "floor-1.relief", world.bodies.size());
-    EXPECT_EQ(loadDrawnMeshes(loaded(world, "world = \"world.json\"\n"))->places.size(), 3U);
+    EXPECT_EQ(loadDrawnMeshes(loaded(world))->places.size(), 3U);
     world.bodies.back().position.x += 10.0F;  // at another place it is another body
-    EXPECT_EQ(loadDrawnMeshes(loaded(world, "world = \"world.json\"\n"))->places.size(), 4U);
+    EXPECT_EQ(loadDrawnMeshes(loaded(world))->places.size(), 4U);
 }
 
 TEST_F(DrawnMeshesTest, MissingFilesAreErrors) {
     for (const char* name : {"", ".", "..", "../door", "a/b", "a\\b"}) {
         World world = namedWorld();
         world.colliders[1].mesh = name;
-        expectErrorOf(loadDrawnMeshes(loaded(world, "world = \"world.json\"\n")), "scene.toml:5:");
+        expectErrorOf(loadDrawnMeshes(loaded(world)), "scene.toml:5:");
     }
     World world = namedWorld();
     world.colliders[1].mesh = "window";
-    EXPECT_NE(loadDrawnMeshes(loaded(world, "world = \"world.json\"\n")).error().message.find("'window.ply'"),
-              std::string::npos);
+    expectErrorOf(loadDrawnMeshes(loaded(world)), "scene.toml:5:", "'window.ply'");
 }
 
 TEST(SceneWeather, InterpolatesLinearly) {

@@ -3,7 +3,6 @@
 // keys; toml_reader_test.cpp tests ranges, value types and unknown keys.
 #include <gtest/gtest.h>
 #include <cmath>
-#include <fstream>
 #include <string>
 
 #include "formats/fields/json.h"
@@ -12,6 +11,7 @@
 #include "runtime/scene/scene.h"
 #include "tests/results.h"
 #include "tests/runtime/scene/scene_text.h"
+#include "tests/temporary_folder.h"
 
 namespace relief::test {
 namespace {
@@ -63,36 +63,33 @@ TEST(Scene, CollidesMasksBodies) {
 }
 
 TEST(Scene, OnlyMissingKeysDefaultToTheBounds) {
-    const auto scene = withDefaults(sceneWith(""), unitBounds());
-    ASSERT_TRUE(scene);
+    const auto scene = required(withDefaults(sceneWith(""), unitBounds()));
     // The longest side is 2: births start above the box, and the floor is its lower end.
-    EXPECT_GT(scene->emitters[0].box_min.y, 1.0F);
-    EXPECT_EQ(*scene->forces.gravity, glm::vec3(0.0F, -6.0F, 0.0F));
-    EXPECT_EQ(*scene->ground.height, 0.0F);
-    EXPECT_FLOAT_EQ(*scene->render.point_size, 0.013F);
-    EXPECT_NEAR(scene->emitters[0].rate * 5.0, 65536.0, 1e-2) << "the whole capacity is born by the end";
-    EXPECT_GT(scene->camera.eye->z, 2.0F);
-    const auto given =
+    EXPECT_GT(scene.emitters[0].box_min.y, 1.0F);
+    EXPECT_EQ(*scene.forces.gravity, glm::vec3(0.0F, -6.0F, 0.0F));
+    EXPECT_EQ(*scene.ground.height, 0.0F);
+    EXPECT_FLOAT_EQ(*scene.render.point_size, 0.013F);
+    EXPECT_NEAR(scene.emitters[0].rate * 5.0, 65536.0, 1e-2) << "the whole capacity is born by the end";
+    EXPECT_GT(scene.camera.eye->z, 2.0F);
+    const auto given = required(
         withDefaults(sceneWith("[emitter]\npoint = [1, 2, 3]\nduration = 2\nvelocity = [0, 0, 0]\n"
                                "velocity_spread = [0, 1, 0]\n[forces]\ngravity = [0, -9.81, 0]\n[ground]\n"
                                "height = -4\n[camera]\neye = [1, 1, 1]\n[render]\npoint_size = 0.5\n"),
-                     unitBounds());
-    ASSERT_TRUE(given);
-    EXPECT_EQ(given->emitters[0].box_max, glm::vec3(1, 2, 3));
-    EXPECT_NEAR(given->emitters[0].rate * 2.0, 65536.0, 1e-6) << "within its duration";
-    EXPECT_EQ(given->emitters[0].velocity, glm::vec3(0.0F));
-    EXPECT_EQ(given->emitters[0].velocity_spread, glm::vec3(0, 1, 0));
-    EXPECT_EQ(*given->forces.gravity, glm::vec3(0, -9.81F, 0));
-    EXPECT_EQ(*given->ground.height, -4.0F);
-    EXPECT_EQ(*given->camera.eye, glm::vec3(1.0F));
-    EXPECT_EQ(*given->render.point_size, 0.5F);
+                     unitBounds()));
+    EXPECT_EQ(given.emitters[0].box_max, glm::vec3(1, 2, 3));
+    EXPECT_NEAR(given.emitters[0].rate * 2.0, 65536.0, 1e-6) << "within its duration";
+    EXPECT_EQ(given.emitters[0].velocity, glm::vec3(0.0F));
+    EXPECT_EQ(given.emitters[0].velocity_spread, glm::vec3(0, 1, 0));
+    EXPECT_EQ(*given.forces.gravity, glm::vec3(0, -9.81F, 0));
+    EXPECT_EQ(*given.ground.height, -4.0F);
+    EXPECT_EQ(*given.camera.eye, glm::vec3(1.0F));
+    EXPECT_EQ(*given.render.point_size, 0.5F);
     EXPECT_FALSE(withDefaults(sceneWith("[camera]\neye = [0, 50, 0]\n"), unitBounds()))
         << "directly above the default target";
     EXPECT_FALSE(withDefaults(sceneWith(""), Bounds{}));
     EXPECT_FALSE(withDefaults(sceneWith(""), {glm::vec3(-3e38F), glm::vec3(3e38F)}));
-    const auto flat = withDefaults(sceneWith(""), {glm::vec3(1.0F), glm::vec3(1.0F)});
-    ASSERT_TRUE(flat);
-    EXPECT_TRUE(std::isfinite(flat->camera.eye->x));
+    const auto flat = required(withDefaults(sceneWith(""), {glm::vec3(1.0F), glm::vec3(1.0F)}));
+    EXPECT_TRUE(std::isfinite(flat.camera.eye->x));
 }
 
 TEST(Scene, SurvivesPrefixesAndFlippedBytes) {
@@ -118,10 +115,8 @@ TEST(Scene, SurvivesPrefixesAndFlippedBytes) {
 
 TEST(Scene, MissingAndOversizedFiles) {
     expectError(loadScene("/nonexistent/scene.toml"), ErrorCode::kIo);
-    const std::string path = testing::TempDir() + "relief_scene_large.toml";
-    std::ofstream(path) << std::string((1 << 20) + 1, '#');
-    expectError(loadScene(path), ErrorCode::kLimit);
-    std::filesystem::remove(path);
+    const TemporaryFolder folder;
+    expectError(loadScene(folder.write("a.toml", std::string((1 << 20) + 1, '#'))), ErrorCode::kLimit);
 }
 
 TEST(SceneErrors, File) {
@@ -385,11 +380,9 @@ TEST(SceneAir, KeysSetTheAir) {
 }
 
 TEST(SceneAir, ReportListsTheActiveAir) {
-    const auto report = [&](const std::string& more) {
-        const auto scene = withDefaults(sceneWith(more), unitBounds());
-        EXPECT_TRUE(scene);
+    const auto report = [](const std::string& more) {
         PlayerReport result;
-        result.scene = scene.value_or(Scene{});
+        result.scene = required(withDefaults(sceneWith(more), unitBounds()));
         std::string json = jsonTextOf(result);
         std::erase_if(json, [](char c) { return c == ' ' || c == '\n'; });
         return json;

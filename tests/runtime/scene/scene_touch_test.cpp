@@ -61,15 +61,11 @@ class SceneTouch : public testing::Test {
     /// \param room  capacity of each step.
     Played run(const std::string& text, double seconds, std::uint64_t room = 1U << 20) {
         Played made;
-        auto loaded = load(text);
-        EXPECT_TRUE(loaded) << loaded.error().message;
-        if (!loaded) {
-            return made;
-        }
-        const std::vector<EmitterMotion> motions = emitterMotions(*loaded);
+        LoadedScene loaded = required(load(text));
+        const std::vector<EmitterMotion> motions = emitterMotions(loaded);
         for (int step = 0; step < std::lround(seconds / kDt); ++step) {
             std::vector<Birth> births;
-            made.rejected += emitAll(loaded->emitters, kDt, room, births, motions, step * kDt);
+            made.rejected += emitAll(loaded.emitters, kDt, room, births, motions, step * kDt);
             for (const Birth& birth : births) {
                 made.births.push_back({birth, step * kDt - double{birth.age}});
             }
