@@ -112,57 +112,33 @@ class CallerState {
 
     static State now() {
         State state;
-        const auto add = [&](GLenum what, GLuint unit = 0) {
-            std::vector<GLint64>& values = state[{what, unit}];
-            values.resize(4);
-            glGetInteger64v(what, values.data());
+        const auto add = [&](GLuint unit, std::initializer_list<GLenum> names) {
+            for (const GLenum what : names) {
+                std::vector<GLint64>& values = state[{what, unit}];
+                values.resize(4);
+                glGetInteger64v(what, values.data());
+            }
         };
         const auto indexed = [&](GLuint index, std::initializer_list<GLenum> names) {
             for (const GLenum what : names) {
                 glGetInteger64i_v(what, index, &state[{what, index}].emplace_back());
             }
         };
-        for (const GLenum what : {GL_CURRENT_PROGRAM,
-                                  GL_VERTEX_ARRAY_BINDING,
-                                  GL_ARRAY_BUFFER_BINDING,
-                                  GL_UNIFORM_BUFFER_BINDING,
-                                  GL_TRANSFORM_FEEDBACK_BUFFER_BINDING,
-                                  GL_PIXEL_PACK_BUFFER_BINDING,
-                                  GL_PIXEL_UNPACK_BUFFER_BINDING,
-                                  GL_COPY_READ_BUFFER_BINDING,
-                                  GL_COPY_WRITE_BUFFER_BINDING,
-                                  GL_DRAW_FRAMEBUFFER_BINDING,
-                                  GL_READ_FRAMEBUFFER_BINDING,
-                                  GL_VIEWPORT,
-                                  GL_SCISSOR_BOX,
-                                  GL_BLEND_SRC_RGB,
-                                  GL_BLEND_DST_RGB,
-                                  GL_BLEND_SRC_ALPHA,
-                                  GL_BLEND_DST_ALPHA,
-                                  GL_BLEND_EQUATION_RGB,
-                                  GL_BLEND_EQUATION_ALPHA,
-                                  GL_DEPTH_FUNC,
-                                  GL_DEPTH_WRITEMASK,
-                                  GL_COLOR_WRITEMASK,
-                                  GL_COLOR_CLEAR_VALUE,
-                                  GL_CULL_FACE_MODE,
-                                  GL_PACK_ALIGNMENT,
-                                  GL_PACK_ROW_LENGTH,
-                                  GL_PACK_SKIP_ROWS,
-                                  GL_PACK_SKIP_PIXELS,
-                                  GL_UNPACK_ALIGNMENT,
-                                  GL_UNPACK_ROW_LENGTH,
-                                  GL_UNPACK_SKIP_ROWS,
-                                  GL_UNPACK_SKIP_IMAGES,
-                                  GL_ACTIVE_TEXTURE,
-                                  GL_DITHER}) {
-            add(what);
-        }
+        add(0, {GL_VERTEX_ARRAY_BINDING, GL_ARRAY_BUFFER_BINDING, GL_UNIFORM_BUFFER_BINDING,
+                GL_PIXEL_PACK_BUFFER_BINDING, GL_PIXEL_UNPACK_BUFFER_BINDING, GL_COPY_READ_BUFFER_BINDING,
+                GL_COPY_WRITE_BUFFER_BINDING, GL_DRAW_FRAMEBUFFER_BINDING, GL_READ_FRAMEBUFFER_BINDING});
+        add(0, {GL_CURRENT_PROGRAM,      GL_VIEWPORT,           GL_SCISSOR_BOX,      GL_BLEND_SRC_RGB,
+                GL_BLEND_DST_RGB,        GL_BLEND_SRC_ALPHA,    GL_BLEND_DST_ALPHA,  GL_BLEND_EQUATION_RGB,
+                GL_BLEND_EQUATION_ALPHA, GL_DEPTH_FUNC,         GL_DEPTH_WRITEMASK,  GL_COLOR_WRITEMASK,
+                GL_COLOR_CLEAR_VALUE,    GL_CULL_FACE_MODE,     GL_PACK_ALIGNMENT,   GL_PACK_ROW_LENGTH,
+                GL_PACK_SKIP_ROWS,       GL_PACK_SKIP_PIXELS,   GL_UNPACK_ALIGNMENT, GL_UNPACK_ROW_LENGTH,
+                GL_UNPACK_SKIP_ROWS,     GL_UNPACK_SKIP_IMAGES, GL_ACTIVE_TEXTURE,   GL_DITHER});
+        add(0, {GL_TRANSFORM_FEEDBACK_BUFFER_BINDING});
         for (const GLenum capability : capabilities()) {
             state[{capability, 0}] = {glIsEnabled(capability)};
         }
         if (!isGles()) {
-            add(GL_POINT_SPRITE_COORD_ORIGIN);
+            add(0, {GL_POINT_SPRITE_COORD_ORIGIN});
             std::array<GLint, 2> modes{};
             glGetIntegerv(GL_POLYGON_MODE, modes.data());
             state[{GL_POLYGON_MODE, 0}] = {modes[0]};
@@ -173,8 +149,7 @@ class CallerState {
         indexed(0, {GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, GL_TRANSFORM_FEEDBACK_BUFFER_START,
                     GL_TRANSFORM_FEEDBACK_BUFFER_SIZE});
         if (hasCompute()) {
-            add(GL_DRAW_INDIRECT_BUFFER_BINDING);
-            add(GL_SHADER_STORAGE_BUFFER_BINDING);
+            add(0, {GL_DRAW_INDIRECT_BUFFER_BINDING, GL_SHADER_STORAGE_BUFFER_BINDING});
             for (GLuint unit = 0; unit < StorageUnits::kUnits; ++unit) {
                 indexed(unit, {GL_SHADER_STORAGE_BUFFER_BINDING, GL_SHADER_STORAGE_BUFFER_START,
                                GL_SHADER_STORAGE_BUFFER_SIZE, GL_IMAGE_BINDING_NAME, GL_IMAGE_BINDING_ACCESS,
@@ -185,10 +160,8 @@ class CallerState {
         glGetIntegerv(GL_ACTIVE_TEXTURE, &active);
         for (GLenum unit = 0; unit < PassState::kUnits; ++unit) {
             glActiveTexture(GL_TEXTURE0 + unit);
-            for (const GLenum what : {GL_TEXTURE_BINDING_2D, GL_TEXTURE_BINDING_2D_ARRAY,
-                                      GL_TEXTURE_BINDING_3D, GL_SAMPLER_BINDING}) {
-                add(what, unit);
-            }
+            add(unit, {GL_TEXTURE_BINDING_2D, GL_TEXTURE_BINDING_2D_ARRAY, GL_TEXTURE_BINDING_3D,
+                       GL_SAMPLER_BINDING});
         }
         glActiveTexture(static_cast<GLenum>(active));
         return state;
