@@ -48,15 +48,14 @@ rate = 6000
     for (int step = 0; step < 90; ++step) {
         ASSERT_TRUE(made.step());
     }
-    const auto particles = made.particles().readState();
-    ASSERT_TRUE(particles);
-    EXPECT_GT(particles->size(), 4000U);
+    const auto particles = required(made.particles().readState());
+    EXPECT_GT(particles.size(), 4000U);
     std::size_t hit = 0;
     std::size_t inside = 0;
     const double time = made.particles().time();
     for (std::size_t i = 0; i < 2; ++i) {
         const std::vector<glm::vec3> positions = posed(mesh, loaded.played[i]->poseAt(time));
-        for (const ParticleState& particle : *particles) {
+        for (const ParticleState& particle : particles) {
             hit += particle.collisions > 0 ? 1 : 0;
             const glm::vec3 p = toObject(poseAt(loaded.scene.colliders[i], time), particle.position);
             // Only near the tube, because solid angles are slow.
@@ -65,7 +64,7 @@ rate = 6000
         }
     }
     EXPECT_GT(hit, 100U);
-    EXPECT_LE(inside, 5U) << "of " << particles->size();
+    EXPECT_LE(inside, 5U) << "of " << particles.size();
     ASSERT_NE(made.mesh(1), nullptr);
     EXPECT_EQ(made.mesh(1)->triangleCount(), mesh.triangles.size());
 }
@@ -115,7 +114,7 @@ max_per_step = 30
         EXPECT_TRUE(made.finishEvents());
         EXPECT_EQ(next, log ? 61U : 1U);
         EXPECT_GT(made.rejected(), 100U);
-        return std::pair(made.rejected(), made.particles().readState().value());
+        return std::pair(made.rejected(), required(made.particles().readState()));
     };
     std::size_t longest = 0;
     const auto [rejected, plain] = run(false, longest);
@@ -145,25 +144,22 @@ TEST_P(SimulationGlTest, SweepsIfAStepExceedsTheColliderThickness) {
     }
     const auto below = [&](const std::string& more, float dt, std::size_t warnings = 0) {
         const bool own = more.find("emitter") == std::string::npos;
-        const auto loaded = loadAll(folder.write("scene.toml", R"(
+        const auto loaded = required(loadAll(folder.write("scene.toml", R"(
 collider = { file = "floor.relief" }
 particles = { capacity = 1000 }
 ground = { enabled = false }
 forces = { gravity = [0, 0, 0], drag = 0 }
 )" + more),
-                                    {});
-        EXPECT_TRUE(loaded) << loaded.error().message;
-        auto made = Simulation::create(*loaded);
-        EXPECT_TRUE(made) << made.error().message;
-        EXPECT_TRUE(!own || made->spawn(births));
+                                             {}));
+        auto made = required(Simulation::create(loaded));
+        EXPECT_TRUE(!own || made.spawn(births));
         for (float time = 0.0F; time < 2.0F; time += dt) {
-            EXPECT_TRUE(made->step(dt));
+            EXPECT_TRUE(made.step(dt));
         }
-        EXPECT_EQ(made->takeWarnings().size(), warnings);
-        const std::vector<ParticleState> particles = made->particles().readState().value();
+        EXPECT_EQ(made.takeWarnings().size(), warnings);
+        const std::vector<ParticleState> particles = required(made.particles().readState());
         EXPECT_EQ(particles.size(), 1000U);
-        return std::count_if(particles.begin(), particles.end(),
-                             [](const ParticleState& one) { return one.position.y < -0.105F; });
+        return std::ranges::count_if(particles, [](const auto& one) { return one.position.y < -0.105F; });
     };
     const auto emitter = [](float speed) {
         return "emitter = { box_min = [-1, 1, -1], box_max = [1, 2, 1], velocity = [0, -" +
@@ -190,23 +186,17 @@ class SurfaceBirthsGlTest : public GlTest {
 
     /// The particles after some steps of a scene in which a bending tube emits sparks.
     /// \param own  poses set by the program, equal to the clip's.
-    std::vector<ParticleState> played(const std::string& emitter, int steps, bool collides = false,
-                                      bool own = false) {
-        return played(
+    std::vector<ParticleState> played(
+        const std::string& emitter, int steps, bool collides = false, bool own = false,
+        const std::string& collider =
             "play = { clip = \"bend\", start = 0.3, resolution = 192 }\nscale = 2\n"
-            "key = [{ time = 0 }, { time = 2, position = [1, 0, 3], angle = 120 }]\n",
-            emitter, steps, collides, own);
-    }
-    std::vector<ParticleState> played(const std::string& collider, const std::string& emitter, int steps,
-                                      bool collides = false, bool own = false) {
+            "key = [{ time = 0 }, { time = 2, position = [1, 0, 3], angle = 120 }]\n") {
         const std::string scene =
             "time = { dt = 0.02, steps = 60 }\nparticles = { capacity = 20000 }\n"
             "forces = { gravity = [0, 0, 0], drag = 0 }\nground = { enabled = false }\n[[type]]\n" +
             std::string(collides ? "" : "collides_with = []\n") + "[[collider]]\nfile = \"tube.relief\"\n" +
             collider + "[[emitter]]\nshape = \"surface\"\nattach = 0\nlifetime = 9\n" + emitter;
-        loaded_ = std::make_unique<LoadedScene>();
-        auto loaded = required(loadAll(folder_.write("scene.toml", scene), {}));
-        *loaded_ = std::move(loaded);
+        loaded_ = std::make_unique<LoadedScene>(required(loadAll(folder_.write("scene.toml", scene), {})));
         auto made = required(Simulation::create(*loaded_));
         for (int step = 0; step < steps; ++step) {
             if (own) {
@@ -216,9 +206,7 @@ class SurfaceBirthsGlTest : public GlTest {
             EXPECT_TRUE(made.step());
         }
         time_ = made.particles().time();
-        auto particles = made.particles().readState();
-        EXPECT_TRUE(particles);
-        return *particles;
+        return required(made.particles().readState());
     }
 
     /// The positions of the tube's vertices in the world.
@@ -299,8 +287,8 @@ TEST_P(SurfaceBirthsGlTest, FollowPosesSetByTheProgram) {
 // A clip whose end differs from its start jumps when it repeats: no spark is born on the way.
 TEST_P(SurfaceBirthsGlTest, JumpsThrowNothing) {
     const std::vector<ParticleState> sparks =
-        played("play = { clip = \"grow\", start = 0.5, resolution = 64 }\n",
-               "rate = 5000\nspeed = 0\ninherit = 1\n", 50);
+        played("rate = 5000\nspeed = 0\ninherit = 1\n", 50, false, false,
+               "play = { clip = \"grow\", start = 0.5, resolution = 64 }\n");
     ASSERT_GT(sparks.size(), 4900U);
     std::size_t still = 0;
     for (const ParticleState& spark : sparks) {
