@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <numbers>
 
 #include "bake/bench/brick_volume.h"
 #include "bake/bench/distance_volume.h"
@@ -14,12 +13,17 @@
 #include "runtime/gl/pass_state.h"
 #include "runtime/particles/random.h"
 #include "tests/bake/meshes.h"
+#include "tests/formats/animation/animated_meshes.h"
 #include "tests/runtime/gl/gl_test.h"
 
 namespace relief::test {
 namespace {
 
 constexpr std::uint32_t kParticles = 64 * 1024;
+
+std::string pathName(const testing::TestParamInfo<StepPath>& path) {
+    return path.param == StepPath::kCompute ? "Compute" : "Fragment";
+}
 
 /// A volume on the CPU and on the GPU.
 struct Baseline {
@@ -85,19 +89,17 @@ class BrickRivalGlTest : public testing::TestWithParam<StepPath> {
 
     /// One step from birth, then fifteen more.
     void expectCpuSides(const Baseline& baseline) {
-        auto rival = makeBrickRival(baseline.atlas);
-        ASSERT_TRUE(rival) << rival.error().message;
-        auto step = RivalStep::create(std::move(*rival), scene_, GetParam());
-        ASSERT_TRUE(step) << step.error().message;
-        EXPECT_GE(step->bytes(), baseline.atlas.bytes);
+        RivalStep step =
+            required(RivalStep::create(required(makeBrickRival(baseline.atlas)), scene_, GetParam()));
+        EXPECT_GE(step.bytes(), baseline.atlas.bytes);
         // Except for atlas slots without a brick.
-        EXPECT_LE(step->bytes(), baseline.atlas.bytes + baseline.atlas.bytes / 100);
-        step->begin(scene_);
-        expectCpuReactions(baseline, State(*step));
+        EXPECT_LE(step.bytes(), baseline.atlas.bytes + baseline.atlas.bytes / 100);
+        step.begin(scene_);
+        expectCpuReactions(baseline, State(step));
         for (int i = 0; i < 15; ++i) {
-            step->step();
+            step.step();
         }
-        const State after(*step);
+        const State after(step);
         std::size_t outside = 0, inside = 0;
         for (std::size_t i = 0; i < kParticles; ++i) {
             if (after.contact(i) == Contact::kCaught) {
@@ -185,9 +187,7 @@ TEST_P(BrickRivalGlTest, ParticlesAmongTightBricksEndOnTheCpuSide) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Paths, BrickRivalGlTest, testing::Values(StepPath::kFragment, StepPath::kCompute),
-                         [](const testing::TestParamInfo<StepPath>& path) {
-                             return path.param == StepPath::kCompute ? "Compute" : "Fragment";
-                         });
+                         pathName);
 
 constexpr std::size_t kPointsWide = 100;
 constexpr std::size_t kPoints = kPointsWide * 100;
@@ -231,21 +231,6 @@ double bruteDistance(const TriangleMesh& mesh, const glm::dvec3& p) {
                          glm::distance(p, closestOnTriangle(p, glm::dvec3(a), glm::dvec3(b), glm::dvec3(c))));
     }
     return least;
-}
-
-/// Sums solid angles: van Oosterom and Strackee (1983).
-double windingNumber(const TriangleMesh& mesh, const glm::dvec3& p) {
-    double sum = 0.0;
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-        const auto corners = cornersOf(mesh, t);
-        const glm::dvec3 a = glm::dvec3(corners[0]) - p;
-        const glm::dvec3 b = glm::dvec3(corners[1]) - p;
-        const glm::dvec3 c = glm::dvec3(corners[2]) - p;
-        const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
-        sum += std::atan2(glm::dot(a, glm::cross(b, c)),
-                          la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb);
-    }
-    return sum / (2.0 * std::numbers::pi);
 }
 
 /// A closed mesh of thorns and clefts around the origin, whose vertices have acute edges and saddles.
@@ -325,7 +310,7 @@ class MeshRivalGlTest : public testing::Test {
         std::size_t inside = 0, compared = 0;
         for (std::size_t i = 0; i < points.size(); ++i) {
             if (std::abs(field[i].w) > rounding) {
-                const bool wound = windingNumber(mesh, glm::dvec3(points[i])) > 0.5;
+                const bool wound = windingNumber(mesh.positions, mesh.triangles, glm::dvec3(points[i])) > 0.5;
                 ASSERT_EQ(field[i].w < 0.0F, wound) << i << ": " << field[i].w;
                 inside += wound ? 1 : 0;
                 ++compared;
@@ -448,9 +433,7 @@ TEST_P(MeshStepGlTest, ParticlesMoveAsAmongPatches) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Paths, MeshStepGlTest, testing::Values(StepPath::kFragment, StepPath::kCompute),
-                         [](const testing::TestParamInfo<StepPath>& path) {
-                             return path.param == StepPath::kCompute ? "Compute" : "Fragment";
-                         });
+                         pathName);
 
 }  // namespace
 }  // namespace relief::test
