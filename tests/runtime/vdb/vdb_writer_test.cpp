@@ -13,6 +13,8 @@
 #include <random>
 #include <sstream>
 
+#include "tests/results.h"
+
 namespace relief {
 namespace {
 
@@ -70,9 +72,7 @@ std::map<std::uint32_t, VdbPoint> particlesOf(const PointDataGrid& grid) {
 
 TEST(VdbPoints, ReadersFindEachParticle) {
     const std::vector<VdbPoint> particles = someParticles(5000);
-    const auto bytes = encodeVdbPoints(particles);
-    ASSERT_TRUE(bytes.has_value()) << bytes.error().message;
-    const auto grid = gridOf(*bytes);
+    const auto grid = gridOf(required(encodeVdbPoints(particles)));
     ASSERT_NE(grid, nullptr);
     EXPECT_EQ(grid->getName(), "particles");
     EXPECT_EQ(openvdb::points::pointCount(grid->tree()), particles.size());
@@ -90,20 +90,16 @@ TEST(VdbPoints, ReadersFindEachParticle) {
 
 TEST(VdbPoints, BytesDoNotDependOnOrder) {
     std::vector<VdbPoint> particles = someParticles(2000);
-    const auto bytes = encodeVdbPoints(particles);
-    ASSERT_TRUE(bytes.has_value());
+    const auto bytes = required(encodeVdbPoints(particles));
     std::reverse(particles.begin(), particles.end());
-    EXPECT_EQ(*bytes, *encodeVdbPoints(particles));
+    EXPECT_EQ(bytes, *encodeVdbPoints(particles));
     particles[3].age += 1.0F;
-    EXPECT_NE(*bytes, *encodeVdbPoints(particles));
+    EXPECT_NE(bytes, *encodeVdbPoints(particles));
 }
 
 TEST(VdbPoints, HandlesNoParticlesOneAndFarPositions) {
-    const auto none = encodeVdbPoints({});
-    ASSERT_TRUE(none.has_value()) << none.error().message;
-    EXPECT_EQ(openvdb::points::pointCount(gridOf(*none)->tree()), 0U);
-    const std::vector<VdbPoint> one = someParticles(1);
-    EXPECT_EQ(particlesOf(*gridOf(*encodeVdbPoints(one))).size(), 1U);
+    EXPECT_EQ(openvdb::points::pointCount(gridOf(required(encodeVdbPoints({})))->tree()), 0U);
+    EXPECT_EQ(particlesOf(*gridOf(required(encodeVdbPoints(someParticles(1))))).size(), 1U);
     const std::vector<VdbPoint> far = someParticles(500, 1e9F);
     const auto found = particlesOf(*gridOf(*encodeVdbPoints(far)));
     ASSERT_EQ(found.size(), far.size());
@@ -115,9 +111,7 @@ TEST(VdbPoints, HandlesNoParticlesOneAndFarPositions) {
 TEST(VdbPoints, NonFinitePositionsAreRejected) {
     std::vector<VdbPoint> particles = someParticles(3);
     particles[1].position.y = std::numeric_limits<float>::quiet_NaN();
-    const auto bytes = encodeVdbPoints(particles);
-    ASSERT_FALSE(bytes.has_value());
-    EXPECT_NE(bytes.error().message.find("particle 4"), std::string::npos);
+    expectError(encodeVdbPoints(particles), ErrorCode::kFailure, "particle 4");
 }
 
 }  // namespace
