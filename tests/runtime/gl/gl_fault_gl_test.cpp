@@ -38,17 +38,19 @@ namespace {
 
 /// Replaces an entry point during its lifetime. The GL must have been called through the entry point before: libepoxy
 /// stores the driver's function in the pointer at the first call.
-template <class Function>
+template <auto& kEntry>
 class Replaced {
   public:
-    Replaced(Function& entry, Function by) : entry_(entry), original_(entry) { entry = by; }
-    ~Replaced() { entry_ = original_; }
+    using Function = std::remove_reference_t<decltype(kEntry)>;
+    explicit Replaced(Function by) {
+        original = kEntry;
+        kEntry = by;
+    }
+    ~Replaced() { kEntry = original; }
     Replaced(const Replaced&) = delete;
     Replaced& operator=(const Replaced&) = delete;
 
-  private:
-    Function& entry_;
-    Function original_;
+    static inline Function original = nullptr;
 };
 
 // State shared by the replacements, which are plain functions, and the running test.
@@ -57,13 +59,6 @@ int failing_allocation = -1;
 std::string failed_call;
 GLenum pending_error = GL_NO_ERROR;
 GLint texture_side = 0;
-decltype(epoxy_glTexImage2D) real_image_2d = nullptr;
-decltype(epoxy_glTexImage3D) real_image_3d = nullptr;
-decltype(epoxy_glTexStorage2D) real_storage_2d = nullptr;
-decltype(epoxy_glBufferData) real_buffer_data = nullptr;
-decltype(epoxy_glGetError) real_get_error = nullptr;
-decltype(epoxy_glGetIntegerv) real_get_integer = nullptr;
-decltype(epoxy_glGetProgramiv) real_get_program = nullptr;
 
 bool failsNow(const char* call, GLenum target, GLsizeiptr width, GLsizeiptr height = 1,
               GLsizeiptr depth = 1) {
@@ -78,32 +73,34 @@ bool failsNow(const char* call, GLenum target, GLsizeiptr width, GLsizeiptr heig
 void image2d(GLenum target, GLint level, GLint internal, GLsizei width, GLsizei height, GLint border,
              GLenum format, GLenum type, const void* pixels) {
     if (!failsNow("glTexImage2D", target, width, height)) {
-        real_image_2d(target, level, internal, width, height, border, format, type, pixels);
+        Replaced<epoxy_glTexImage2D>::original(target, level, internal, width, height, border, format, type,
+                                               pixels);
     }
 }
 void image3d(GLenum target, GLint level, GLint internal, GLsizei width, GLsizei height, GLsizei depth,
              GLint border, GLenum format, GLenum type, const void* pixels) {
     if (!failsNow("glTexImage3D", target, width, height, depth)) {
-        real_image_3d(target, level, internal, width, height, depth, border, format, type, pixels);
+        Replaced<epoxy_glTexImage3D>::original(target, level, internal, width, height, depth, border, format,
+                                               type, pixels);
     }
 }
 void storage2d(GLenum target, GLsizei levels, GLenum internal, GLsizei width, GLsizei height) {
     if (!failsNow("glTexStorage2D", target, width, height)) {
-        real_storage_2d(target, levels, internal, width, height);
+        Replaced<epoxy_glTexStorage2D>::original(target, levels, internal, width, height);
     }
 }
 void bufferData(GLenum target, GLsizeiptr size, const void* data, GLenum usage) {
     if (!failsNow("glBufferData", target, size)) {
-        real_buffer_data(target, size, data, usage);
+        Replaced<epoxy_glBufferData>::original(target, size, data, usage);
     }
 }
 GLenum getError() {
     const GLenum pending = std::exchange(pending_error, GL_NO_ERROR);
-    const GLenum real = real_get_error();
+    const GLenum real = Replaced<epoxy_glGetError>::original();
     return pending != GL_NO_ERROR ? pending : real;
 }
 void getInteger(GLenum what, GLint* value) {
-    real_get_integer(what, value);
+    Replaced<epoxy_glGetIntegerv>::original(what, value);
     if (what == GL_MAX_TEXTURE_SIZE || what == GL_MAX_3D_TEXTURE_SIZE) {
         *value = texture_side;
     }
@@ -118,7 +115,7 @@ GLenum incomplete(GLenum /*target*/) {
     return GL_FRAMEBUFFER_UNSUPPORTED;
 }
 void programStatus(GLuint program, GLenum what, GLint* value) {
-    real_get_program(program, what, value);
+    Replaced<epoxy_glGetProgramiv>::original(program, what, value);
     if (what == GL_LINK_STATUS) {
         *value = GL_FALSE;
     }
@@ -142,11 +139,11 @@ class CountedAllocations {
     }
 
   private:
-    Replaced<decltype(epoxy_glTexImage2D)> two_{epoxy_glTexImage2D, &image2d};
-    Replaced<decltype(epoxy_glTexImage3D)> three_{epoxy_glTexImage3D, &image3d};
-    Replaced<decltype(epoxy_glTexStorage2D)> storage_{epoxy_glTexStorage2D, &storage2d};
-    Replaced<decltype(epoxy_glBufferData)> buffers_{epoxy_glBufferData, &bufferData};
-    Replaced<decltype(epoxy_glGetError)> errors_{epoxy_glGetError, &getError};
+    Replaced<epoxy_glTexImage2D> two_{&image2d};
+    Replaced<epoxy_glTexImage3D> three_{&image3d};
+    Replaced<epoxy_glTexStorage2D> storage_{&storage2d};
+    Replaced<epoxy_glBufferData> buffers_{&bufferData};
+    Replaced<epoxy_glGetError> errors_{&getError};
 };
 
 PictureMesh tetrahedron() {
@@ -196,13 +193,6 @@ class GlFaultTest : public GlTest {
         EXPECT_TRUE(ParticleSystem::create({.capacity = 1, .path = StepPath::kCompute}));
         EXPECT_TRUE(waitForGpu("nothing"));
         EXPECT_TRUE(FieldQuery::create(collider_));
-        real_image_2d = epoxy_glTexImage2D;
-        real_image_3d = epoxy_glTexImage3D;
-        real_storage_2d = epoxy_glTexStorage2D;
-        real_buffer_data = epoxy_glBufferData;
-        real_get_error = epoxy_glGetError;
-        real_get_integer = epoxy_glGetIntegerv;
-        real_get_program = epoxy_glGetProgramiv;
     }
 
     static AirSettings air() {
@@ -342,7 +332,7 @@ TEST_P(GlFaultTest, ParticlesAreDrawnWithoutTileMemory) {
 }
 
 TEST_P(GlFaultTest, TextureLimitErrorsNameSizeAndLimit) {
-    const Replaced integers(epoxy_glGetIntegerv, &getInteger);
+    const Replaced<epoxy_glGetIntegerv> integers(&getInteger);
     texture_side = 31;  // below the smallest texture, 32x32 pixels, and all others
     for (const Work& one : allWork()) {
         SCOPED_TRACE(one.name);
@@ -359,7 +349,7 @@ TEST_P(GlFaultTest, ReadBacksReportAReset) {
     particles_.step(0.01F);
     ASSERT_TRUE(requestEvents(particles_, 1));
     {
-        const Replaced status(epoxy_glGetGraphicsResetStatus, &guiltyReset);
+        const Replaced<epoxy_glGetGraphicsResetStatus> status(&guiltyReset);
         for (const Result<void>& done :
              {checkGpu("testing"), waitForGpu("steps 1 to 2"), outcome(query.evaluate(points)),
               outcome(particles_.readState()), outcome(waitEvents(particles_))}) {
@@ -371,13 +361,13 @@ TEST_P(GlFaultTest, ReadBacksReportAReset) {
 
 // A lost context may return errors forever.
 TEST_P(GlFaultTest, EndlessErrorsTerminate) {
-    const Replaced errors(epoxy_glGetError, &endlessError);
+    const Replaced<epoxy_glGetError> errors(&endlessError);
     clearGlErrors();
     expectError(WorldTextures::create(collider_), ErrorCode::kFailure, "0x0507");
 }
 
 TEST_P(GlFaultTest, FailedWaitsAreErrors) {
-    const Replaced wait(epoxy_glClientWaitSync, &waitFails);
+    const Replaced<epoxy_glClientWaitSync> wait(&waitFails);
     expectError(waitForGpu("steps 3 to 4"), ErrorCode::kFailure, "steps 3 to 4");
     GlFence fence;
     EXPECT_TRUE(fence.failed()) << "never inserted";
@@ -389,12 +379,12 @@ TEST_P(GlFaultTest, FailedWaitsAreErrors) {
 
 TEST_P(GlFaultTest, RejectedFramebuffersAndShadersAreErrors) {
     {
-        const Replaced status(epoxy_glCheckFramebufferStatus, &incomplete);
+        const Replaced<epoxy_glCheckFramebufferStatus> status(&incomplete);
         expectError(ParticleSystem::create({.capacity = 10}), ErrorCode::kUnsupported, "0x8cdd");
         expectError(particles_.readState(), ErrorCode::kUnsupported);
     }
     {
-        const Replaced status(epoxy_glGetProgramiv, &programStatus);
+        const Replaced<epoxy_glGetProgramiv> status(&programStatus);
         expectError(Frame::create(8, 8), ErrorCode::kFailure, "base/quad.vert");
     }
     // The driver's message is included.
