@@ -16,11 +16,11 @@
 #include <thread>
 #include <utility>
 
+#include "formats/base/file_io.h"
 #include "formats/base/hash.h"
 #include "formats/container.h"
 #include "tests/formats/random_patches.h"
 #include "tests/runtime/c_api/stage.h"
-#include "tests/temporary_folder.h"
 
 namespace relief::c_api {
 namespace {

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -18,7 +17,6 @@
 #include <vector>
 
 #include "formats/animation/animated_mesh.h"
-#include "formats/base/file_io.h"
 #include "formats/base/hash.h"
 #include "formats/container.h"
 #include "formats/world/world.h"
@@ -29,6 +27,7 @@
 #include "tests/formats/animation/animated_meshes.h"
 #include "tests/results.h"
 #include "tests/runtime/collider/analytic_collider.h"
+#include "tests/temporary_folder.h"
 
 namespace relief::c_api {
 
@@ -40,47 +39,42 @@ inline void expectError(const std::string& part) {
     EXPECT_NE(std::string(relief_error()).find(part), std::string::npos) << relief_error();
 }
 
+/// The function that frees each kind of object.
+struct Release {
+    static void of(relief_collider* made) { relief_collider_free(made); }
+    static void of(relief_textures* made) { relief_textures_free(made); }
+    static void of(relief_particles* made) { relief_particles_free(made); }
+    static void of(relief_world* made) { relief_world_free(made); }
+    static void of(relief_animation* made) { relief_animation_free(made); }
+    static void of(relief_emitter* made) { relief_emitter_free(made); }
+    static void of(relief_renderer* made) { relief_renderer_free(made); }
+};
+
 /// Valid objects: a collider, textures, particles, a renderer and a world; and memory for all inputs and outputs.
 class Stage {
   public:
     Stage() {
-        auto context = required(GlContext::create(GlApi::kGl33Core));
-        context_ = std::move(context);
+        context_ = required(GlContext::create(GlApi::kGl33Core));
         Collider box = analytic::frontBackCollider(analytic::box({-0.4, -0.2, -0.3}, {0.4, 0.2, 0.3}), 16);
         box.materials.list = {{"cloth"}, {"felt"}};
         AnimatedMesh tube = bendingTube(8, 6);
         tube.materials = {"cloth"};
         tube.triangle_materials.resize(tube.triangles.size(), 0);
         box.animation = writeAnimatedMesh(tube);
-        path_ =
-            std::filesystem::path(testing::TempDir()) / ("c_api-" + std::to_string(::getpid()) + ".relief");
         EXPECT_TRUE(saveCollider(path_, box));
-        const auto bytes = writeContainer(box);
-        EXPECT_TRUE(bytes);
-        bytes_.assign(bytes->begin(), bytes->end());
+        bytes_ = required(writeContainer(box));
         writeWorld(box);
-        auto program = makeProgram("base/quad.vert", "particles/rebase.frag");
-        EXPECT_TRUE(program);
-        program_ = std::move(*program);
+        program_ = required(makeProgram("base/quad.vert", "particles/rebase.frag"));
         color_ = makeTexture2D(GL_RGBA8, 16, 16, GL_RGBA, GL_UNSIGNED_BYTE);
         depth_ = makeTexture2D(GL_DEPTH_COMPONENT24, 16, 16, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT);
-        const GLuint color = color_.name();
-        framebuffer_ = makeFramebuffer({&color, 1}, depth_.name()).value();
+        framebuffer_ = required(makeFramebuffer({color_.name()}, depth_.name()));
         fill();
         revive();
     }
     ~Stage() {
-        relief_renderer_free(renderer);
-        relief_particles_free(particles);
-        relief_textures_free(textures);
-        relief_textures_free(world_textures);
-        relief_textures_free(animated_textures);
-        relief_emitter_free(emitter);
-        relief_animation_free(animation);
-        relief_collider_free(collider);
-        relief_world_free(world);
-        std::filesystem::remove(path_);
-        std::filesystem::remove(world_path_);
+        std::apply([](auto*... one) { (Release::of(one), ...); },
+                   std::tuple(renderer, particles, textures, world_textures, animated_textures, emitter,
+                              animation, collider, world));
     }
     Stage(const Stage&) = delete;
     Stage& operator=(const Stage&) = delete;
@@ -102,10 +96,9 @@ class Stage {
         }
         emitter =
             emitter != nullptr ? emitter : relief_emitter_create_on(collider, nullptr, &emitter_options);
-        ASSERT_TRUE(animation != nullptr && animated_textures != nullptr && emitter != nullptr)
-            << relief_error();
         ASSERT_TRUE(collider != nullptr && textures != nullptr && particles != nullptr &&
-                    renderer != nullptr && world != nullptr && world_textures != nullptr)
+                    renderer != nullptr && world != nullptr && world_textures != nullptr &&
+                    animation != nullptr && animated_textures != nullptr && emitter != nullptr)
             << relief_error();
     }
     /// Resets everything that a test may have changed to valid values.
@@ -270,10 +263,7 @@ class Stage {
         }
         file.bodies[1].rotation = {0.0F, 0.6F, 0.0F, 0.8F};
         file.bodies[1].scale = 2.0F;
-        world_path_ = path_;
-        world_path_.replace_extension(".json");
-        const std::string text = worldText(file);
-        EXPECT_TRUE(writeFile(world_path_, std::as_bytes(std::span(text))));
+        folder_.write("boxes.json", worldText(file));
     }
 
     /// The object to pass for an argument of type T. A new type in the header fails to compile until it is added here.
@@ -286,8 +276,9 @@ class Stage {
     }
 
     std::unique_ptr<GlContext> context_;
-    std::filesystem::path path_;
-    std::filesystem::path world_path_;
+    const test::TemporaryFolder folder_;
+    const std::filesystem::path path_ = folder_.path() / "boxes.relief";
+    const std::filesystem::path world_path_ = folder_.path() / "boxes.json";
     std::vector<std::byte> bytes_;
     GlProgram program_;
     GlTexture color_;
@@ -296,17 +287,6 @@ class Stage {
 };
 
 enum class Outcome : std::uint8_t { kNothing, kSuccess, kFailure };
-
-/// Frees the result of a call at once.
-struct Release {
-    static void of(relief_collider* made) { relief_collider_free(made); }
-    static void of(relief_textures* made) { relief_textures_free(made); }
-    static void of(relief_particles* made) { relief_particles_free(made); }
-    static void of(relief_world* made) { relief_world_free(made); }
-    static void of(relief_animation* made) { relief_animation_free(made); }
-    static void of(relief_emitter* made) { relief_emitter_free(made); }
-    static void of(relief_renderer* made) { relief_renderer_free(made); }
-};
 
 template <class T>
 Outcome outcomeOf(const T& returned) {
