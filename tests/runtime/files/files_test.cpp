@@ -72,30 +72,23 @@ const std::string kPlyHead =
 
 TEST(PlyMesh, ColorsAsBytesOrFloats) {
     using Color = std::array<std::uint8_t, 4>;
-    const auto colors = [](const std::string& type, std::array<const char*, 3> values,
-                           const char* alpha = nullptr) {
-        std::string text = "ply\nformat ascii 1.0\nelement vertex 3\n";
-        for (const char* name : {"x", "y", "z"}) {
-            text += std::string("property float ") + name + "\n";
+    const auto colors = [](const std::string& type, const std::vector<std::string>& channels,
+                           const std::string& vertices) {
+        std::string text =
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+        for (const std::string& channel : channels) {
+            text += "property " + type + " " + channel + "\n";
         }
-        for (const char* name : {"red", "green", "blue"}) {
-            text += "property " + type + " " + name + "\n";
-        }
-        text += alpha != nullptr ? "property " + type + " alpha\n" : "";
         text += "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
-        const char* const places[] = {"0 0 0 ", "1 0 0 ", "0 1 0 "};
-        for (std::size_t i = 0; i < 3; ++i) {
-            text += std::string(places[i]) + values[i] + (alpha != nullptr ? alpha : "") + "\n";
-        }
-        const auto mesh = ply(text + "3 0 1 2\n");
-        EXPECT_TRUE(mesh) << mesh.error().message;
-        return mesh ? mesh->colors : std::vector<Color>{};
+        return required(ply(text + vertices + "3 0 1 2\n")).colors;
     };
+    const std::vector<std::string> rgb{"red", "green", "blue"};
     const std::vector<Color> primaries{{255, 0, 0, 255}, {0, 128, 0, 255}, {0, 0, 255, 255}};
-    EXPECT_EQ(colors("uchar", {"255 0 0", "0 128 0", "0 0 255"}), primaries);
-    EXPECT_EQ(colors("float", {"1 0 0", "0 0.5 0", "0 0 1"}), primaries);
-    EXPECT_EQ(colors("uchar", {"1 2 3", "5 6 7", "9 10 11"}, " 4"),
-              (std::vector<Color>{{1, 2, 3, 4}, {5, 6, 7, 4}, {9, 10, 11, 4}}));
+    EXPECT_EQ(colors("uchar", rgb, "0 0 0 255 0 0\n1 0 0 0 128 0\n0 1 0 0 0 255\n"), primaries);
+    EXPECT_EQ(colors("float", rgb, "0 0 0 1 0 0\n1 0 0 0 0.5 0\n0 1 0 0 0 1\n"), primaries);
+    EXPECT_EQ(
+        colors("uchar", {"red", "green", "blue", "alpha"}, "0 0 0 1 2 3 4\n1 0 0 5 6 7 4\n0 1 0 9 10 11 4\n"),
+        (std::vector<Color>{{1, 2, 3, 4}, {5, 6, 7, 4}, {9, 10, 11, 4}}));
 }
 
 TEST(PlyMesh, AsciiWithOtherElements) {
