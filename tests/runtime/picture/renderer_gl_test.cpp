@@ -34,9 +34,10 @@ class RendererGlTest : public GlTest {
   protected:
     [[nodiscard]] ColliderView view() const { return {&textures_, collider_.bounds, finestTexel(collider_)}; }
 
-    void drawCollider() {
+    std::vector<std::uint8_t> drawCollider() {
         const auto drawn = collider_renderer_.draw(camera_, style_, frame_.target());
-        ASSERT_TRUE(drawn) << drawn.error().message;
+        EXPECT_TRUE(drawn) << drawn.error().message;
+        return frame_.read();
     }
     Rgb pixel(const std::vector<std::uint8_t>& rgb, std::uint32_t x, std::uint32_t y) const {
         const std::size_t at = 3 * (std::size_t{kWidth} * y + x);
@@ -66,8 +67,7 @@ class RendererGlTest : public GlTest {
 
 TEST_P(RendererGlTest, ParticlesAreOccludedByDepth) {
     const ParticleStyle style{.diameter = 0.06F, .opacity = 1.0F};
-    drawCollider();
-    const std::vector<std::uint8_t> bare = frame_.read();
+    const std::vector<std::uint8_t> bare = drawCollider();
     // In front, behind, half a diameter in front of and behind the surface, beside, and behind the eye.
     for (const auto& [place, shown] :
          {std::pair(glm::vec3(0.0F, 0.0F, 1.0F), true), std::pair(glm::vec3(0.0F, 0.0F, -1.0F), false),
@@ -89,8 +89,7 @@ TEST_P(RendererGlTest, ParticlesAreOccludedByDepth) {
 }
 
 TEST_P(RendererGlTest, DeadParticlesAreNotDrawn) {
-    drawCollider();
-    const std::vector<std::uint8_t> bare = frame_.read();
+    const std::vector<std::uint8_t> bare = drawCollider();
     const std::array<Birth, 2> births{Birth{{0.6F, 0.3F, 0.5F}, glm::vec3(0.0F), 0.5F, 0},
                                       Birth{{0.0F, -90.0F, 0.0F}, glm::vec3(0.0F), 100.0F, 0}};
     particles_.spawn(births);
@@ -121,27 +120,21 @@ TEST_P(RendererGlTest, OpacityFadesInAndOut) {
 
 TEST_P(RendererGlTest, CachedPicturesMatchNewOnes) {
     style_.ground = -0.5F;
-    drawCollider();
-    const std::vector<std::uint8_t> first = frame_.read();
-    drawCollider();
-    EXPECT_EQ(frame_.read(), first);
+    const std::vector<std::uint8_t> first = drawCollider();
+    EXPECT_EQ(drawCollider(), first);
     const Camera camera = camera_;
     camera_.eye.x += 0.2F;
-    drawCollider();
-    EXPECT_NE(frame_.read(), first);
+    EXPECT_NE(drawCollider(), first);
     camera_ = camera;
-    drawCollider();
-    EXPECT_EQ(frame_.read(), first);
+    EXPECT_EQ(drawCollider(), first);
     style_.background = {0.2F, 0.2F, 0.2F};
-    drawCollider();
-    EXPECT_NE(frame_.read(), first);
+    EXPECT_NE(drawCollider(), first);
 }
 
 TEST_P(RendererGlTest, FloorIsShadedBelowTheCollider) {
     style_.ground = -0.5F;
     camera_.eye = {0.0F, 1.5F, 3.0F};
-    drawCollider();
-    const std::vector<std::uint8_t> rgb = frame_.read();
+    const std::vector<std::uint8_t> rgb = drawCollider();
     const auto [x, y] = project({0.6F, -0.5F, -0.3F});     // the sphere's shadow by sunDirection()
     const auto [ox, oy] = project({-0.9F, -0.5F, -0.3F});  // unshaded
     EXPECT_LT(pixel(rgb, x, y).b + 20, pixel(rgb, ox, oy).b);

@@ -395,15 +395,11 @@ TEST(SceneWeather, InterpolatesLinearly) {
 
 TEST(SceneLooks, ReadsEveryKey) {
     const Scene scene = sceneWith(
-        "[render]\nsprite = \"quad\"\nblend = \"additive\"\nsoft_distance = 0.5\natlas = "
-        "\"a.png\"\natlas_cells = [4, "
-        "2]\n"
-        "mesh = \"m.obj\"\n[[type]]\nsize = 0.25\ncolor = [1, 0, 0.5]\n"
-        "[[type]]\nsize = [[0, 1], [0.5, 2]]\ncolor = [[0, 1, 0, 0], [1, 0, 1, 0]]\nopacity = [[0, 0], [1, "
-        "1]]\n"
-        "rotation = [[0.25, -3]]\nrotation_spread = 1\nspin_spread = 2\ncell = [3, 7]\nlit = "
-        "false\n[[type]]\ncell = 6\nfade = "
-        "[1, 2]\nstretch = 0.25\n");
+        "[render]\nsprite = \"quad\"\nblend = \"additive\"\nsoft_distance = 0.5\natlas = \"a.png\"\n"
+        "atlas_cells = [4, 2]\nmesh = \"m.obj\"\n[[type]]\nsize = 0.25\ncolor = [1, 0, 0.5]\n[[type]]\n"
+        "size = [[0, 1], [0.5, 2]]\ncolor = [[0, 1, 0, 0], [1, 0, 1, 0]]\nopacity = [[0, 0], [1, 1]]\n"
+        "rotation = [[0.25, -3]]\nrotation_spread = 1\nspin_spread = 2\ncell = [3, 7]\nlit = false\n"
+        "[[type]]\ncell = 6\nfade = [1, 2]\nstretch = 0.25\n");
     EXPECT_EQ(scene.render.atlas, std::filesystem::path("dir/a.png"));
     EXPECT_EQ(scene.render.atlas_columns, 4U);
     EXPECT_EQ(scene.render.atlas_rows, 2U);

@@ -174,23 +174,21 @@ TEST(SceneErrors, TimeAndFrames) {
                               {"[render]\nsort_frames = 1\n", "4:15", "2 to 200"}});
 }
 
+const std::string kBox = "box_min = [0, 0, 0]\nbox_max = [1, 2, 3]\n";
+
 TEST(SceneErrors, Air) {
-    const std::string flow =
-        "[flow]\nraw = \"a.raw\"\nsize = [1, 1, 1]\nbox_min = [0, 0, 0]\nbox_max = [1, 2, 3]\n";
+    const std::string flow = "[flow]\nraw = \"a.raw\"\nsize = ";
     expectErrors(
         kSceneHead,
         {{"[forces]\nwind = [1, 0, 0]\ndrag = 0\n", "4:8", "forces.drag"},
          {"[forces]\nviscosity = 0\nwind = [1, 0, 0]\n", "5:8", "forces.viscosity"},
          {"[forces]\nviscosity = 1\ndrag = 2\n", "4:13", "forces.drag"},
-         {"[forces]\ndrag = 0\n" + flow, "5:1", "forces.drag"},
+         {"[forces]\ndrag = 0\n" + flow + "[1, 1, 1]\n" + kBox, "5:1", "forces.drag"},
          {"[curl_noise]\namplitude = 1\nscale = 1\n[forces]\nviscosity = 0\n", "3:1", "forces.viscosity"},
          {"[curl_noise]\namplitude = 1\nscale = 1\ndrift = 1001\n", "6:9", "lower it"},
-         {"[flow]\nraw = \"a.raw\"\nsize = [1, 1, 1]\nbox_min = [0, 2, 0]\nbox_max = [1, 2, 3]\n", "6:11",
-          "y axis"},
-         {"[flow]\nraw = \"a.raw\"\nsize = [512, 512, 65]\nbox_min = [0, 0, 0]\nbox_max = [1, 2, 3]\n", "5:8",
-          "flow.size"},
-         {"[flow]\nraw = \"a.raw\"\nsize = [1, 1]\nbox_min = [0, 0, 0]\nbox_max = [1, 2, 3]\n", "5:8",
-          "flow.size"},
+         {flow + "[1, 1, 1]\nbox_min = [0, 2, 0]\nbox_max = [1, 2, 3]\n", "6:11", "y axis"},
+         {flow + "[512, 512, 65]\n" + kBox, "5:8", "flow.size"},
+         {flow + "[1, 1]\n" + kBox, "5:8", "flow.size"},
          {"[[attractor]]\nposition = [0, 0, 0]\nstrength = 0\nradius = 1\n", "5:12", "attractor.strength"},
          {"[[vortex]]\ncenter = [0, 0, 0]\naxis = [0, 0, 0]\nstrength = 1\nradius = 1\n", "5:8",
           "vortex.axis"}});
@@ -237,7 +235,7 @@ TEST(SceneErrors, TypesAndMaterials) {
                               {"[[material]]\nname = \"a\"\n[[material]]\nname = \"a\"\n", "6:8", "material"},
                               {"[[spawn]]\non = \"death\"\nmaterial = \"a\"\n", "5:12", "collision"}});
     expectErrors(
-        "[[collider]]\nfile = \"a.relief\"\n[[collider]]\nfile = \"b.relief\"\n",
+        kSceneHead + kSceneHead,
         {{"[[type]]\ncollides_with = 0\n", "6:17", "indices of colliders"},
          {"[[type]]\ncollides_with = [2]\n", "6:18", "choose 0 to 1"},
          {"[[type]]\ncollides_with = [1.5]\n", "6:18", "indices of colliders"},
@@ -351,8 +349,6 @@ TEST(SceneErrors, EmitterSurfaces) {
                   {"touching = { within = 1, material = [] }\n", "6:37", "at least one name"},
                   {"touching = { within = 1, material = \"\" }\n", "6:37", "no empty name"}});
 }
-
-const std::string kBox = "box_min = [0, 0, 0]\nbox_max = [1, 2, 3]\n";
 
 TEST(SceneAir, KeysSetTheAir) {
     const Scene scene = sceneWith(
