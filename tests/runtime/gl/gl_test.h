@@ -10,7 +10,6 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
 #include "runtime/gl/gl_context.h"
 #include "runtime/gl/gl_functions.h"
@@ -45,20 +44,14 @@ class SharedGlContexts : public testing::Environment {
         return *shared;
     }
 
-    /// Makes the context of an API current, with the state of a new context. Returns nullptr after a failed assertion.
+    /// Makes the context of an API current, with the state of a new context. Throws without one, which ends the test.
     [[nodiscard]] const GlContext* use(GlApi api) {
         std::unique_ptr<GlContext>& context = contexts_[api];
         if (!context) {
-            Result<std::unique_ptr<GlContext>> created = GlContext::create(api);
-            if (!created) {
-                ADD_FAILURE() << created.error().message;
-                return nullptr;
-            }
-            context = std::move(*created);
+            context = required(GlContext::create(api));
         }
         if (const Result<void> current = context->makeCurrent(); !current) {
-            ADD_FAILURE() << current.error().message;
-            return nullptr;
+            throw std::runtime_error(current.error().message);
         }
         resetState(api);
         return context.get();
@@ -136,16 +129,9 @@ class GlTestOf : public testing::TestWithParam<Param> {
   protected:
     /// The context is current before members of derived fixtures are constructed.
     GlTestOf() : context_(SharedGlContexts::instance().use(apiOf(this->GetParam()))) {
-        if (context_ == nullptr) {
-            throw std::runtime_error("no context");
-        }
         this->RecordProperty("context", context_->description());
     }
-    void TearDown() override {
-        if (context_ != nullptr) {
-            EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
-        }
-    }
+    void TearDown() override { EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR)); }
 
     const GlContext* context_;
 };
