@@ -5,11 +5,13 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "runtime/gl/gl_capabilities.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/gl_object.h"
 #include "shaders/shader_text.h"
+#include "tests/results.h"
 
 namespace relief {
 
@@ -40,6 +42,14 @@ inline Result<GlProgram> makeQueryProgram(std::string_view file, std::string_vie
         return fail(ErrorCode::kFailure, log);
     }
     return program;
+}
+
+/// Draws a program that writes a vec4 over a picture. \return RGBA of each pixel
+inline std::vector<float> drawnFloats(const GlProgram& program, GLsizei width, GLsizei height) {
+    const GlTexture output = makeTexture2D(GL_RGBA32F, width, height, GL_RGBA, GL_FLOAT);
+    const GlFramebuffer target = required(makeFramebuffer({output.name()}));
+    program.drawScreen(target.name(), width, height);
+    return required(readTextureFloats(output, width, height));
 }
 
 }  // namespace relief

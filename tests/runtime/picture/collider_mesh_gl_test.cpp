@@ -63,16 +63,11 @@ class ColliderMeshGlTest : public GlTest {
             required(ColliderRenderer::create({&textures_, collider_.bounds, finestTexel(collider_)}, mesh));
         EXPECT_TRUE(renderer.draw(camera, style, target_));
         Picture picture{frame_.read(), {}};
-        const GlTexture copy = makeTexture2D(GL_RGBA32F, target_.width, target_.height, GL_RGBA, GL_FLOAT);
-        const GlFramebuffer framebuffer = required(makeFramebuffer({copy.name()}));
         const GlProgram program = required(makeScreenProgram("picture/copy_view.frag"));
-        {
-            const PassState state;
-            program.use();
-            useTexture(0, renderer.depth());
-            program.drawScreen(framebuffer.name(), target_.width, target_.height);
-        }
-        const std::vector<float> texels = required(readTextureFloats(copy, target_.width, target_.height));
+        const PassState state;
+        program.use();
+        useTexture(0, renderer.depth());
+        const std::vector<float> texels = drawnFloats(program, target_.width, target_.height);
         const glm::vec2 map = camera.depthOfDistance();
         for (std::size_t i = 0; i < texels.size(); i += 4) {
             picture.distances.push_back(texels[i] < 1.0F ? map.y / (texels[i] - map.x)
@@ -214,15 +209,12 @@ class ColliderLightGlTest : public GlTest {
         }
         const auto count = static_cast<GLsizei>(points.size());
         const GlTexture input = makeTexture2D(GL_RGBA32F, count, 1, GL_RGBA, GL_FLOAT, texels.data());
-        const GlTexture output = makeTexture2D(GL_RGBA32F, count, 1, GL_RGBA, GL_FLOAT);
-        const GlFramebuffer target = required(makeFramebuffer({output.name()}));
         const GlProgram program = required(makeQueryProgram("picture/particle_light.glsl", kLightQuery));
         light_->attach(program, 1);
         program.set("u_points", 0);
         light_->bind(1);
         useTexture(0, input);
-        program.drawScreen(target.name(), count, 1);
-        const std::vector<float> values = required(readTextureFloats(output, count, 1));
+        const std::vector<float> values = drawnFloats(program, count, 1);
         std::vector<Light> lights;
         for (std::size_t i = 0; i < points.size(); ++i) {
             lights.push_back({values[4 * i], values[4 * i + 1]});
