@@ -22,23 +22,29 @@ class CApiEmitter : public testing::Test {
   protected:
     void TearDown() override { EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR)); }
 
+    /// Particles without gravity. The options are those of an emitter that emits `burst` particles once, which inherit
+    /// the velocity of the surface.
+    relief_particles* particlesOf(std::uint32_t burst) {
+        stage_.options.capacity = 2 * burst;
+        stage_.options.gravity[1] = 0.0F;
+        options_.rate = 0.0F;
+        options_.burst = burst;
+        options_.inherit = 1.0F;
+        options_.lifetime_min = options_.lifetime_max = 100.0F;
+        return relief_particles_create(nullptr, &stage_.options);
+    }
+
+    static constexpr float kDt = 0.02F;
     Stage stage_;
+    relief_emitter_options& options_ = stage_.emitter_options;
 };
 
 // Sparks from the group of the upper joint of a character that bends and moves.
 TEST_F(CApiEmitter, BirthsLieOnAnAnimatedCollider) {
-    constexpr float kDt = 0.02F;
-    stage_.options.capacity = 4096;
-    stage_.options.gravity[1] = 0.0F;
-    relief_particles* particles = relief_particles_create(nullptr, &stage_.options);
-    relief_emitter_options& options = stage_.emitter_options;
-    options.rate = 0.0F;
-    options.burst = 1000;
-    options.inherit = 1.0F;
-    options.lifetime_min = options.lifetime_max = 100.0F;
-    options.type = 7;
-    options.seed = 3;
-    relief_emitter* emitter = relief_emitter_create(stage_.animation, "middle", "cloth", &options);
+    relief_particles* particles = particlesOf(1000);
+    options_.type = 7;
+    options_.seed = 3;
+    relief_emitter* emitter = relief_emitter_create(stage_.animation, "middle", "cloth", &options_);
     ASSERT_NE(emitter, nullptr) << relief_error();
     const std::uint32_t body = 0;
     for (int step = 0; step <= 5; ++step) {
@@ -68,17 +74,9 @@ TEST_F(CApiEmitter, BirthsLieOnAnAnimatedCollider) {
 
 // Dust from a rotated box that moves: on its faces, with the body's velocity.
 TEST_F(CApiEmitter, BirthsLieOnACollider) {
-    constexpr float kDt = 0.02F;
     constexpr int kCount = 4000;
-    stage_.options.capacity = 2 * kCount;
-    stage_.options.gravity[1] = 0.0F;
-    relief_particles* particles = relief_particles_create(nullptr, &stage_.options);
-    relief_emitter_options& options = stage_.emitter_options;
-    options.rate = 0.0F;
-    options.burst = kCount;
-    options.inherit = 1.0F;
-    options.lifetime_min = options.lifetime_max = 100.0F;
-    relief_emitter* emitter = relief_emitter_create_on(stage_.collider, "cloth", &options);
+    relief_particles* particles = particlesOf(kCount);
+    relief_emitter* emitter = relief_emitter_create_on(stage_.collider, "cloth", &options_);
     ASSERT_NE(emitter, nullptr) << relief_error();
     EXPECT_EQ(relief_particles_emit(particles, emitter, stage_.textures, 1, kDt), -1);
     expectError("body is 1");
@@ -108,43 +106,42 @@ TEST_F(CApiEmitter, BirthsLieOnACollider) {
         EXPECT_LT(off, 1e-3);
     }
     // In textures of a single collider, the surface lies in object space.
-    relief_emitter* again = relief_emitter_create_on(stage_.collider, nullptr, &options);
+    relief_emitter* again = relief_emitter_create_on(stage_.collider, nullptr, &options_);
     EXPECT_EQ(relief_particles_emit(particles, again, stage_.textures, 0, kDt), kCount);
     relief_emitter_free(again);
     relief_emitter_free(emitter);
     relief_particles_free(particles);
-    EXPECT_EQ(relief_emitter_create_on(stage_.collider, "oak", &options), nullptr);
+    EXPECT_EQ(relief_emitter_create_on(stage_.collider, "oak", &options_), nullptr);
     expectError("material: ");
 }
 
 TEST_F(CApiEmitter, EmitterErrorsAreNamed) {
-    relief_emitter_options& options = stage_.emitter_options;
     const auto refused = [&](const char* group, const char* material, const std::string& what) {
-        EXPECT_EQ(relief_emitter_create(stage_.animation, group, material, &options), nullptr) << what;
+        EXPECT_EQ(relief_emitter_create(stage_.animation, group, material, &options_), nullptr) << what;
         expectError("relief_emitter_create(): " + what);
         stage_.fill();
     };
     refused("Head", nullptr, "group: ");
     refused("", nullptr, "group: ");
     refused(nullptr, "skin", "material: ");
-    options.speed_min = 2.0F;
+    options_.speed_min = 2.0F;
     refused(nullptr, nullptr, "options->speed_min");
-    options.lifetime_max = 0.5F;
+    options_.lifetime_max = 0.5F;
     refused(nullptr, nullptr, "options->lifetime_min");
-    options.rate = 0.0F;
+    options_.rate = 0.0F;
     refused(nullptr, nullptr, "options->rate");
-    options.rate = 1.0F;
+    options_.rate = 1.0F;
 
     Collider other = loadCollider(stage_.good<const char*>("path")).value();
     other.animation = writeAnimatedMesh(bendingTube(9, 6));
     const std::vector<std::byte> bytes = writeContainer(other).value();
     relief_collider* collider = relief_collider_read(bytes.data(), bytes.size());
     relief_animation* animation = relief_animation_create(collider);
-    relief_emitter* emitter = relief_emitter_create(animation, nullptr, nullptr, &options);
+    relief_emitter* emitter = relief_emitter_create(animation, nullptr, nullptr, &options_);
     ASSERT_NE(emitter, nullptr) << relief_error();
     EXPECT_EQ(relief_particles_emit(stage_.particles, emitter, stage_.animated_textures, 0, 1.0F), -1);
     expectError("emitter has ");
-    relief_emitter* own = relief_emitter_create(stage_.animation, nullptr, nullptr, &options);
+    relief_emitter* own = relief_emitter_create(stage_.animation, nullptr, nullptr, &options_);
     EXPECT_EQ(relief_particles_emit(stage_.particles, own, stage_.world_textures, 0, 1.0F), -1);
     expectError("body is 0");
     // A step with a tiny dt is valid, and gives no infinite numbers.
