@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "runtime/command_line/command_line.h"
+#include "tests/results.h"
 
 namespace relief {
 namespace {
@@ -49,9 +50,7 @@ Result<Values> parsed(const std::vector<std::string>& arguments) {
 }
 
 Values taken(const std::string& option, const std::string& word) {
-    const Result<Values> values = parsed({option, word});
-    EXPECT_TRUE(values) << option << ' ' << word << ": " << values.error().message;
-    return values.value_or(Values{});
+    return required(parsed({option, word}));
 }
 
 /// The error message of a command line.

@@ -296,9 +296,9 @@ TEST(ScenePlay, MaterialsHaveColours) {
                   "scene.toml:5:8: collider.material: ", "hat");
 }
 
-Scene placed(const std::string& text) {
+Scene placed(const std::string& text, const World& world = test::threeBodies()) {
     Scene scene = goodScene("world = \"level/world.json\"\n" + text);
-    const auto done = placeBodies(scene, test::threeBodies());
+    const auto done = placeBodies(scene, world);
     EXPECT_TRUE(done) << done.error().message;
     return scene;
 }
@@ -385,20 +385,16 @@ World threeBodiesAndATile() {
 }
 
 TEST(SceneWorld, NodeTablesMoveAllTiles) {
-    const auto scene = [](const std::string& text) {
-        Scene read = goodScene("world = \"w.json\"\n" + text);
-        EXPECT_TRUE(placeBodies(read, threeBodiesAndATile()));
-        return read;
-    };
-    const Scene moved = scene(
+    const Scene moved = placed(
         "[[collider]]\nnode = \"door\"\nangle = 30\n[[collider.key]]\ntime = 1\n[[collider.key]]\ntime = 2\n"
-        "position = [4, 0.5, 1]\n");
+        "position = [4, 0.5, 1]\n",
+        threeBodiesAndATile());
     ASSERT_EQ(moved.colliders.size(), 4U);
     EXPECT_EQ(moved.colliders[1].node, "floor");
     EXPECT_EQ(moved.colliders[2].node, "gate") << "has the same index as without the tile";
     const SceneCollider& door = moved.colliders[0];
     const SceneCollider& tile = moved.colliders[3];
-    EXPECT_EQ(tile.path, std::filesystem::path("dir/door-1.relief"));
+    EXPECT_EQ(tile.path, std::filesystem::path("dir/level/door-1.relief"));
     EXPECT_EQ(tile.tile_of, 0U);
     EXPECT_FALSE(door.tile_of);
     EXPECT_NE(door.pose, poseOf(test::threeBodies().bodies[1]));
@@ -406,9 +402,10 @@ TEST(SceneWorld, NodeTablesMoveAllTiles) {
         EXPECT_EQ(poseAt(tile, time), poseAt(door, time));
     }
     EXPECT_EQ(tile.restitution, 0.25F);
-    const Scene still = scene("");
+    const Scene still = placed("", threeBodiesAndATile());
     ASSERT_EQ(still.colliders.size(), 4U);
-    EXPECT_EQ(still.colliders[2].path, std::filesystem::path("dir/door-1.relief")) << "in the world's order";
+    EXPECT_EQ(still.colliders[2].path, std::filesystem::path("dir/level/door-1.relief"))
+        << "in the world's order";
     EXPECT_FALSE(still.colliders[2].tile_of);
 }
 
