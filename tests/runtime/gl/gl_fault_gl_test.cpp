@@ -184,8 +184,7 @@ struct Work {
 class GlFaultTest : public GlTest {
   protected:
     GlFaultTest() {
-        const std::array<Birth, 1> births{Birth{{0.0F, 2.0F, 0.0F}, glm::vec3(0.0F), 100.0F, 0}};
-        particles_.spawn(births);
+        particles_.spawn(std::vector<Birth>{{{0.0F, 2.0F, 0.0F}, glm::vec3(0.0F), 100.0F, 0}});
         particles_.step(0.01F);
         // Calls every entry point that is replaced below once, so that libepoxy resolves it.
         auto one = required(ParticleSystem::create({.capacity = 1}));

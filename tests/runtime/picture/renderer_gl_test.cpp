@@ -50,8 +50,7 @@ class RendererGlTest : public GlTest {
                 static_cast<std::uint32_t>((0.5F - 0.5F * clip.y / clip.w) * static_cast<float>(kHeight))};
     }
     void spawnAt(const glm::vec3& p) {
-        const std::array<Birth, 1> births{Birth{p, glm::vec3(0.0F), 100.0F, 0}};
-        particles_.spawn(births);
+        particles_.spawn(std::vector<Birth>{{p, glm::vec3(0.0F), 100.0F, 0}});
         particles_.step(1.0F);
     }
 
@@ -90,9 +89,8 @@ TEST_P(RendererGlTest, ParticlesAreOccludedByDepth) {
 
 TEST_P(RendererGlTest, DeadParticlesAreNotDrawn) {
     const std::vector<std::uint8_t> bare = drawCollider();
-    const std::array<Birth, 2> births{Birth{{0.6F, 0.3F, 0.5F}, glm::vec3(0.0F), 0.5F, 0},
-                                      Birth{{0.0F, -90.0F, 0.0F}, glm::vec3(0.0F), 100.0F, 0}};
-    particles_.spawn(births);
+    particles_.spawn(std::vector<Birth>{{{0.6F, 0.3F, 0.5F}, glm::vec3(0.0F), 0.5F, 0},
+                                        {{0.0F, -90.0F, 0.0F}, glm::vec3(0.0F), 100.0F, 0}});
     particles_.step(1.0F);
     ASSERT_EQ(particles_.counts().died, 1U);
     ASSERT_EQ(particles_.extent(), 2U);
@@ -102,8 +100,7 @@ TEST_P(RendererGlTest, DeadParticlesAreNotDrawn) {
 
 TEST_P(RendererGlTest, OpacityFadesInAndOut) {
     const ParticleStyle style{.diameter = 0.2F, .opacity = 1.0F, .fade_in = 1.0F, .fade_out = 1.0F};
-    const std::array<Birth, 1> births{Birth{{0.0F, 0.0F, 1.0F}, glm::vec3(0.0F), 4.0F, 0}};
-    particles_.spawn(births);
+    particles_.spawn(std::vector<Birth>{{{0.0F, 0.0F, 1.0F}, glm::vec3(0.0F), 4.0F, 0}});
     std::vector<int> brightness;
     for (int step = 0; step < 15; ++step) {  // ages 0.25 … 3.75
         particles_.step(0.25F);
