@@ -266,8 +266,9 @@ class MeshRendererGlTest : public GlTest {
         const auto y = static_cast<int>((0.5F - 0.5F * clip.y / clip.w) * float{kMeadowHeight});
         glm::vec3 sum(0.0F);
         for (int i = 0; i < 9; ++i) {
-            const auto at = 3 * static_cast<std::size_t>((y + i / 3 - 1) * int{kMeadowWidth} + x + i % 3 - 1);
-            sum += glm::vec3(rgb_.at(at), rgb_.at(at + 1), rgb_.at(at + 2));
+            const auto red =
+                3 * static_cast<std::size_t>((y + i / 3 - 1) * int{kMeadowWidth} + x + i % 3 - 1);
+            sum += glm::vec3(rgb_.at(red), rgb_.at(red + 1), rgb_.at(red + 2));
         }
         return {sum.x / 9, sum.y / 9, sum.z / 9};
     }
