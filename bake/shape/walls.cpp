@@ -302,7 +302,7 @@ std::vector<bool> mayBeWalls(const std::vector<WallCandidate>& candidates) {
         bounds.push_back(boundsOf(candidate.sheet->positions));
     }
     const auto mayFace = [&](std::size_t a, std::size_t b) {
-        const auto [least, most] = std::minmax(bounds[a].longestSide(), bounds[b].longestSide());
+        const auto [least, most] = std::minmax({bounds[a].longestSide(), bounds[b].longestSide()});
         return least >= static_cast<float>(kShellExtent) * most &&
                (bounds[a].contains(bounds[b].center()) || bounds[b].contains(bounds[a].center()));
     };
