@@ -326,7 +326,7 @@ TEST_F(HeightMaps, BetterRawFormatIsSuggested) {
     // No suggestion: unsigned heights up to the maximum, walls of two levels, and expanded 8-bit values.
     const std::vector<double> hills = ground;
     for (double& height : ground) {
-        height = 6.0 * height + 33000.0;
+        height = std::clamp(6.0 * height + 33000.0, 0.0, 65535.0);
     }
     std::vector<std::uint16_t> samples(ground.begin(), ground.end());
     EXPECT_EQ(found({std::as_bytes(std::span(samples)).begin(), std::as_bytes(std::span(samples)).end()},
