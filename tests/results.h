@@ -31,4 +31,12 @@ void expectError(const Result<T>& result, ErrorCode code, std::string_view words
     EXPECT_EQ(result.error().message.find('\n'), std::string::npos) << result.error().message;
 }
 
+/// expectError() with a message that starts with these words.
+template <class T>
+void expectErrorStart(const Result<T>& result, ErrorCode code, std::string_view start,
+                      const char* file = __builtin_FILE(), int line = __builtin_LINE()) {
+    expectError(result, code, start, file, line);
+    EXPECT_TRUE(result || result.error().message.starts_with(start)) << result.error().message;
+}
+
 }  // namespace relief

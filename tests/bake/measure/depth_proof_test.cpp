@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 #include <random>
+#include <stdexcept>
 
 #include "bake/measure/truth.h"
 #include "bake/patches/patch_planner.h"
@@ -59,9 +60,12 @@ double deepestOf(const MeshQuery& query, const Collider& collider, int count) {
 
 /// Index of the first root that is inside and has no heights.
 std::uint32_t firstInside(PatchTexels texels) {
+    const glm::uvec3 roots = patchTreeSize(texels).roots;
     std::uint32_t leaf = 1;
     while (patchTexel(texels, leaf).kind() != PatchRecord::Kind::kInside) {
-        ++leaf;
+        if (++leaf > roots.x * roots.y * roots.z) {
+            throw std::runtime_error("no root is inside");
+        }
     }
     return leaf;
 }

@@ -24,6 +24,14 @@ def bunny(tmp_path_factory):
     return path
 
 
+def bunny_arrays():
+    """Vertices and triangles of the bunny."""
+    with open(BUNNY) as file:
+        rows = [line.split() for line in file]
+    return (np.array([row[1:4] for row in rows if row[:1] == ["v"]], dtype=np.float32),
+            np.array([row[1:4] for row in rows if row[:1] == ["f"]], dtype=int) - 1)
+
+
 def random_points(count, seed=1):
     return np.random.default_rng(seed).uniform(-1.1, 1.1, (count, 3)).astype(np.float32)
 
@@ -44,6 +52,15 @@ def test_queries_match_relief_query(distance, bunny, tmp_path):
             assert list(normal[i]) == [np.float32(value) for value in row[4:7]]
 
 
+def test_arrays_match_their_file(bunny):
+    vertices, triangles = bunny_arrays()
+    points = random_points(10_000)
+    collider = relief.bake(vertices, triangles, budget=200_000)
+    for ours, of_file in zip(collider.query(points), relief.load(bunny).query(points)):
+        assert np.array_equal(ours, of_file)
+    assert relief.check(collider, vertices, triangles, samples=2000).wrong_percent < 5
+
+
 def test_files_equal_bytes(bunny, tmp_path):
     collider = relief.load(bunny)
     collider.save(tmp_path / "plain.relief")
@@ -58,8 +75,7 @@ def test_files_equal_bytes(bunny, tmp_path):
 def test_maps_are_arrays():
     collider = relief.bake(BUNNY, maps=["front-back:dir=-x", "cube", "float:dir=-y"], resolution=96)
     assert len(collider.maps) == 3
-    with open(BUNNY) as file:
-        vertices = [[float(word) for word in line.split()[1:4]] for line in file if line.startswith("v ")]
+    vertices, _ = bunny_arrays()
     assert np.allclose(collider.bounds, [np.min(vertices, 0), np.max(vertices, 0)], atol=1e-6)
     for one in collider.maps:
         texels = one.texels

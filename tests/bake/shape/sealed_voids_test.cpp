@@ -261,7 +261,7 @@ TEST(ShapeOptions, ParseFromTheCommandLine) {
     }
     for (const Words& words : faults) {
         SCOPED_TRACE(words.back());
-        expectError(parseShapeOptions(words), ErrorCode::kUsage, "--as ");
+        expectError(parseShapeOptions(words), ErrorCode::kUsage, "--as is '");
     }
     std::vector<std::string> many;
     for (std::size_t i = 0; i <= kSelectedNamesMax; ++i) {

@@ -14,6 +14,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "formats/animation/animated_mesh.h"
@@ -36,17 +38,17 @@
 namespace relief {
 namespace {
 
-/// Replaces an entry point during its lifetime. The GL must have been called through the entry point before: libepoxy
+/// Replaces an entry point during its lifetime; one object per entry point at a time. The GL must have been called through the entry point before: libepoxy
 /// stores the driver's function in the pointer at the first call.
 template <auto& kEntry>
 class Replaced {
   public:
     using Function = std::remove_reference_t<decltype(kEntry)>;
     explicit Replaced(Function by) {
-        original = kEntry;
-        kEntry = by;
+        EXPECT_EQ(original, nullptr);
+        original = std::exchange(kEntry, by);
     }
-    ~Replaced() { kEntry = original; }
+    ~Replaced() { kEntry = std::exchange(original, nullptr); }
     Replaced(const Replaced&) = delete;
     Replaced& operator=(const Replaced&) = delete;
 
