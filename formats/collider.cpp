@@ -117,8 +117,8 @@ bool mayBeInside(const Collider& collider, const Bounds& box) {
         if (map.format != MapFormat::kPatches || !map.encloses) {
             return false;
         }
-        Bounds
-            in_map;  // apply() is monotone in each coordinate, also after rounding: the corners bound all points
+        // apply() is monotone in each coordinate, also after rounding, so the corners bound all points.
+        Bounds in_map;
         for (unsigned i = 0; i < 8; ++i) {
             in_map.add(map.object_to_map.apply(box.corner(i)));
         }

@@ -76,8 +76,8 @@ struct NearestSearch {
 [[nodiscard]] SurfaceSample nearestSurface(const Collider& collider, const glm::vec3& p);
 
 /// Returns a box that contains inside points if nearestSurface() finds a surface at less than `distance` from P. If P is
-/// outside, the search evaluates an inside point at most a little farther than each surface that it finds, unless the
-/// plane of a vote predicts a surface in front of all inside points.
+/// outside, the search evaluates an inside point at most a little farther than each surface that it finds. The plane of
+/// the vote at P, which the search returns if it finds no surface, may be in front of all inside points.
 [[nodiscard]] Bounds boxToSearch(const Collider& collider, const glm::vec3& p, float distance);
 
 }  // namespace relief

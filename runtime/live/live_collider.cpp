@@ -182,8 +182,8 @@ Result<void> LiveCollider::update(WorldTextures& textures, std::size_t body) {
         mesh_.settle();
     }
     const PassState state;
-    // Once for all maps: they have the same format, so their texels share a texture. Drivers check a framebuffer again
-    // after each change of an attachment.
+    // Once for all maps: they have the same format, so their texels share a texture, and motion is always in the float
+    // texture. Drivers check a framebuffer again after each change of an attachment.
     attach(texel_target_, *slots.front().texels);
     attach(motion_target_, *slots.front().motion);
     for (std::size_t m = 0; m < slots.size(); ++m) {

@@ -73,6 +73,7 @@ class LiveCollider {
     LiveCollider(GpuMesh mesh, DepthMapRenderer renderer, Collider frames)
         : mesh_(std::move(mesh)), renderer_(std::move(renderer)), frames_(std::move(frames)) {}
     [[nodiscard]] Result<void> rejectSecondChange() const;
+    // These write to the attached textures of the slots.
     void copyTexels(const LiveSlot& slot, const DepthMap& map) const;
     void copyMotion(const LiveSlot& slot, const DepthMap& map) const;
 

@@ -170,8 +170,8 @@ test("clicks pick bodies; a check colours bodies and lists the worst; keys fly",
     };
     const picked = () => page.evaluate("document.getElementById('picked').hidden ? '' : document.getElementById('picked-name').textContent");
     const middle = (i) => page.evaluate((n) => {
-        const { model, body, box } = reliefView.bodies.placed[n];
-        const c = (body?.box ?? box).center;
+        const { model, box } = reliefView.bodies.placed[n];
+        const c = box.center;
         return [0, 1, 2].map((k) => model[k] * c[0] + model[4 + k] * c[1] + model[8 + k] * c[2] + model[12 + k]);
     }, i);
     for (const [i, name] of ["ground", "first", "second", "third", "wide"].entries()) {
