@@ -38,8 +38,8 @@
 namespace relief {
 namespace {
 
-/// Replaces an entry point during its lifetime; one object per entry point at a time. The GL must have been called through the entry point before: libepoxy
-/// stores the driver's function in the pointer at the first call.
+/// Replaces an entry point during its lifetime; one object per entry point at a time. The GL must have been called
+/// through the entry point before: libepoxy stores the driver's function in the pointer at the first call.
 template <auto& kEntry>
 class Replaced {
   public:
